@@ -1,0 +1,18 @@
+"""Bordered linear systems ``[[H_y, H_lam], [border']] z = (r, rho)``, with the sign of their determinant."""
+
+from continuation.linear.banded import Banded
+from continuation.linear.dispatch import factor_bordered
+from continuation.linear.operator import Operator
+from continuation.linear.sparse import permutation_sign
+from continuation.linear.symmetric import Symmetric
+from continuation.linear.system import BorderedSystem, SingularError
+
+__all__ = [
+    "Banded",
+    "BorderedSystem",
+    "Operator",
+    "SingularError",
+    "Symmetric",
+    "factor_bordered",
+    "permutation_sign",
+]

@@ -1,0 +1,113 @@
+"""Banded H_y: LU within the band, bordered by elimination, in O(N)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+from attrs.validators import ge
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgbtrf, dgbtrs
+from scipy.sparse import dia_array
+
+from continuation.arrays import Array, Matrix
+from continuation.linear.entries import real
+from continuation.linear.refine import BorderedMatrix, eliminate
+from continuation.linear.sparse import factor_whole
+from continuation.linear.system import BorderedSystem
+
+
+def _diagonals(ab: Any) -> Array:
+    return real("ab of Banded", ab)
+
+
+@frozen(eq=False)
+class Banded:
+    """A banded matrix A in the diagonal-ordered form of LAPACK: ``ab[upper + i - j, j] = A[i, j]``.
+
+    Parameters
+    ----------
+    ab : Array
+        Shape (lower + upper + 1, N). Entries that lie outside A are never read.
+    lower, upper : int
+        Number of diagonals below and above the main one.
+    """
+
+    ab: Array = field(converter=_diagonals)
+    lower: int = field(validator=ge(0))
+    upper: int = field(validator=ge(0))
+
+    def __attrs_post_init__(self) -> None:
+        rows = self.lower + self.upper + 1
+        if self.ab.ndim != 2 or len(self.ab) != rows:
+            raise ValueError(f"ab of Banded has shape {self.ab.shape}; expected (lower + upper + 1, N) = ({rows}, N)")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(N, N)."""
+        return (self.ab.shape[1], self.ab.shape[1])
+
+    def tosparse(self) -> Matrix:
+        """The same matrix as a scipy sparse array."""
+        return dia_array((self.ab, np.arange(self.upper, -self.lower - 1, -1)), shape=self.shape).tocsc()
+
+    def toarray(self) -> Array:
+        """A dense copy, shape (N, N)."""
+        dense: Array = self.tosparse().toarray()
+        return dense
+
+    def __matmul__(self, other: Array) -> Array:
+        n = self.ab.shape[1]
+        if len(other) != n:
+            raise ValueError(f"the operand of Banded @ has shape {other.shape}; expected ({n},) or ({n}, k)")
+        product = np.zeros(other.shape)
+        for k, diagonal in enumerate(self.ab):
+            below = k - self.upper  # the rows of this diagonal are its columns, shifted down by so many
+            first, last = max(0, -below), min(n, n - below)
+            if first < last:
+                product[first + below : last + below] += (diagonal[first:last] * other[first:last].T).T
+        return product
+
+
+@frozen(eq=False)
+class BandedLU:
+    """LU factors of a banded matrix, with partial pivoting."""
+
+    lu: Array
+    pivots: NDArray[np.int32]
+    lower: int
+    upper: int
+
+    @property
+    def sign(self) -> int:
+        """Sign of det A: row exchanges and negative pivots, counted."""
+        swaps = np.count_nonzero(self.pivots != np.arange(len(self.pivots)))
+        negative = np.count_nonzero(self.lu[self.lower + self.upper] < 0)
+        return -1 if (swaps + negative) % 2 else 1
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution of A x = rhs, shape (N,)."""
+        x: Array = dgbtrs(self.lu, self.lower, self.upper, rhs, self.pivots)[0].ravel()
+        return x
+
+
+def factor_banded(matrix: Banded, column: Array, row: Array) -> BorderedSystem:
+    """Factor H_y within its band and border it; at a fold factor the whole matrix as a sparse one.
+
+    Raises
+    ------
+    SingularError
+        If the bordered matrix is exactly singular, or an entry is not finite.
+    """
+    n, lower, upper = len(column), matrix.lower, matrix.upper
+    magnitudes = Banded(np.abs(matrix.ab), lower, upper)
+    bordered = BorderedMatrix(matrix, column, row, magnitudes @ np.ones(n))
+
+    def whole() -> BorderedSystem:
+        return factor_whole(matrix.tosparse(), column, row)
+
+    room = np.zeros((2 * lower + upper + 1, n), order="F")
+    room[lower:] = matrix.ab
+    lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
+    return whole() if info > 0 else eliminate(bordered, BandedLU(lu, pivots, lower, upper), whole)

@@ -1,0 +1,73 @@
+"""From the type of H_y to the factorisation that suits it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.sparse import issparse
+from scipy.sparse.linalg import LinearOperator
+
+from continuation.arrays import Array, Matrix
+from continuation.linear.banded import Banded, factor_banded
+from continuation.linear.dense import factor_dense
+from continuation.linear.entries import real, require_real
+from continuation.linear.operator import Operator, factor_operator
+from continuation.linear.sparse import factor_sparse
+from continuation.linear.symmetric import Symmetric, factor_symmetric
+from continuation.linear.system import BorderedSystem
+
+
+def factor_bordered(H_y: Matrix, H_lam: Array, border: Array) -> BorderedSystem:
+    """Factor the bordered matrix ``M = [[H_y, H_lam], [border']]`` by the method that suits the type of `H_y`.
+
+    Parameters
+    ----------
+    H_y : ndarray, Symmetric, Banded, scipy sparse array, LinearOperator or Operator
+        Shape (N, N), N >= 1. It may be singular, as at a fold, if M is not. It is kept, not copied, by all but the
+        dense structure: change it only when the factorisation is no longer needed.
+    H_lam : Array
+        Shape (N,).
+    border : Array
+        Shape (N + 1,).
+
+    Raises
+    ------
+    SingularError
+        If M is exactly singular, or has an entry that is not finite.
+    TypeError
+        If `H_y` is of no type named above, or an entry is not real.
+    ValueError
+        If the shapes do not fit.
+    """
+    factor = _method(H_y)
+    column, row = real("H_lam", H_lam), real("border", border)
+    n = column.size
+    if n < 1 or column.shape != (n,) or H_y.shape != (n, n) or row.shape != (n + 1,):
+        raise ValueError(
+            f"H_y, H_lam, border have shapes {H_y.shape}, {column.shape}, {row.shape}; "
+            "expected (N, N), (N,), (N + 1,) with N >= 1"
+        )
+    return factor(H_y, column, row)
+
+
+def _method(matrix: Matrix) -> Callable[[Any, Array, Array], BorderedSystem]:
+    if isinstance(matrix, np.ndarray):
+        require_real("H_y", matrix.dtype)
+        return factor_dense
+    if isinstance(matrix, Symmetric):
+        return factor_symmetric
+    if isinstance(matrix, Banded):
+        return factor_banded
+    if isinstance(matrix, Operator):
+        return factor_operator
+    if isinstance(matrix, LinearOperator):
+        return lambda operator, column, row: factor_operator(Operator(operator), column, row)
+    if issparse(matrix):
+        require_real("H_y", matrix.dtype)
+        return factor_sparse
+    raise TypeError(
+        f"H_y is of type {type(matrix).__name__}; expected ndarray, Symmetric, Banded, a scipy sparse array, "
+        "LinearOperator or Operator"
+    )

@@ -1,0 +1,165 @@
+"""Matrix-free H_y: preconditioned GMRES on the bordered operator."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+from attrs.converters import optional
+from scipy.sparse.linalg import LinearOperator, aslinearoperator, gmres
+
+from continuation.arrays import Array, Matrix
+from continuation.linear.refine import BorderedMatrix, join, refined
+from continuation.linear.system import SingularError
+
+INNER_TOLERANCE = 1e-9
+"""Relative residual of one GMRES solve; with two refinements the result is at round-off."""
+
+SOLVED = 1e-4
+"""Largest residual, relative to the right-hand side, of a solution; that of a condition number of 1e12."""
+
+RESTART = 100
+CYCLES = 20
+"""GMRES keeps RESTART vectors of length N + 1, and gives up after CYCLES restarts."""
+
+
+def _operator(operator: Any) -> Matrix:
+    return aslinearoperator(operator)
+
+
+@frozen(eq=False)
+class Operator:
+    """A matrix known by its products alone, with an optional approximation of its inverse.
+
+    Parameters
+    ----------
+    operator : LinearOperator
+        H_y, shape (N, N).
+    preconditioner : LinearOperator, optional
+        An approximation of H_y^{-1}, shape (N, N).
+    """
+
+    operator: Matrix = field(converter=_operator)
+    preconditioner: Matrix | None = field(default=None, converter=optional(_operator))
+
+    def __attrs_post_init__(self) -> None:
+        if self.preconditioner is not None and self.preconditioner.shape != self.operator.shape:
+            raise ValueError(f"preconditioner has shape {self.preconditioner.shape}; expected {self.operator.shape}")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(N, N)."""
+        n: int
+        m: int
+        n, m = self.operator.shape
+        return (n, m)
+
+    def toarray(self) -> Array:
+        """A dense copy, shape (N, N), for N products."""
+        dense: Array = self.operator @ np.eye(self.shape[0])
+        return dense
+
+    def __matmul__(self, other: Array) -> Array:
+        product: Array = self.operator @ other
+        return product
+
+
+@frozen(eq=False)
+class Krylov:
+    """The bordered operator, solved by GMRES at each call."""
+
+    bordered: BorderedMatrix
+    row_scale: float
+    """Factor of the last row, which brings it to the size of the others."""
+    inverse: Matrix | None
+    """The bordered preconditioner, a LinearOperator of order N + 1."""
+
+    @property
+    def sign(self) -> int:
+        """0: products do not tell the sign of a determinant."""
+        return 0
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The solution z, shape (N + 1,).
+
+        Raises
+        ------
+        SingularError
+            If GMRES does not converge.
+        """
+        rhs = join(r, rho)
+        z, accurate = refined(self.bordered, self._gmres, rhs)
+        with np.errstate(all="ignore"):
+            left = self._size(self.bordered.residual(z, rhs)) / (self._size(rhs) or 1.0)
+        # A z of size 1 / eps makes any residual round-off: that is how a singular operator answers.
+        if not (accurate and left <= SOLVED):
+            raise SingularError(
+                f"GMRES on the bordered operator of order {len(rhs)} did not converge: relative residual {left:.1e} "
+                f"after {CYCLES} cycles of {min(RESTART, len(rhs))} steps. Give H_y a (better) preconditioner."
+            )
+        return z
+
+    def _size(self, rhs: Array) -> float:
+        return max(float(np.abs(rhs[:-1]).max()), self.row_scale * abs(float(rhs[-1])))
+
+    def _gmres(self, rhs: Array) -> Array:
+        order = len(rhs)
+        scaled = rhs.copy()
+        scaled[-1] *= self.row_scale
+        if not scaled.any() or not np.isfinite(scaled).all():
+            return scaled
+        z, _ = gmres(
+            LinearOperator((order, order), matvec=self._product, dtype=float),
+            scaled,
+            M=self.inverse,
+            rtol=INNER_TOLERANCE,
+            restart=min(RESTART, order),
+            maxiter=CYCLES,
+        )
+        result: Array = z
+        return result
+
+    def _product(self, z: Array) -> Array:
+        bordered = self.bordered
+        return join(bordered.matrix @ z[:-1] + bordered.column * z[-1], self.row_scale * float(bordered.row @ z))
+
+
+def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
+    """Prepare GMRES: the size of H_y by one product, and the bordered preconditioner.
+
+    Raises
+    ------
+    SingularError
+        If a product with H_y is not finite, or the border is zero.
+    """
+    n = len(column)
+    # For a vector of random signs, E |A v|^2 is the squared Frobenius norm.
+    probe = np.where(np.random.default_rng(n).random(n) < 0.5, -1.0, 1.0)
+    with np.errstate(all="ignore"):
+        size = float(np.linalg.norm(matrix @ probe))
+    bordered = BorderedMatrix(matrix, column, row, np.full(n, size))
+    length = float(np.linalg.norm(row))
+    if length == 0:
+        raise SingularError("The bordered operator is singular: the border is zero.")
+    typical = np.hypot(size / np.sqrt(n), np.linalg.norm(column) / np.sqrt(n))
+    row_scale = float(typical) / length if typical > 0 else 1.0
+    inverse = None if matrix.preconditioner is None else _preconditioner(matrix.preconditioner, bordered, row_scale)
+    return Krylov(bordered, row_scale, inverse)
+
+
+def _preconditioner(inverse: Matrix, bordered: BorderedMatrix, row_scale: float) -> Matrix:
+    """Block elimination with the approximate inverse of H_y in the place of the exact one."""
+    n = len(bordered.column)
+    row = bordered.row
+    w: Array = inverse @ bordered.column
+    schur = float(row[-1] - row[:-1] @ w)
+    if schur == 0:
+        schur = float(np.linalg.norm(row))
+
+    def apply(rhs: Array) -> Array:
+        x: Array = inverse @ rhs[:-1]
+        lam: float = (rhs[-1] / row_scale - row[:-1] @ x) / schur
+        return join(x - lam * w, lam)
+
+    return LinearOperator((n + 1, n + 1), matvec=apply, dtype=float)

@@ -1,0 +1,123 @@
+"""Symmetric H_y: Cholesky or LDL' of H_y, bordered by elimination."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dpotrf, dpotrs, dsytrf, dsytrf_lwork, dsytrs
+
+from continuation.arrays import Array
+from continuation.linear.dense import factor_dense
+from continuation.linear.entries import real
+from continuation.linear.refine import BorderedMatrix, Factored, eliminate
+from continuation.linear.system import BorderedSystem
+
+
+def _dense(matrix: Any) -> Array:
+    return real("matrix of Symmetric", matrix)
+
+
+@frozen(eq=False)
+class Symmetric:
+    """A dense symmetric matrix, which costs half the work of a general one.
+
+    Parameters
+    ----------
+    matrix : Array
+        Shape (N, N). Both triangles are read; a matrix that is not symmetric is solved right, but slowly.
+    definite : bool, optional
+        True: Cholesky first. None: Cholesky first where the diagonal is positive. False: LDL' at once. A wrong guess
+        costs time only.
+    """
+
+    matrix: Array = field(converter=_dense)
+    definite: bool | None = None
+
+    def __attrs_post_init__(self) -> None:
+        if self.matrix.ndim != 2 or self.matrix.shape[0] != self.matrix.shape[1]:
+            raise ValueError(f"matrix of Symmetric has shape {self.matrix.shape}; expected (N, N)")
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(N, N)."""
+        return (len(self.matrix), len(self.matrix))
+
+    def toarray(self) -> Array:
+        """A dense copy, shape (N, N)."""
+        return self.matrix.copy()
+
+    def __matmul__(self, other: Array) -> Array:
+        product: Array = self.matrix @ other
+        return product
+
+
+@frozen(eq=False)
+class Cholesky:
+    """A = L L'."""
+
+    lower: Array
+
+    @property
+    def sign(self) -> int:
+        """+1."""
+        return 1
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution of A x = rhs, shape (N,)."""
+        x: Array = dpotrs(self.lower, rhs, lower=1)[0].ravel()
+        return x
+
+
+@frozen(eq=False)
+class LDL:
+    """P' A P = L D L' with the diagonal pivoting of Bunch and Kaufman."""
+
+    ldu: Array
+    pivots: NDArray[np.int32]
+    """As LAPACK gives them: from one, and negative in both rows of a block of order two."""
+
+    @property
+    def sign(self) -> int:
+        """Sign of det A, from the inertia of D: every block of order two has one negative eigenvalue."""
+        single = self.pivots > 0
+        pairs = np.count_nonzero(~single) // 2
+        negative = np.count_nonzero(self.ldu.diagonal()[single] < 0)
+        return -1 if (pairs + negative) % 2 else 1
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution of A x = rhs, shape (N,)."""
+        x: Array = dsytrs(self.ldu, self.pivots, rhs, lower=1)[0].ravel()
+        return x
+
+
+def factor_symmetric(matrix: Symmetric, column: Array, row: Array) -> BorderedSystem:
+    """Factor H_y alone and border it; at a fold factor the whole matrix by LU.
+
+    Raises
+    ------
+    SingularError
+        If the bordered matrix is exactly singular, or an entry is not finite.
+    """
+    with np.errstate(over="ignore"):
+        bordered = BorderedMatrix(matrix, column, row, np.abs(matrix.matrix).sum(axis=1))
+
+    def whole() -> BorderedSystem:
+        return factor_dense(matrix.matrix, column, row)
+
+    factor = _factor(matrix)
+    return whole() if factor is None else eliminate(bordered, factor, whole)
+
+
+def _factor(symmetric: Symmetric) -> Factored | None:
+    matrix = symmetric.matrix
+    positive = symmetric.definite is not False and bool((matrix.diagonal() > 0).all())
+    if positive:
+        lower, info = dpotrf(matrix.T, lower=1, clean=0)
+        if info == 0:
+            return Cholesky(lower)
+    work, _ = dsytrf_lwork(len(matrix), lower=1)
+    ldu, pivots, info = dsytrf(matrix.T, lower=1, lwork=int(work))
+    return LDL(ldu, pivots) if info == 0 else None

@@ -1,0 +1,24 @@
+"""What a factored bordered matrix can do; every structure of `continuation.linear` is one of these."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from continuation.arrays import Array
+
+
+class SingularError(ArithmeticError):
+    """The bordered matrix has no factorisation: it is singular to working precision, or not finite."""
+
+
+class BorderedSystem(Protocol):
+    """A factorisation of the bordered matrix ``[[H_y, H_lam], [border']]`` of order N + 1."""
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant, +1 or -1; 0 where the structure cannot tell (operators)."""
+        ...
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The solution z, shape (N + 1,), of ``H_y dy + H_lam dlam = r`` and ``border . z = rho``."""
+        ...

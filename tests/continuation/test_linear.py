@@ -1,0 +1,447 @@
+"""Bordered systems against exact rational arithmetic, and at folds, where H_y is singular."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, kron
+from scipy.sparse.linalg import LinearOperator, aslinearoperator, splu, spsolve
+
+from continuation.linear import Banded, Operator, SingularError, Symmetric, factor_bordered, permutation_sign
+from continuation.linear.refine import BlockElimination
+
+EPS = np.finfo(float).eps
+
+
+def banded(matrix, lower, upper):
+    n = len(matrix)
+    ab = np.full((lower + upper + 1, n), np.nan)  # what lies outside the matrix must never be read
+    for i in range(n):
+        for j in range(max(0, i - lower), min(n, i + upper + 1)):
+            ab[upper + i - j, j] = matrix[i, j]
+    return Banded(ab, lower, upper)
+
+
+def full_band(matrix):
+    return banded(matrix, len(matrix) - 1, len(matrix) - 1)
+
+
+GENERAL = {"dense": np.array, "banded": full_band, "sparse": csc_array}
+SYMMETRIC = {
+    "unknown": Symmetric,
+    "indefinite": lambda matrix: Symmetric(matrix, definite=False),
+    "definite": lambda matrix: Symmetric(matrix, definite=True),
+}
+EVERY = GENERAL | SYMMETRIC | {"operator": aslinearoperator}
+
+
+def whole(matrix, column, row):
+    return np.block([[matrix, column[:, None]], [row[None, :]]])
+
+
+def exact(matrix, rhs):
+    """Solution and determinant in rational arithmetic; (None, 0) for a singular matrix."""
+    n = len(matrix)
+    rows = [[Fraction(float(x)) for x in (*matrix[i], rhs[i])] for i in range(n)]
+    determinant = Fraction(1)
+    for k in range(n):
+        p = next((i for i in range(k, n) if rows[i][k]), None)
+        if p is None:
+            return None, 0
+        if p != k:
+            rows[k], rows[p] = rows[p], rows[k]
+            determinant = -determinant
+        determinant *= rows[k][k]
+        for i in range(n):
+            if i != k and rows[i][k]:
+                factor = rows[i][k] / rows[k][k]
+                rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k])]
+    return np.array([float(rows[i][n] / rows[i][i]) for i in range(n)]), (1 if determinant > 0 else -1)
+
+
+def integers(*shape):
+    return arrays(np.int64, shape, elements=st.integers(-9, 9)).map(lambda a: a.astype(float))
+
+
+@st.composite
+def systems(draw, symmetric=False, singular=None):
+    """(H_y, H_lam, border, rhs) with integer entries: every number of the problem is exact."""
+    n = draw(st.integers(1, 12))
+    if draw(st.booleans()) if singular is None else singular:
+        left = draw(integers(n, n - 1))
+        right = left.T * np.where(draw(arrays(bool, (n - 1, 1))), 1.0, -1.0) if symmetric else draw(integers(n - 1, n))
+        matrix = left @ right
+    else:
+        matrix = draw(integers(n, n))
+        matrix = matrix + matrix.T if symmetric else matrix
+    return matrix, draw(integers(n)), draw(integers(n + 1)), draw(integers(n + 1))
+
+
+def check(structure, system, rows=1.0, columns=1.0):
+    """Compare with the exact solution of the system whose rows and columns were scaled by powers of two."""
+    matrix, column, row, rhs = system
+    square = whole(matrix, column, row)
+    truth, sign = exact(square, rhs)
+    assume(sign != 0)
+    condition = np.linalg.cond(square, np.inf)
+    assume(condition < 1e9)
+    scaled = whole(matrix, column, row) * np.reshape(rows, (-1, 1)) * np.reshape(columns, (1, -1))
+    factored = factor_bordered(structure(scaled[:-1, :-1]), scaled[:-1, -1], scaled[-1])
+    scaled_rhs = rhs * rows
+    z = factored.solve(scaled_rhs[:-1], float(scaled_rhs[-1])) * columns
+    assert factored.sign in ({0} if structure is aslinearoperator else {sign})
+    assert np.abs(z - truth).max() <= 200 * EPS * condition * np.abs(truth).max()
+
+
+@given(systems(), st.sampled_from(sorted(GENERAL)))
+@settings(max_examples=100, deadline=None)
+def test_general_structures_are_exact_to_round_off(system, name):
+    check(GENERAL[name], system)
+
+
+@given(systems(symmetric=True), st.sampled_from(sorted(EVERY)))
+@settings(max_examples=100, deadline=None)
+def test_symmetric_systems_are_solved_by_every_structure(system, name):
+    check(EVERY[name], system)
+
+
+@given(systems(symmetric=True, singular=True), st.sampled_from(sorted(EVERY)))
+@settings(max_examples=100, deadline=None)
+def test_a_singular_H_y_costs_no_accuracy(system, name):
+    check(EVERY[name], system)
+
+
+@given(systems(), st.sampled_from(sorted(GENERAL)), st.data())
+@settings(max_examples=100, deadline=None)
+def test_the_units_of_the_rows_do_not_matter(system, name, data):
+    exponents = data.draw(arrays(np.int64, (len(system[3]),), elements=st.integers(-27, 27)))
+    check(GENERAL[name], system, rows=2.0**exponents)
+
+
+@pytest.mark.parametrize("name", sorted(GENERAL | SYMMETRIC))
+def test_a_large_row_does_not_become_the_pivot(name):
+    """[[1e-18, 1], [1, 1]], the classic failure of elimination without pivoting, disguised by the unit of a row."""
+    large = 2.0**60
+    factored = factor_bordered(EVERY[name](np.array([[1.0]])), np.array([large]), np.array([1.0, 1.0]))
+    np.testing.assert_allclose(factored.solve(np.array([large]), 2.0), [1.0, 1.0], rtol=4 * EPS)
+    assert factored.sign == -1
+
+
+@given(systems(symmetric=True), st.sampled_from(sorted(SYMMETRIC)), st.data())
+@settings(max_examples=100, deadline=None)
+def test_the_units_of_a_symmetric_system_do_not_matter(system, name, data):
+    """Rows and columns scaled alike: the residual is at round-off in each row."""
+    exponents = data.draw(arrays(np.int64, (len(system[3]),), elements=st.integers(-13, 13)))
+    matrix, column, row, rhs = system
+    square = whole(matrix, column, row)
+    _, sign = exact(square, rhs)
+    assume(sign != 0 and np.linalg.cond(square) < 1e6)
+    d = 2.0**exponents
+    scaled = square * d[:, None] * d
+    factored = factor_bordered(SYMMETRIC[name](scaled[:-1, :-1]), scaled[:-1, -1], scaled[-1])
+    z = factored.solve((d * rhs)[:-1], float((d * rhs)[-1]))
+    assert factored.sign == sign
+    size = np.abs(scaled[:, :-1]).sum(axis=1) * np.abs(z[:-1]).max() + np.abs(scaled[:, -1] * z[-1]) + np.abs(d * rhs)
+    assert (np.abs(scaled @ z - d * rhs) <= 1e-14 * size).all()
+
+
+@pytest.mark.parametrize("name", sorted(EVERY))
+def test_order_one(name):
+    factored = factor_bordered(EVERY[name](np.array([[0.0]])), np.array([2.0]), np.array([4.0, 1.0]))
+    np.testing.assert_allclose(factored.solve(np.array([6.0]), 7.0), [1.0, 3.0], rtol=4 * EPS)
+    assert factored.sign == (0 if name == "operator" else -1)
+
+
+SINGULAR = {
+    "zero matrix and zero border": ([[0, 0], [0, 0]], [0, 0], [0, 0, 0]),
+    "zero row": ([[1, 2], [0, 0]], [3, 0], [1, 1, 1]),
+    "zero column": ([[2, 0], [0, 1]], [0, 0], [1, 1, 0]),
+    "zero border": ([[2, 1], [1, 1]], [1, 2], [0, 0, 0]),
+    "equal rows": ([[1, 2], [1, 2]], [3, 3], [1, 0, 1]),
+    "border is a row": ([[2, 1], [1, 3]], [1, 2], [1, 3, 2]),
+    "nullity two": ([[1, 0, 0], [0, 0, 0], [0, 0, 0]], [1, 1, 1], [1, 1, 1, 1]),
+}
+
+
+@pytest.mark.parametrize("case", sorted(SINGULAR))
+@pytest.mark.parametrize("name", sorted(EVERY))
+def test_singular_matrices_are_refused(name, case):
+    matrix, column, row = (np.array(part, dtype=float) for part in SINGULAR[case])
+    with pytest.raises(SingularError):
+        factor_bordered(EVERY[name](matrix), column, row).solve(np.linspace(1, 2, len(column)), 1.0)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("name", sorted(EVERY))
+def test_entries_that_are_not_finite_are_refused(name, bad):
+    parts = np.array([[3.0, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 4.0]]), np.ones(3), np.arange(4.0)
+    for k, part in enumerate(parts):
+        for index in np.ndindex(part.shape):
+            changed = [p.copy() for p in parts]
+            changed[k][index] = bad
+            if k == 0:
+                changed[k][index[::-1]] = bad
+            with pytest.raises(SingularError, match="finite"):
+                factor_bordered(EVERY[name](changed[0]), changed[1], changed[2])
+
+
+@pytest.mark.parametrize("name", sorted(EVERY))
+def test_a_right_hand_side_that_is_not_finite_is_refused(name):
+    factored = factor_bordered(EVERY[name](np.array([[3.0, 1.0], [1.0, 2.0]])), np.ones(2), np.ones(3))
+    for r, rho in ((np.array([1.0, np.nan]), 0.0), (np.array([1.0, np.inf]), 1.0), (np.ones(2), -np.inf)):
+        with pytest.raises(SingularError):
+            factored.solve(r, rho)
+
+
+@pytest.mark.parametrize("name", sorted(EVERY))
+def test_arguments_are_not_modified(name):
+    matrix = np.array([[3e8, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 4e-8]])
+    parts = matrix, np.ones(3), np.arange(4.0), np.ones(3)
+    copies = [p.copy() for p in parts]
+    structured = EVERY[name](parts[0]) if name != "dense" else parts[0]
+    factor_bordered(structured, parts[1], parts[2]).solve(parts[3], 1.0)
+    for part, copy in zip(parts, copies):
+        np.testing.assert_array_equal(part, copy)
+
+
+@pytest.mark.parametrize("name", sorted(EVERY))
+def test_integer_and_fortran_ordered_arguments(name):
+    matrix = np.asfortranarray([[4, 1, 0], [1, 3, 1], [0, 1, 2]])
+    factored = factor_bordered(EVERY[name](matrix), np.array([1, 2, 3]), np.array([0, 0, 0, 1]))
+    truth, _ = exact(whole(matrix, np.array([1, 2, 3]), np.array([0, 0, 0, 1])), [1, 2, 3, 4])
+    np.testing.assert_allclose(factored.solve(np.array([1, 2, 3]), 4), truth, rtol=1e-13)
+
+
+def test_a_matrix_wrongly_called_symmetric_is_still_solved():
+    matrix = np.array([[1.0, 2.0, 0.0], [5.0, 1.0, 1.0], [0.0, -3.0, 1.0]])
+    column, row, rhs = np.ones(3), np.arange(1.0, 5.0), np.arange(4.0)
+    truth, sign = exact(whole(matrix, column, row), rhs)
+    factored = factor_bordered(Symmetric(matrix), column, row)
+    np.testing.assert_allclose(factored.solve(rhs[:-1], 3.0), truth, rtol=1e-13)
+    assert factored.sign == sign
+
+
+@given(st.integers(1, 7).flatmap(lambda n: st.permutations(range(n))))
+@settings(deadline=None)
+def test_permutation_sign_counts_inversions(permutation):
+    n = len(permutation)
+    inversions = sum(permutation[i] > permutation[j] for i in range(n) for j in range(i + 1, n))
+    assert permutation_sign(np.array(permutation)) == (-1) ** inversions
+
+
+@given(st.integers(1, 9), st.data())
+@settings(deadline=None)
+def test_banded_is_the_matrix_that_it_stores(n, data):
+    lower, upper = data.draw(st.integers(0, n + 1)), data.draw(st.integers(0, n + 1))
+    offset = np.subtract.outer(np.arange(n), np.arange(n))
+    matrix = np.where((offset <= lower) & (-offset <= upper), data.draw(integers(n, n)), 0.0)
+    structured = banded(matrix, lower, upper)
+    np.testing.assert_array_equal(structured.toarray(), matrix)
+    np.testing.assert_array_equal(structured @ np.arange(1.0, n + 1), matrix @ np.arange(1.0, n + 1))
+    np.testing.assert_array_equal(structured @ np.eye(n), matrix)
+    assert structured.shape == (n, n)
+
+
+def test_sparse_matrices_of_any_format_are_taken():
+    matrix = csr_array(np.array([[2.0, 0.0, 1.0], [0.0, 0.0, 3.0], [1.0, 1.0, 0.0]]))
+    doubled = csc_array(([1.0, 1.0, 3.0, 1.0, 1.0, 1.0], [2, 0, 1, 0, 0, 2], [0, 3, 4, 6]), shape=(3, 3))
+    assert not doubled.has_canonical_format
+    for form in (matrix, matrix.tocoo(), matrix.tolil(), doubled):
+        before = form.toarray()
+        truth, sign = exact(whole(before, np.ones(3), np.arange(4.0)), [1, 2, 3, 4])
+        factored = factor_bordered(form, np.ones(3), np.arange(4.0))
+        np.testing.assert_allclose(factored.solve(np.arange(1.0, 4.0), 4.0), truth, rtol=1e-13)
+        assert factored.sign == sign
+    assert not doubled.has_canonical_format
+
+
+@pytest.mark.parametrize(
+    ("matrix", "column", "row", "error", "words"),
+    [
+        ([[1.0]], [1.0], [1.0, 1.0], TypeError, "list"),
+        (np.ones((2, 3)), np.ones(2), np.ones(3), ValueError, r"\(2, 3\)"),
+        (np.ones((2, 2)), np.ones((2, 1)), np.ones(3), ValueError, r"\(2, 1\)"),
+        (np.ones((2, 2)), np.ones(2), np.ones(2), ValueError, r"\(2,\)"),
+        (np.ones((0, 0)), np.ones(0), np.ones(1), ValueError, "N >= 1"),
+        (np.ones((1, 1)) * 1j, np.ones(1), np.ones(2), TypeError, "H_y.*complex"),
+        (csc_array([[1j]]), np.ones(1), np.ones(2), TypeError, "H_y.*complex"),
+        (np.ones((1, 1)), np.array([1j]), np.ones(2), TypeError, "H_lam.*complex"),
+        (np.ones((1, 1)), np.ones(1), np.array(["a", "b"]), TypeError, "border"),
+    ],
+)
+def test_bad_arguments_are_named(matrix, column, row, error, words):
+    with pytest.raises(error, match=words):
+        factor_bordered(matrix, column, row)
+
+
+def test_bad_structures_are_refused():
+    with pytest.raises(ValueError, match="ab of Banded"):
+        Banded(np.ones((2, 4)), 1, 1)
+    with pytest.raises(ValueError, match="lower"):
+        Banded(np.ones((1, 4)), -1, 1)
+    with pytest.raises(TypeError, match="ab of Banded"):
+        Banded(np.ones((1, 4)) * 1j, 0, 0)
+    with pytest.raises(ValueError, match="matrix of Symmetric"):
+        Symmetric(np.ones((2, 3)))
+    with pytest.raises(ValueError, match="preconditioner"):
+        Operator(aslinearoperator(np.eye(3)), aslinearoperator(np.eye(2)))
+    with pytest.raises(ValueError, match="operand"):
+        banded(np.eye(3), 0, 0) @ np.ones(2)
+
+
+# Folds of the discrete Bratu problem, L y + lam exp(y) = 0.
+
+
+def laplacian(n):
+    second = diags_array([np.ones(n - 1), -2 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1])
+    return csc_array(second * (n + 1) ** 2)
+
+
+def fold(operator, y, lam, phi):
+    """(H_y, H_lam, null vector) at the fold, by Newton's method on the extended system of Seydel and Moore & Spence."""
+    n = len(y)
+    phi = phi / np.linalg.norm(phi)
+    along = phi
+    for _ in range(8):
+        e = np.exp(y)
+        jacobian = operator + diags_array(lam * e)
+        gap = np.concatenate([operator @ y + lam * e, jacobian @ phi, [along @ phi - 1]])
+        extended = block_array(
+            [
+                [jacobian, None, e[:, None]],
+                [diags_array(lam * e * phi), jacobian, (e * phi)[:, None]],
+                [None, along[None, :], None],
+            ],
+            format="csc",
+        )
+        step = -spsolve(extended, gap)
+        y, phi, lam = y + step[:n], phi + step[n:-1], lam + step[-1]
+    return csc_array(operator + diags_array(lam * np.exp(y))), np.exp(y), phi
+
+
+@cache
+def fold_1d(n=1000):
+    sine = np.sin(np.pi * np.arange(1, n + 1) / (n + 1))
+    return fold(laplacian(n), 1.19 * sine, 3.51, sine)
+
+
+@cache
+def fold_2d(m=20):
+    sine = np.sin(np.pi * np.arange(1, m + 1) / (m + 1))
+    mode = np.kron(sine, sine)
+    operator = csc_array(kron(laplacian(m), eye_array(m)) + kron(eye_array(m), laplacian(m)))
+    return fold(operator, 1.39 * mode, 6.8, mode)
+
+
+def tridiagonal(matrix):
+    n = matrix.shape[0]
+    ab = np.zeros((3, n))
+    ab[0, 1:], ab[1], ab[2, :-1] = matrix.diagonal(1), matrix.diagonal(), matrix.diagonal(-1)
+    return Banded(ab, 1, 1)
+
+
+def in_sixty_digits(matrix, column, row, rhs):
+    """The tridiagonal system, by block elimination without pivoting, at a precision at which a fold is harmless."""
+    n = matrix.shape[0]
+    with mpmath.workdps(60):
+        below, diagonal, above = ([mpmath.mpf(x) for x in matrix.diagonal(k).tolist()] for k in (-1, 0, 1))
+        for i in range(1, n):
+            below[i - 1] /= diagonal[i - 1]
+            diagonal[i] -= below[i - 1] * above[i - 1]
+
+        def substitute(values):
+            x = [mpmath.mpf(v) for v in values.tolist()]
+            for i in range(1, n):
+                x[i] -= below[i - 1] * x[i - 1]
+            x[-1] /= diagonal[-1]
+            for i in range(n - 2, -1, -1):
+                x[i] = (x[i] - above[i] * x[i + 1]) / diagonal[i]
+            return x
+
+        x, w, c = substitute(rhs[:-1]), substitute(column), [mpmath.mpf(v) for v in row.tolist()]
+        schur = c[-1] - mpmath.fdot(c[:-1], w)
+        lam = (mpmath.mpf(float(rhs[-1])) - mpmath.fdot(c[:-1], x)) / schur
+        negative = sum(d < 0 for d in diagonal) + (schur < 0)
+        return np.array([float(a - lam * b) for a, b in zip(x, w)] + [float(lam)]), (-1) ** int(negative)
+
+
+def in_long_double(matrix, rhs):
+    factors = lu_factor(matrix)
+    wide = matrix.astype(np.longdouble)
+    z = np.zeros(len(rhs), dtype=np.longdouble)
+    for _ in range(6):
+        z = z + lu_solve(factors, (rhs - wide @ z).astype(float))
+    return z.astype(float)
+
+
+SHIFTS = [0.0] + [sign * size for size in (1e-15, 1e-12, 1e-9, 1e-6, 1e-3) for sign in (-1, 1)]
+
+
+@pytest.mark.parametrize("shift", SHIFTS)
+def test_the_fold_of_bratu_in_one_dimension(shift):
+    """The condition number of M is 3e6, of which a backward stable solver may lose 6e-10; the margin here is 100."""
+    at_fold, column, phi = fold_1d()
+    n = len(phi)
+    matrix = csc_array(at_fold + shift * eye_array(n))
+    row, rhs = np.append(phi, 0.1), np.append(np.sin(np.arange(n)), 1.0)
+    truth, sign = in_sixty_digits(matrix, column, row, rhs)
+    structures = [tridiagonal(matrix), matrix]
+    if abs(shift) in (0.0, 1e-15, 1e-3):
+        structures.append(Symmetric(matrix.toarray()))
+    for structured in structures:
+        factored = factor_bordered(structured, column, row)
+        z = factored.solve(rhs[:-1], rhs[-1])
+        assert np.abs(z - truth).max() <= 2e-11 * np.abs(truth).max()
+        assert factored.sign == sign == 1
+
+
+@pytest.mark.parametrize("shift", SHIFTS)
+def test_the_fold_of_bratu_in_two_dimensions(shift):
+    at_fold, column, phi = fold_2d()
+    n = len(phi)
+    matrix = csc_array(at_fold + shift * eye_array(n))
+    row, rhs = np.append(phi, 0.1), np.append(np.sin(np.arange(n)), 1.0)
+    square = whole(matrix.toarray(), column, row)
+    truth = in_long_double(square, rhs)
+    for structured in (matrix, Symmetric(matrix.toarray()), aslinearoperator(matrix)):
+        factored = factor_bordered(structured, column, row)
+        z = factored.solve(rhs[:-1], rhs[-1])
+        assert np.abs(z - truth).max() <= 5e-13 * np.abs(truth).max()
+        assert factored.sign in (0, np.linalg.slogdet(square)[0])
+
+
+def test_regular_points_are_solved_in_the_band():
+    at_fold, column, phi = fold_1d()
+    factored = factor_bordered(tridiagonal(at_fold - eye_array(len(phi))), column, np.append(phi, 0.1))
+    assert isinstance(factored, BlockElimination)
+
+
+def test_krylov_uses_its_preconditioner():
+    """With the exact inverse of H_y - I the bordered operator is solved in a handful of products."""
+    at_fold, column, phi = fold_1d()
+    n = len(phi)
+    near = splu(csc_array(at_fold - eye_array(n)))
+    products = 0
+
+    def product(x):
+        nonlocal products
+        products += 1
+        return at_fold @ x
+
+    operator = LinearOperator((n, n), matvec=product, dtype=float)
+    row, rhs = np.append(phi, 0.1), np.append(np.sin(np.arange(n)), 1.0)
+    preconditioned = Operator(operator, LinearOperator((n, n), matvec=near.solve, dtype=float))
+    z = factor_bordered(preconditioned, column, row).solve(rhs[:-1], rhs[-1])
+    truth, _ = in_sixty_digits(at_fold, column, row, rhs)
+    assert np.abs(z - truth).max() <= 1e-10 * np.abs(truth).max()
+    assert products < 100
+    with pytest.raises(SingularError, match=r"did not converge.*preconditioner"):
+        factor_bordered(operator, column, row).solve(rhs[:-1], rhs[-1])
