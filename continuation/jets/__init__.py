@@ -1,0 +1,16 @@
+"""Truncated Taylor arithmetic on numpy arrays: series and derivatives of functions written in plain numpy."""
+
+from continuation.jets.array import Jet
+from continuation.jets.calculus import directional_derivatives, evaluate, jacobian, path_series, taylor, variable
+from continuation.jets.series import JetDomainError
+
+__all__ = [
+    "Jet",
+    "JetDomainError",
+    "directional_derivatives",
+    "evaluate",
+    "jacobian",
+    "path_series",
+    "taylor",
+    "variable",
+]

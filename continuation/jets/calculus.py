@@ -1,0 +1,165 @@
+"""Series and derivatives of functions that are written in plain numpy."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from math import factorial
+from typing import Any
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.jets.algebra import GRADIENT, TAYLOR
+from continuation.jets.array import Jet, as_jet, wrap
+
+_BLOCK = 128
+"""Directions of a Jacobian that go through the function together; more only cost memory."""
+
+
+def variable(x0: Any, direction: Any, order: int) -> Jet:
+    """The line x0 + s * direction as a jet.
+
+    Parameters
+    ----------
+    x0 : array_like
+        Where the line is at s = 0.
+    direction : array_like
+        Broadcast to the shape of `x0`.
+    order : int
+        The highest power of s that is kept, 0 or more.
+    """
+    x0 = _numbers(x0, "x0")
+    order = _order(order, 0)
+    c = np.zeros((order + 1, *x0.shape))
+    c[0] = x0
+    if order:
+        c[1] = _numbers(direction, "direction")
+    return wrap(c, TAYLOR)
+
+
+def evaluate(jet: Jet, s: Any) -> Array:
+    """The polynomial's value at `s`: shape ``(*s.shape, *jet.shape)``."""
+    s = np.asarray(s, dtype=float)
+    s = s.reshape((*s.shape, *(1,) * jet.ndim))
+    out = np.zeros_like(s)
+    for coefficient in jet.c[::-1]:
+        out = out * s + coefficient
+    return np.asarray(out)
+
+
+def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -> Array:
+    """Coefficients of s -> f(x0 + s * direction).
+
+    Parameters
+    ----------
+    f : callable
+        A function of an array, written in numpy functions that jets know.
+    x0, direction : array_like
+        The line; `direction` is broadcast to the shape of `x0`.
+    order : int
+        The highest power of s.
+
+    Returns
+    -------
+    ndarray, (order + 1, *shape of f)
+
+    Raises
+    ------
+    TypeError
+        Where `f` uses an operation that jets do not know; the message names it.
+    JetDomainError
+        Where `f` has no Taylor series.
+    """
+    x = variable(x0, direction, order)
+    return as_jet(f(x), x).c
+
+
+def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int) -> Array:
+    """Derivatives of s -> f(x + s v) at 0, of orders 0 to `order`: shape (order + 1, *shape of f)."""
+    c = taylor(f, x, order, v)
+    factorials = np.array([float(factorial(k)) for k in range(len(c))])
+    return np.asarray(c * factorials.reshape(-1, *(1,) * (c.ndim - 1)))
+
+
+def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
+    """The Jacobian of f: R^m -> R^n at x, without truncation error: shape (n, m).
+
+    The directions go through `f` together (128 at a time), so `f` is called once for m <= 128.
+    An `f` of any shape gives ``(*shape, m)``. Raises as `taylor` does.
+    """
+    x = _numbers(x, "x")
+    if x.ndim != 1 or len(x) == 0:
+        raise ValueError(f"x has shape {x.shape}; expected (m,) with m >= 1")
+    columns = []
+    for begin in range(0, len(x), _BLOCK):
+        count = min(_BLOCK, len(x) - begin)
+        c = np.zeros((1 + count, len(x)))
+        c[0] = x
+        c[np.arange(1, 1 + count), np.arange(begin, begin + count)] = 1.0
+        line = wrap(c, GRADIENT)
+        columns.append(np.moveaxis(as_jet(f(line), line).c[1:], 0, -1))
+    return np.concatenate(columns, axis=-1)
+
+
+def path_series(
+    residual: Callable[[Any, Any], Any],
+    u0: Any,
+    tangent: Any,
+    solve: Callable[[Array, float], Array],
+    order: int,
+) -> Array:
+    """Taylor coefficients of the path u(s) through u0 with H(u(s)) = H(u0) and border . (u(s) - u0) = s.
+
+    Coefficient k solves the bordered system of the point for (-R_k, 0), R_k the k-th coefficient of H along the
+    series found so far: one factorisation serves all orders (Cochelin, Computers & Structures 53 (1994)
+    1181-1192). The residual is called order - 1 times, with jets of growing order.
+
+    Parameters
+    ----------
+    residual : callable
+        ``residual(y, lam) -> (N,)`` in plain numpy; a list or an array of scalars will do.
+    u0 : (N + 1,) array
+        The point (y, lam).
+    tangent : (N + 1,) array
+        The first coefficient: H' tangent = 0 and border . tangent = 1.
+    solve : callable
+        ``solve(r, rho) -> (N + 1,)`` solves ``[H'; border'] z = (r, rho)``.
+    order : int
+        The highest power of s, 1 or more.
+
+    Returns
+    -------
+    ndarray, (order + 1, N + 1)
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
+    """
+    u0, tangent = _numbers(u0, "u0"), _numbers(tangent, "tangent")
+    if u0.ndim != 1 or len(u0) < 2 or tangent.shape != u0.shape:
+        raise ValueError(f"u0 and tangent have shapes {u0.shape} and {tangent.shape}; expected (N + 1,) twice, N >= 1")
+    order = _order(order, 1)
+    u = np.zeros((order + 1, len(u0)))
+    u[0], u[1] = u0, tangent
+    for k in range(2, order + 1):
+        y, lam = wrap(u[: k + 1, :-1].copy(), TAYLOR), wrap(u[: k + 1, -1].copy(), TAYLOR)
+        defect = as_jet(residual(y, lam), y)
+        if defect.size != len(u0) - 1:
+            raise ValueError(f"residual has shape {defect.shape}; expected ({len(u0) - 1},)")
+        u[k] = solve(-defect.c[k].reshape(-1), 0.0)
+    return u
+
+
+def _numbers(x: Any, name: str) -> Array:
+    if isinstance(x, Jet):
+        raise TypeError(f"{name} is a Jet; expected plain numbers (jets of jets are not supported)")
+    return np.array(x, dtype=float)
+
+
+def _order(order: Any, least: int) -> int:
+    order = operator.index(order)
+    if order < least:
+        raise ValueError(f"order is {order}; expected {least} or more")
+    return int(order)

@@ -1,0 +1,439 @@
+"""Series, derivatives and path coefficients against closed forms and high precision."""
+
+from math import comb, factorial
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import lu_factor, lu_solve
+
+from continuation.jets import (
+    Jet,
+    JetDomainError,
+    directional_derivatives,
+    evaluate,
+    jacobian,
+    path_series,
+    taylor,
+    variable,
+)
+
+ORDER = 20
+
+
+def assert_series(found, expected, rtol=1e-13):
+    """Relative to a coefficient or its larger neighbour: a coefficient may pass near 0 between large ones."""
+    expected = np.array([float(x) for x in expected])
+    padded = np.pad(np.abs(expected), 1)
+    scale = np.maximum(padded[1:-1], np.maximum(padded[:-2], padded[2:]))
+    assert found.shape == expected.shape
+    assert np.all(np.abs(found - expected) <= rtol * scale), (found - expected) / scale
+
+
+def by_mpmath(f, x0, order=ORDER):
+    with mp.workdps(80):
+        return mp.taylor(f, mp.mpf(x0), order)
+
+
+# --- closed forms -----------------------------------------------------------------------------------------
+
+
+def test_exponential():
+    assert_series(taylor(np.exp, 0.5, ORDER), [np.exp(0.5) / factorial(k) for k in range(ORDER + 1)], 1e-14)
+
+
+def test_tangent_at_zero_has_the_bernoulli_coefficients():
+    with mp.workdps(50):
+        expected = [0.0] * (ORDER + 1)
+        for n in range(1, ORDER // 2 + 1):
+            four = mp.mpf(4) ** n
+            expected[2 * n - 1] = (-1) ** (n - 1) * four * (four - 1) * mp.bernoulli(2 * n) / mp.factorial(2 * n)
+    found = taylor(np.tan, 0.0, ORDER)
+    np.testing.assert_allclose(found, np.array(expected, dtype=float), rtol=1e-13, atol=0)
+
+
+def bessel(x):
+    """J0 by its integral; the trapezoidal rule converges like exp(-c m)."""
+    return np.mean(np.cos(x * np.sin(2 * np.pi * np.arange(64) / 64)))
+
+
+def test_bessel_against_its_power_series():
+    expected = [0 if k % 2 else (-1) ** (k // 2) / (4 ** (k // 2) * factorial(k // 2) ** 2) for k in range(ORDER + 1)]
+    assert_series(taylor(bessel, 0.0, ORDER), expected)
+
+
+def test_bessel_solves_its_equation():
+    x0 = 1.5
+    with mp.workdps(50):
+        c = [mp.besselj(0, mp.mpf(x0)), -mp.besselj(1, mp.mpf(x0))]
+        for k in range(ORDER - 1):  # x y'' + y' + x y = 0 at x0 + s, coefficient of s**k
+            below = c[k - 1] if k else 0
+            c.append(-((k + 1) ** 2 * c[k + 1] + x0 * c[k] + below) / (x0 * (k + 1) * (k + 2)))
+    found = taylor(bessel, x0, ORDER)
+    assert_series(found, c)
+
+    y, x = Jet([float(k) for k in c]), variable(x0, 1.0, ORDER)
+    k = np.arange(1, ORDER + 1)
+    y1 = Jet(np.append(k * y.c[1:], 0))
+    y2 = Jet(np.append(k * y1.c[1:], 0))
+    assert np.all(np.abs((x * y2 + y1 + x * y).c[:-2]) < 1e-14)
+
+
+def test_rational_function():
+    # 1/((1-s)(2-s)) = sum (1 - 2^-(k+1)) s^k
+    found = taylor(lambda x: 1 / ((1 - x) * (2 - x)), 0.0, ORDER)
+    assert_series(found, [1 - 0.5 ** (k + 1) for k in range(ORDER + 1)])
+    # x^3 / (1-x)^4 = sum comb(k, 3) s^k
+    assert_series(taylor(lambda x: x**3 / (1 - x) ** 4, 0.0, ORDER), [comb(k, 3) for k in range(ORDER + 1)])
+
+
+FUNCTIONS = {
+    "exp": (mp.exp, [-0.7, 2.0]),
+    "expm1": (mp.expm1, [1e-9, 2.0]),
+    "exp2": (lambda x: mp.mpf(2) ** x, [-0.7, 2.0]),
+    "log": (mp.log, [0.2, 7.0]),
+    "log1p": (mp.log1p, [1e-9, 2.0]),
+    "log2": (lambda x: mp.log(x, 2), [0.2, 7.0]),
+    "log10": (mp.log10, [0.2, 7.0]),
+    "sin": (mp.sin, [0.4, 5.0]),
+    "cos": (mp.cos, [0.4, 5.0]),
+    "tan": (mp.tan, [1.1, -1.4]),
+    "arcsin": (mp.asin, [0.1, -0.95]),
+    "arccos": (mp.acos, [0.1, -0.95]),
+    "arctan": (mp.atan, [0.1, -3.0]),
+    "sinh": (mp.sinh, [0.1, -3.0]),
+    "cosh": (mp.cosh, [0.1, -3.0]),
+    "tanh": (mp.tanh, [0.7, -3.0]),
+    "arcsinh": (mp.asinh, [0.7, -3.0]),
+    "arccosh": (mp.acosh, [1.05, 9.0]),
+    "arctanh": (mp.atanh, [0.1, -0.95]),
+    "sqrt": (mp.sqrt, [0.1, 5.0]),
+    "cbrt": (mp.cbrt, [0.1, 5.0]),
+    "reciprocal": (lambda x: 1 / x, [-0.3, 5.0]),
+    "square": (lambda x: x * x, [-0.3]),
+    "absolute": (lambda x: -x, [-0.3]),
+    "fabs": (lambda x: -x, [-0.3]),
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_elementary_functions(name):
+    reference, points = FUNCTIONS[name]
+    for x0 in points:
+        assert_series(taylor(getattr(np, name), x0, ORDER), by_mpmath(reference, x0))
+
+
+COMPOSITIONS = [
+    (lambda x: np.exp(np.sin(x)) / (2 + np.cos(x)), lambda x: mp.exp(mp.sin(x)) / (2 + mp.cos(x)), 0.3),
+    (lambda x: np.tanh(x**2 - 1) * np.log(3 + x), lambda x: mp.tanh(x**2 - 1) * mp.log(3 + x), 0.8),
+    (lambda x: x**1.7 + x**-2.5 + x**-3, lambda x: x ** mp.mpf(1.7) + x ** mp.mpf(-2.5) + x**-3, 1.3),
+    (lambda x: x**x + 2.0**x, lambda x: x**x + mp.mpf(2) ** x, 1.4),
+    (lambda x: np.hypot(x, np.exp(x)), lambda x: mp.sqrt(x * x + mp.exp(2 * x)), 0.2),
+    (lambda x: np.arctan2(x - 2, np.cos(x) - 3), lambda x: mp.atan2(x - 2, mp.cos(x) - 3), 0.2),
+    (lambda x: np.sqrt(1 + np.arctan(x) ** 2), lambda x: mp.sqrt(1 + mp.atan(x) ** 2), -0.4),
+    (lambda x: np.cbrt(x - 3), lambda x: -mp.cbrt(3 - x), 1.0),
+]
+
+
+@pytest.mark.parametrize(("f", "reference", "x0"), COMPOSITIONS)
+def test_compositions(f, reference, x0):
+    assert_series(taylor(f, x0, ORDER), by_mpmath(reference, x0))
+
+
+def test_powers_mix_whole_and_fractional_exponents():
+    exponents = np.array([3, -1, 0.5, 0, 2.5, 1])
+    found = taylor(lambda x: x**exponents, 1.7, 8)
+    for k, exponent in enumerate(exponents):
+        assert_series(found[:, k], by_mpmath(lambda x, p=exponent: x ** mp.mpf(p), 1.7, 8))
+    # whole powers are exact at a zero, where fractional ones have no series
+    assert np.array_equal(taylor(lambda x: x ** np.array([0, 1, 3]), 0.0, 3), np.eye(4)[:, [0, 1, 3]])
+
+
+# --- algebra, by Hypothesis -------------------------------------------------------------------------------
+
+small = st.integers(-8, 8).map(float)
+whole_jets = st.lists(small, min_size=7, max_size=7).map(Jet)  # sums and products of these are exact
+points = st.floats(0.3, 3.0)
+tame = st.lists(st.floats(-1, 1), min_size=12, max_size=12)
+
+
+@given(whole_jets, whole_jets, whole_jets)
+def test_ring_axioms(a, b, c):
+    def same(x, y):
+        return np.array_equal(x.c, y.c)
+
+    assert same(a + b, b + a)
+    assert same(a * b, b * a)
+    assert same((a + b) + c, a + (b + c))
+    assert same((a * b) * c, a * (b * c))
+    assert same(a * (b + c), a * b + a * c)
+    assert same(a + 0, a)
+    assert same(a * 1, a)
+    assert same(a - a, a * 0)
+    assert same(a**2, a * a)
+    assert same(a**3, a * a * a)
+
+
+@given(st.floats(0.3, 0.75), tame)
+def test_a_function_of_its_inverse_is_the_identity(x0, rest):
+    x = Jet([x0, *(0.05 * np.array(rest))])  # inside every domain, and the series' coefficients stay small
+    pairs = [
+        (np.exp, np.log),
+        (np.expm1, np.log1p),
+        (np.sin, np.arcsin),
+        (np.cos, np.arccos),
+        (np.tan, np.arctan),
+        (np.sinh, np.arcsinh),
+        (np.cosh, lambda y: np.arccosh(y + 1)),
+        (np.tanh, np.arctanh),
+        (np.square, np.sqrt),
+        (lambda y: y**3, np.cbrt),
+        (np.reciprocal, np.reciprocal),
+        (lambda y: y**2.5, lambda y: y**0.4),
+    ]
+    for f, inverse in pairs:
+        expected = x + 1 if f is np.cosh else x
+        np.testing.assert_allclose(f(inverse(x)).c, expected.c, rtol=0, atol=1e-12, err_msg=str(f))
+
+
+@given(points, points, tame, tame)
+def test_quotient_and_product_rule(a0, b0, a, b):
+    a, b = Jet([a0, *a]), Jet([2 + b0, *b])
+    quotient = a / b
+    np.testing.assert_allclose((quotient * b).c, a.c, rtol=1e-12, atol=1e-12 * np.abs(quotient.c).max())
+
+    def slope(x):
+        return Jet(np.arange(1, len(x.c)) * x.c[1:])
+
+    def cut(x):
+        return Jet(x.c[:-1])
+
+    left, right = slope(a * b), slope(a) * cut(b) + cut(a) * slope(b)
+    np.testing.assert_allclose(left.c, right.c, atol=1e-12)
+    left, right = slope(quotient) * cut(b), slope(a) - cut(quotient) * slope(b)
+    np.testing.assert_allclose(left.c, right.c, atol=1e-11 * np.abs(quotient.c).max())
+
+
+@settings(max_examples=20)
+@given(st.floats(0.5, 2.0), st.floats(-2, 2))
+def test_directional_derivatives_agree_with_mpmath(x0, v):
+    found = directional_derivatives(lambda x: np.exp(np.sin(x)) * np.sqrt(x), x0, v, 5)
+    with mp.workdps(40):
+
+        def line(s):
+            x = mp.mpf(x0) + s * mp.mpf(v)
+            return mp.exp(mp.sin(x)) * mp.sqrt(x)
+
+        expected = [float(mp.diff(line, 0, k)) for k in range(6)]
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13)
+
+
+# --- derivatives ------------------------------------------------------------------------------------------
+
+
+def exponential_cosine(n):
+    """y - lam exp(cos(i * sum y)), i = 1..n (Allgower & Georg, ch. 2)."""
+    i = np.arange(1, n + 1)
+
+    def residual(y, lam):
+        return y - lam * np.exp(np.cos(i * y.sum()))
+
+    def jacobian_of(y, lam):
+        t = i * y.sum()
+        slope = lam * np.exp(np.cos(t)) * np.sin(t) * i
+        return np.column_stack([np.eye(n) + slope[:, None], -np.exp(np.cos(t))])
+
+    return residual, jacobian_of
+
+
+@pytest.mark.parametrize("n", [1, 8, 150])  # 151 directions: more than one block
+def test_jacobian_of_the_exponential_cosine_homotopy(n):
+    residual, jacobian_of = exponential_cosine(n)
+    u = np.random.default_rng(n).uniform(-1, 1, n + 1)
+    found = jacobian(lambda u: residual(u[:-1], u[-1]), u)
+    np.testing.assert_allclose(found, jacobian_of(u[:-1], u[-1]), rtol=1e-12, atol=1e-12)
+
+
+def test_jacobian_agrees_with_the_series_along_each_direction():
+    def f(x):
+        r = np.zeros_like(x)
+        r[0] = x[0] / x[1] + 3 / x[2] + x[1] / 2
+        r[1] = np.tan(x[0]) * x[2] ** 1.5 + x[1] ** x[2] + 2.0 ** x[0]
+        r[2] = np.hypot(x[0], x[1]) - np.arctan2(x[0], x[2]) + np.maximum(x[0], x[1]) + x @ np.diag([1.0, 2, 3]) @ x
+        return np.append(r, np.prod(x))
+
+    x = np.array([0.3, 1.2, 2.1])
+    by_series = np.stack([taylor(f, x, 1, e)[1] for e in np.eye(3)], axis=1)
+    np.testing.assert_allclose(jacobian(f, x), by_series, rtol=1e-14)
+
+
+def test_jacobian_of_a_constant_and_of_a_list():
+    assert np.array_equal(jacobian(lambda x: np.ones(2), [1.0, 2.0]), np.zeros((2, 2)))
+    assert np.array_equal(jacobian(lambda x: [x[0] * x[1], 3.0], [1.0, 2.0]), [[2, 1], [0, 0]])
+
+
+def test_evaluate_sums_the_polynomial():
+    jet = Jet([[1.0, 2], [3, 4], [5, 6]])
+    assert np.array_equal(evaluate(jet, 2.0), [27, 34])
+    assert np.array_equal(evaluate(jet, [[0.0, 2.0]]), [[[1, 2], [27, 34]]])
+    assert evaluate(jet[0], 2.0) == 27
+
+
+# --- the series of a path ---------------------------------------------------------------------------------
+
+
+def solver(residual, u0, border):
+    full = np.vstack([jacobian(lambda u: residual(u[:-1], u[-1]), u0), border])
+    factors = lu_factor(full)
+    return lambda r, rho: lu_solve(factors, np.append(r, rho))
+
+
+def circle(y, lam):
+    return y**2 + lam**2 - 1
+
+
+@pytest.mark.parametrize(
+    "residual",
+    [
+        circle,
+        lambda y, lam: np.array([y[0] ** 2 + lam**2 - 1]),
+        lambda y, lam: [y[0] ** 2 + lam**2 - 1],
+        lambda y, lam: y[0] ** 2 + lam**2 - 1,
+    ],
+)
+def test_path_series_of_the_circle(residual):
+    # from (0, 1) along (1, 0) with border . (u - u0) = s: y = s, lam = sqrt(1 - s^2)
+    tangent = np.array([1.0, 0.0])
+    u0 = np.array([0.0, 1.0])
+    found = path_series(residual, u0, tangent, solver(circle, u0, tangent), ORDER)
+    with mp.workdps(50):
+        root = mp.taylor(lambda s: mp.sqrt(1 - s * s), 0, ORDER)
+    assert np.array_equal(found[:, 0], np.eye(ORDER + 1)[1])
+    np.testing.assert_allclose(found[:, 1], np.array(root, dtype=float), rtol=1e-13, atol=1e-16)
+
+
+def test_path_series_of_a_system_with_floats_among_its_components():
+    # y0 = exp(lam), y1 = lam, in lam: the border is e_3
+    def residual(y, lam):
+        return np.array([y[0] - np.exp(y[1]), y[1] - lam, y[2] - 1.0])
+
+    u0, tangent, border = np.array([1.0, 0, 1, 0]), np.array([1.0, 1, 0, 1]), np.eye(4)[3]
+    found = path_series(residual, u0, tangent, solver(residual, u0, border), 12)
+    np.testing.assert_allclose(found[:, 0], [1 / factorial(k) for k in range(13)], rtol=1e-14)
+    assert np.array_equal(found[2:, 1:], np.zeros((11, 3)))
+
+
+@pytest.mark.parametrize("style", ["concatenate", "slices", "loop", "matrix"])
+def test_path_series_of_bratu_in_plain_numpy(style):
+    n = 20
+    h = 1 / (n + 1)
+    second = (np.eye(n, k=1) - 2 * np.eye(n) + np.eye(n, k=-1)) / h**2
+
+    def residual(y, lam):
+        if style == "concatenate":
+            full = np.concatenate([[0.0], y, [0.0]])
+            return np.diff(full, 2) / h**2 + lam * np.exp(y)
+        if style == "slices":
+            r = -2 * y
+            r[1:] += y[:-1]
+            r[:-1] += y[1:]
+            r /= h**2
+            return r + lam * np.exp(y)
+        if style == "loop":
+            r = np.empty_like(y)
+            for i in range(len(y)):
+                left = y[i - 1] if i else 0.0
+                right = y[i + 1] if i + 1 < len(y) else 0.0
+                r[i] = (left - 2 * y[i] + right) / h**2 + lam * np.exp(y[i])
+            return r
+        return second @ y + lam * np.exp(y)
+
+    y, lam = np.zeros(n), 1.0
+    for _ in range(20):
+        y = y - np.linalg.solve(second + lam * np.diag(np.exp(y)), second @ y + lam * np.exp(y))
+    tangent = np.append(np.linalg.solve(second + lam * np.diag(np.exp(y)), -np.exp(y)), 1.0)
+    tangent /= np.linalg.norm(tangent)
+    u0 = np.append(y, lam)
+    c = path_series(residual, u0, tangent, solver(residual, u0, tangent), 12)
+
+    assert np.array_equal(c[:2], [u0, tangent])
+    assert np.all(np.abs(c[2:] @ tangent) < 1e-13 * np.abs(c[2:]).max())
+    for s in (0.05, 0.1):  # the residual along the series falls like s^13
+        u = evaluate(Jet(c), s)
+        size = np.abs(residual(u[:-1], u[-1])).max()
+        assert size < 1e4 * np.abs(c[-1]).max() * s**13 + 1e-10
+    # the second coefficient by hand: H' u_2 = -H''(u_1, u_1) / 2
+    second_order = np.linalg.solve(
+        np.vstack([np.column_stack([second + lam * np.diag(np.exp(y)), np.exp(y)]), tangent]),
+        -np.append(np.exp(y) * tangent[:-1] * tangent[-1] + lam * np.exp(y) * tangent[:-1] ** 2 / 2, 0.0),
+    )
+    np.testing.assert_allclose(c[2], second_order, atol=1e-12 * np.abs(second_order).max())
+
+
+# --- errors -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("f", "x0", "name"),
+    [
+        (np.sqrt, 0.0, "numpy.sqrt"),
+        (np.sqrt, -1.0, "numpy.sqrt"),
+        (np.cbrt, 0.0, "numpy.cbrt"),
+        (np.log, 0.0, "numpy.log"),
+        (np.log1p, -1.0, "numpy.log1p"),
+        (np.abs, 0.0, "numpy.absolute"),
+        (lambda x: 1 / x, 0.0, "numpy.divide"),
+        (lambda x: x / 0.0, 1.0, "numpy.divide"),
+        (np.reciprocal, 0.0, "numpy.reciprocal"),
+        (lambda x: x**-1, 0.0, "numpy.power"),
+        (lambda x: x**0.5, 0.0, "numpy.power"),
+        (lambda x: x**x, 0.0, "numpy.power"),
+        (np.arcsin, 1.0, "numpy.arcsin"),
+        (np.arccos, -1.0, "numpy.arccos"),
+        (np.arccosh, 1.0, "numpy.arccosh"),
+        (np.arctanh, 1.0, "numpy.arctanh"),
+        (lambda x: np.hypot(x, 0.0), 0.0, "numpy.hypot"),
+        (lambda x: np.arctan2(x, 0.0), 0.0, "numpy.arctan2"),
+        (lambda x: np.maximum(x, 0.0), 0.0, "numpy.maximum"),
+        (lambda x: np.minimum(1.0, x), 1.0, "numpy.minimum"),
+        (lambda x: np.linalg.norm(np.stack([x, x])), 0.0, "numpy.sqrt"),
+    ],
+)
+def test_points_without_a_series_are_refused_by_name(f, x0, name):
+    with pytest.raises(JetDomainError, match=rf"^{name} has no Taylor series"):
+        taylor(f, x0, 4)
+    with pytest.raises(JetDomainError, match=rf"^{name} has no Taylor series"):
+        jacobian(lambda x: f(x[0]), [x0])
+
+
+def test_overflow_is_silent_and_shows():
+    x = np.exp(variable(800.0, 1.0, 3))
+    assert not np.isfinite(x)
+    assert np.isfinite(variable(1.0, 1.0, 3))
+    assert np.isnan(x - x)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Jet(1.0), r"c has shape \(\)"),
+        (lambda: Jet(np.zeros((0, 3))), r"c has shape \(0, 3\)"),
+        (lambda: variable(0.0, 1.0, -1), "order is -1"),
+        (lambda: variable(0.0, 1.0, 3).coefficient(4), "k is 4; expected 0 <= k <= 3"),
+        (lambda: variable(0.0, 1.0, 3) + variable(0.0, 1.0, 4), "orders 3 and 4"),
+        (lambda: jacobian(np.exp, 1.0), r"x has shape \(\)"),
+        (lambda: path_series(circle, [0.0, 1], [1.0], lambda r, rho: r, 3), "u0 and tangent have shapes"),
+        (lambda: path_series(circle, [0.0, 1], [1.0, 0], lambda r, rho: r, 0), "order is 0; expected 1"),
+        (lambda: path_series(lambda y, lam: [lam, lam], [0.0, 1], [1.0, 0], lambda r, rho: r, 3), "residual has shape"),
+    ],
+)
+def test_bad_input_is_refused_at_the_door(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+def test_jets_of_jets_are_refused():
+    with pytest.raises(TypeError, match="jets of jets"):
+        taylor(lambda x: taylor(np.exp, x, 2), 0.0, 2)

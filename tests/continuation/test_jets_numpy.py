@@ -1,0 +1,336 @@
+"""Jets go through numpy as arrays do: each operation against numpy itself, on the values of the polynomials."""
+
+import copy
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from continuation.jets import Jet, evaluate, jacobian, variable
+
+ORDER = 6
+RNG = np.random.default_rng(7)
+
+
+def polynomial(*shape):
+    """A jet of degree 2 in s, so that products of up to three are exact at order 6."""
+    c = np.zeros((ORDER + 1, *shape))
+    c[:3] = RNG.integers(-4, 5, (3, *shape))
+    return Jet(c)
+
+
+X, Y, Z = polynomial(3), polynomial(3), polynomial()
+M, P, T = polynomial(2, 3), polynomial(3, 3), polynomial(2, 3, 4)
+A, V = RNG.integers(-3, 4, (3, 3)).astype(float), np.array([1.0, -2.0, 3.0])
+MASK = np.array([True, False, True])
+
+
+def assert_same_as_numpy(f, *jets):
+    """f(jets) at s is f of the values at s, and the gradients agree with the series along a direction."""
+    found = f(*jets)
+    for s in (0.0, 1.0, -0.5):
+        expected = np.asarray(f(*(evaluate(jet, s) for jet in jets)))
+        assert found.shape == expected.shape
+        np.testing.assert_allclose(evaluate(found, s), expected, rtol=1e-12, atol=1e-12)
+
+    # the other algebra: f as a function of the flat vector of all entries
+    ends = np.cumsum([jet.size for jet in jets])
+
+    def flat(u):
+        parts = [u[end - jet.size : end].reshape(jet.shape) for jet, end in zip(jets, ends)]
+        return f(*parts)
+
+    u0, u1 = (np.concatenate([jet.c[k].ravel() for jet in jets]) for k in (0, 1))
+    np.testing.assert_allclose(jacobian(flat, u0) @ u1, found.c[1], rtol=1e-12, atol=1e-12)
+
+
+OPERATIONS = {
+    "operators": (lambda x, y: +x - y * x + 2 * x - y / 2 + (1 - x) * (-y) + V * x - x * A[0], (X, Y)),
+    "scalars": (lambda z, x: z * x + np.float64(2) * z - z * np.arange(3) + True * x, (Z, X)),
+    "lists": (lambda x: x + list(V) - np.multiply([2.0, 0, 1], x), (X,)),
+    "broadcast": (lambda x, m, t: (m * x + x - m)[:, :, None] + t[:, :, :1] * m[:, :, None], (X, M, T)),
+    "constants broadcast": (lambda z, x: z + V + A * x[:, None] + (np.ones((2, 1, 3)) - x), (Z, X)),
+    "power": (lambda x: x**2 + x**3.0 - x**1 + x**0 + x ** np.array([1, 2, 3]), (X,)),
+    "matrix times vector": (lambda x: A @ x + x @ A, (X,)),
+    "matrix times matrix": (lambda m, p: m @ p @ A + m @ A, (M, P)),
+    "vector times matrix": (lambda x, p: x @ p + p @ x + V @ p, (X, P)),
+    "vector times vector": (lambda x, y: x @ y + V @ x + x @ V, (X, Y)),
+    "stacks of matrices": (lambda t, m: m @ t + np.ones((2, 1, 2)) @ t[:1, :2], (T, M)),
+    "index": (lambda x: x[0] * x[-1], (X,)),
+    "slices": (lambda m: m[0, ::2] + m[1, :2] - m[..., 1][0], (M,)),
+    "new axis": (lambda x: x[:, None] * x[None, :] + x[np.newaxis], (X,)),
+    "mask": (lambda x: x[MASK], (X,)),
+    "fancy": (lambda t: t[[0, 1], :, [2, 3]] + t[1, :, [0, 1]] + t[:, [0, 1, 2], [1, 2, 3]], (T,)),
+    "mask of two axes": (lambda p: p[A > 0], (P,)),
+    "iteration": (lambda x: sum(x) + sum(a * b for a, b in zip(x, reversed(x))), (X,)),
+    "unpacking": (lambda x: np.stack([x[0], *x[1:]]), (X,)),
+    "T": (lambda m: m.T @ m, (M,)),
+    "transpose": (lambda t: t.transpose(2, 0, 1) + t.transpose((2, 0, 1)) + np.transpose(t, (2, 0, 1)), (T,)),
+    "reshape": (lambda m: m.reshape(3, 2) @ m.reshape((2, -1)) + m.ravel()[:3] + np.reshape(m, 6)[3:], (M,)),
+    "flatten": (lambda m: m.flatten() + np.ravel(m), (M,)),
+    "sum": (
+        lambda t: t.sum() + np.sum(t, axis=0)[0, 0] + t.sum(axis=(1, 2), keepdims=True) + t.sum(axis=-1)[0, 0],
+        (T,),
+    ),
+    "mean": (lambda m: m.mean() + np.mean(m, axis=0) + m.mean(axis=1, keepdims=True), (M,)),
+    "prod": (lambda m, x: np.prod(m, axis=0) + m.prod(axis=0, keepdims=True) + x.prod(), (M, X)),
+    "prod of a scalar": (lambda z: np.prod(z), (Z,)),
+    "cumsum": (lambda m: np.cumsum(m)[:3] + np.cumsum(m, axis=1) + m.cumsum(axis=0), (M,)),
+    "diff": (lambda m: np.diff(m) + np.diff(m, 1, 0)[:, :2] + np.diff(m, n=2, axis=1), (M,)),
+    "trace": (lambda p: np.trace(p) + np.trace(p, 1) + np.trace(p, offset=-1), (P,)),
+    "dot": (lambda x, p: np.dot(p, x) + x.dot(p) + np.dot(A, x) + np.dot(2.0, x) * np.dot(V, x), (X, P)),
+    "dot of stacks": (lambda t, m: np.dot(m, t), (T, M)),
+    "inner": (lambda x, p: np.inner(p, x) + np.inner(A, p)[0] + np.inner(x, 2), (X, P)),
+    "vdot": (lambda m: np.vdot(m, m) + np.vdot(np.ones((2, 3)), m), (M,)),
+    "outer": (lambda x, m: np.outer(x, m) + np.outer(V, m), (X, M)),
+    "tensordot": (lambda t, m: np.tensordot(m, t, axes=([0, 1], [0, 1])) + np.tensordot(m, t), (T, M)),
+    "tensordot of one axis": (lambda m, p: np.tensordot(m, p, 1) + np.tensordot(m, A, axes=(1, 0)), (M, P)),
+    "einsum": (lambda m, x: np.einsum("ij,j->i", m, x) + np.einsum("ij, j", m, V) + np.einsum("ij->i", m), (M, X)),
+    "einsum with dots": (lambda t, p: np.einsum("...ij,ki->...kj", t, p) + np.einsum("iij->j", t[:, :2]), (T, P)),
+    "concatenate": (lambda x, y: np.concatenate([[0.0], x, V, y[:1]]), (X, Y)),
+    "concatenate axes": (lambda m: np.concatenate((m, m), axis=-1)[:, 2:4] + np.concatenate([m, m], None)[:2], (M,)),
+    "scalar jets in lists": (lambda x, z: np.concatenate([[z, 1.0], x]), (X, Z)),
+    "stack": (lambda x, y: np.stack([x, y, V]) + np.stack((x, V, y), axis=1) + np.stack([x[0], x[1], 2.0]), (X, Y)),
+    "hstack": (lambda x, z: np.hstack([1.0, x, z]), (X, Z)),
+    "hstack and vstack": (lambda m, x: np.hstack([m, m])[:, :3] + np.vstack([x, m])[1:], (M, X)),
+    "column_stack": (lambda x, p: np.column_stack([x, V, p]), (X, P)),
+    "append": (lambda x, z, m: np.append(np.append(x, z), [1.0, 2]) + np.append(m, m, axis=0).ravel()[:6], (X, Z, M)),
+    "roll": (lambda m: np.roll(m, 1) + np.roll(m, -1, axis=1) + np.roll(m, (1, 2), (0, 1)), (M,)),
+    "flip": (lambda m: np.flip(m) + np.flip(m, 0) + m[::-1, ::-1], (M,)),
+    "take": (lambda m: np.take(m, [0, 2], axis=1) + np.take(m, [1, 5]), (M,)),
+    "tile and repeat": (lambda x: np.tile(x, 2) + np.repeat(x, 2) + np.tile(x, (2, 2)), (X,)),
+    "diag": (lambda x: np.diag(x) + np.diag(np.diag(x)) + np.diag(x[1:], 1), (X,)),
+    "triangles": (lambda p: np.tril(p) * np.triu(p, -1) + np.rot90(p) + np.swapaxes(p, 0, 1), (P,)),
+    "pad": (lambda x: np.pad(x, 1) + np.pad(x, (2, 0), constant_values=3.0) + np.pad(x, 1, mode="wrap"), (X,)),
+    "split": (lambda x: np.split(x, 3)[1] * np.split(x, [1])[1], (X,)),
+    "where": (lambda x, m: np.where(MASK, x, 0.0) + np.where([[True], [False]], m, x) + np.where(MASK, 1.0, x), (X, M)),
+    "shapes": (lambda m: np.squeeze(np.expand_dims(m, (0, 2)), axis=0) + np.squeeze(m[None]), (M,)),
+    "broadcast_to": (lambda x, z: np.broadcast_to(x, (2, 3)) * np.broadcast_to(z, 3), (X, Z)),
+    "atleast": (lambda x, z: np.atleast_1d(z) * np.atleast_2d(x) + np.atleast_1d(x, z)[0], (X, Z)),
+    "likes": (lambda m: np.zeros_like(m) + np.ones_like(m, dtype=float) * m - np.full_like(m, 2.0), (M,)),
+    "full_like": (lambda x, z: np.full_like(x, z) + np.full(3, z), (X, Z)),
+    "copy": (lambda x: np.copy(x) + x.copy(), (X,)),
+    "object arrays": (lambda x, y: np.array([x[0], 1.0, y[1]]) * x + np.array([x[0], y[1] + 1, y[2]]) ** 2 * V, (X, Y)),
+    "object arrays on the left": (
+        lambda x, y: np.array([x[0], y[1], y[2]]) @ x + np.square(np.array([y[2]]))[0],
+        (X, Y),
+    ),
+    "positive and square": (lambda x: np.positive(x) + np.square(x) - np.negative(x), (X,)),
+}
+
+
+@pytest.mark.parametrize("name", OPERATIONS)
+def test_same_as_numpy(name):
+    f, jets = OPERATIONS[name]
+
+    def gathered(*arguments):
+        result = f(*arguments)
+        jet = next((a for a in arguments if isinstance(a, Jet)), None)
+        return result if jet is None or isinstance(result, Jet) else np.stack(list(result))
+
+    assert_same_as_numpy(gathered, *jets)
+
+
+def test_values_that_choose_by_the_leading_coefficient():
+    x = Jet([[-2.0, 1.0, 3.0], [1.0, 2.0, -1.0]])
+    assert np.array_equal(x > 0, [False, True, True])
+    assert np.array_equal(np.ones(3) <= x, [False, True, True])
+    assert np.array_equal(x == Jet([[0.0, 1, 3], [0, 0, 0]]), [False, True, True])
+    assert np.array_equal(x != 1, [True, False, True])
+    assert np.array_equal(np.less(x, 0), [True, False, False])
+    assert np.array_equal(np.abs(x).c, [[2, 1, 3], [-1, 2, -1]])
+    assert np.array_equal(abs(x).c, np.fabs(x).c)
+    assert np.array_equal(np.maximum(x, 0.5).c, [[0.5, 1, 3], [0, 2, -1]])
+    assert np.array_equal(np.minimum(2.0, x).c, [[-2, 1, 2], [1, 2, 0]])
+    assert np.array_equal(np.clip(x, -1, 2).c, [[-1, 1, 2], [0, 2, 0]])
+    assert np.array_equal(np.where(x > 0, x, 0.0).c, [[0, 1, 3], [0, 2, -1]])
+    assert np.array_equal(x[x > 0].c, [[1, 3], [2, -1]])
+    assert bool(x[0])
+    assert x[0] < x[1] < x[2]
+    assert max(x, key=lambda entry: entry.c[0]).c[1] == -1
+
+
+def test_norm():
+    x = variable([3.0, 4.0], [1.0, 2.0], 5)
+    expected = np.sqrt(x[0] ** 2 + x[1] ** 2)
+    for found in (np.linalg.norm(x), np.linalg.norm(x, 2), np.linalg.norm(x.reshape(1, 2), axis=1)[0]):
+        np.testing.assert_allclose(found.c, expected.c, rtol=1e-15)
+    np.testing.assert_allclose(np.linalg.norm(x.reshape(1, 2), "fro").c, expected.c, rtol=1e-15)
+
+
+def test_object_arrays_of_scalar_jets_keep_the_series_in_elementary_functions():
+    y = variable([0.3, 0.6], [1.0, 1.0], 8)
+    entries = np.array([y[0], y[1] * 2])
+    assert entries.dtype == object
+    for f in (np.exp, np.sin, np.log, np.sqrt, np.tanh, np.cbrt, np.arctan, np.log1p):
+        assert all(np.array_equal(a.c, f(b).c) for a, b in zip(f(entries), entries))
+    assert np.array_equal((np.exp(entries) + y).c, np.stack([np.exp(y[0]) + y[0], np.exp(2 * y[1]) + y[1]]).c)
+    assert np.array_equal(np.asarray(y[0])[()].c, y[0].c)
+    assert np.array_equal((np.asarray(y[0]) * y).c, (y[0] * y).c)
+
+
+# --- assignment and memory --------------------------------------------------------------------------------
+
+
+def test_assignment_into_arrays_like_a_jet():
+    r = np.empty_like(X)
+    r[0] = X[1] * X[2]
+    r[1:] = Y[:2]
+    r[-1] = 5.0
+    assert np.array_equal(r.c[:, 0], (X[1] * X[2]).c)
+    assert np.array_equal(r.c[:, 1], Y.c[:, 0])
+    assert np.array_equal(r.c[:, 2], [5.0, *[0] * ORDER])
+    m = np.zeros_like(M)
+    m[:, MASK] = X[:2]
+    m[..., 1] = Z
+    m[1] += [1.0, 2.0, 3.0]
+    m[0, 0] = X[0]
+    assert np.array_equal(m.c[:, 0], np.stack([X.c[:, 0], Z.c, X.c[:, 1]], axis=1))
+    assert np.array_equal(m.c[0, 1], [X.c[0, 0] + 1, Z.c[0] + 2, X.c[0, 1] + 3])
+    with pytest.raises(IndexError):
+        r[0, 1] = 1.0  # the coefficients are out of an index's reach
+    with pytest.raises(IndexError):
+        r[3]
+
+
+def test_views_share_memory_and_scalars_do_not():
+    x = X.copy()
+    first, rest = x[0], x[1:]
+    rest *= 2
+    rest.reshape(2, 1)[0, 0] = 7.0
+    x[0] = 9.0
+    assert np.array_equal(x.c[0], [9, 7, 2 * X.c[0, 2]])
+    assert np.array_equal(first.c, X.c[:, 0])
+    first += 1
+    assert x.c[0, 0] == 9
+    x[0], x[1] = x[1], x[0]
+    assert np.array_equal(x.c[0, :2], [7, 9])
+    x.T[...] = 0.0
+    x -= 1.0
+    x /= 2.0
+    x **= 2
+    assert np.array_equal(x.c, np.vstack([np.full(3, 0.25), np.zeros((ORDER, 3))]))
+
+
+def test_jets_of_order_zero_are_numbers():
+    x = Jet([[1.0, 2.0, 3.0]])
+    assert np.array_equal((x * x + np.square(x) / x - x**3).c, [[1 + 1 - 1, 4 + 2 - 8, 9 + 3 - 27]])
+    assert np.array_equal((A @ x).c, [A @ x.c[0]])
+    assert np.array_equal(np.log(x).c, np.log(x.c))
+
+
+def test_out_may_be_a_jet():
+    out = np.empty_like(X)
+    assert np.add(X, Y, out=out) is out
+    assert np.array_equal(out.c, X.c + Y.c)
+
+
+def test_a_jet_does_not_keep_its_makers_memory():
+    c = np.ones((3, 2))
+    jet = Jet(c)
+    c[:] = 0
+    assert jet.c.all()
+    assert (jet.shape, jet.ndim, jet.size, len(jet), jet.order, jet.dtype) == ((2,), 1, 2, 2, 2, float)
+    assert (np.shape(jet), np.ndim(jet), np.size(jet), np.size(M, 1)) == ((2,), 1, 2, 3)
+    assert np.array_equal(jet.coefficient(1), [1, 1])
+    assert repr(jet) == "Jet(shape=(2,), order=2, leading=array([1., 1.]))"
+    assert isinstance(jet[0], Jet)
+
+
+def test_jets_copy():
+    for x in (copy.copy(X), copy.deepcopy(X), copy.deepcopy(Z)):
+        assert isinstance(x, Jet)
+    assert copy.deepcopy(X).c is not X.c
+
+
+# --- sparse matrices --------------------------------------------------------------------------------------
+
+
+def test_sparse_products_from_the_right():
+    for matrix in (sp.csr_array(A), sp.csc_matrix(A), sp.dia_array(A)):
+        np.testing.assert_allclose((X @ matrix.T).c, (A @ X).c, atol=1e-13)
+        np.testing.assert_allclose(np.matmul(matrix, X).c, (A @ X).c, atol=1e-13)
+    with pytest.raises(TypeError, match="sparse product with an array of 2 axes"):
+        M @ sp.csr_array(A)
+
+
+def test_sparse_products_from_the_left_say_what_to_write():
+    with pytest.raises(TypeError, match=r"y @ A\.T"):
+        sp.csr_array(A) @ X
+
+
+# --- what must not pass silently --------------------------------------------------------------------------
+
+
+def assign(target, key, value):
+    target[key] = value
+
+
+def add_to(target, value):
+    target += value
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: np.asarray(X), "cannot become a plain array.*leave out numpy.asarray"),
+        (lambda: np.array([X, Y]), r"np\.stack"),
+        (lambda: np.array(X, dtype=object), "cannot become a plain array"),
+        (lambda: float(Z), "cannot become a float"),
+        (
+            lambda: assign(np.zeros(3), 0, Z),
+            r"assignment into a float array.*np\.stack.*np\.concatenate.*np\.zeros_like",
+        ),
+        (lambda: assign(np.zeros(3), slice(None), X), r"np\.zeros_like"),
+        (lambda: assign(np.zeros(3), slice(1, 3), Z), r"assignment into a float array"),
+        (lambda: add_to(np.zeros(3), X), r"numpy\.add cannot write a Jet into a plain array"),
+        (lambda: np.linalg.det(P), r"^jets do not know numpy\.linalg\.det; .* or give a jacobian"),
+        (lambda: np.linalg.solve(A, X), r"numpy\.linalg\.solve"),
+        (lambda: np.sort(X), r"numpy\.sort"),
+        (lambda: np.floor(X), r"numpy\.floor"),
+        (lambda: np.floor_divide(X, 2), r"numpy\.floor_divide"),
+        (lambda: np.fft.fft(X), r"numpy\.fft\.fft"),
+        (lambda: np.max(X), r"numpy\.max"),
+        (lambda: np.add.reduce(X), r"numpy\.add\.reduce"),
+        (lambda: np.add(X, Y, where=MASK), r"numpy\.add with where"),
+        (
+            lambda: np.sum(X, where=MASK),
+            r"numpy\.sum with these arguments \(got an unexpected keyword argument 'where'\)",
+        ),
+        (lambda: np.linalg.norm(X, 1), r"numpy\.linalg\.norm with ord=1"),
+        (lambda: np.reshape(M, (3, 2), order="F"), r"numpy\.reshape with order='F'"),
+        (lambda: np.pad(X, 1, mode="linear_ramp"), r"numpy\.pad with mode='linear_ramp'"),
+        (lambda: np.einsum("i,i,i", X, X, X), r"numpy\.einsum"),
+        (lambda: np.where(X, 1.0, X), r"numpy\.where"),
+        (lambda: np.tile(V, X), r"numpy\.tile with a jet"),
+        (lambda: np.full_like(V, Z), r"numpy\.copyto"),
+        (lambda: np.zeros_like(X, dtype=int), "dtype int64"),
+        (lambda: X * 1j, "a jet met complex of dtype complex128"),
+        (lambda: X + "a", "a jet met str"),
+        (lambda: X * sp.csr_array(A), "a jet met csr_array"),
+        (lambda: iter(Z), "not iterable"),
+        (lambda: hash(X), "unhashable"),
+    ],
+)
+def test_what_is_not_known_names_itself(call, message):
+    with pytest.raises(TypeError, match=message):
+        call()
+
+
+def test_other_errors_are_those_of_arrays():
+    with pytest.raises(ValueError, match="ambiguous"):
+        bool(X)
+    with pytest.raises(ValueError, match=r"broadcast|operands"):
+        X + np.ones(4)
+    with pytest.raises(ValueError, match=r"mismatch|size"):
+        A @ X[:2]
+    with pytest.raises(ValueError, match=r"numpy\.matmul: a scalar"):
+        A @ Z
+    with pytest.raises(ValueError, match=r"numpy\.split: 3 entries"):
+        np.split(X, 2)
+    with pytest.raises(ValueError, match=r"numpy\.mean"):
+        X[:0].mean()
+    with pytest.raises(ValueError, match=r"numpy\.tensordot"):
+        np.tensordot(M, P, axes=([0, 1], [0]))
+    with pytest.raises(AttributeError, match="astype"):
+        X.astype(float)
