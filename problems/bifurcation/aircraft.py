@@ -1,0 +1,100 @@
+"""An aircraft at a high angle of attack: equilibria in roll, continued in the aileron."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array
+from problems.bibliography import MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT
+from problems.options import finite, finite_or_none, quiet
+
+# Columns: roll, pitch and yaw rate, angle of attack, sideslip.
+_STATE = np.array(
+    [
+        [-3.933, 0.107, 0.126, 0.0, -9.99],
+        [0.0, -0.987, 0.0, -22.95, 0.0],
+        [0.002, 0.0, -0.235, 0.0, 5.67],
+        [0.0, 1.0, 0.0, -1.0, 0.0],
+        [0.0, 0.0, -1.0, 0.0, -0.196],
+    ]
+)
+_ELEVATOR = np.array([0.0, -28.37, 0.0, -0.168, 0.0])
+_AILERON = np.array([-45.83, 0.0, -0.921, 0.0, -0.0071])
+
+# The quadratic terms: coefficients of x_i x_j, one pair a column ...
+_FIRST = np.array([1, 2, 3, 0, 0, 0, 0])
+_SECOND = np.array([2, 3, 4, 2, 4, 1, 3])
+_QUADRATIC = np.array(
+    [
+        [-0.727, 8.39, -684.4, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.949, 0.173, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, -0.716, -1.578],
+        [0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+    ]
+)
+# ... and of x_4 times the aileron.
+_ATTACK_AILERON = np.array([63.5, 0.0, 1.132, 0.0, 0.0])
+_ATTACK = 3
+
+_NEWTON_STEPS = 30
+_NEWTON_TOLERANCE = 1e-14
+
+
+@frozen
+class Aircraft:
+    """Equilibria of an aircraft: five quadratic equations, continued in the aileron deflection, the elevator fixed.
+
+    y = (roll rate, pitch rate, yaw rate, angle of attack, sideslip), lam = aileron (x7 of the source). The source
+    carries elevator x6 = e and rudder x8 = 0 as unknowns with equations of their own; here they are substituted.
+
+    Parameters
+    ----------
+    elevator : float
+        Deflection e of the elevator; the source takes -0.05, -0.008, 0, 0.05 and 0.1.
+    target : float or None
+        Where the path ends.
+
+    References
+    ----------
+    Melhem and Rheinboldt, Computing 29, 1982; Rheinboldt and Burkardt, ACM TOMS 9(2), 1983.
+    """
+
+    elevator: float = field(default=0.0, validator=finite)
+    target: float | None = field(default=None, validator=finite_or_none)
+    references: ClassVar[tuple[str, ...]] = (MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT)
+
+    def start(self) -> tuple[Array, float]:
+        """The equilibrium at aileron 0 that Newton's method finds from level flight without deflections, the origin.
+
+        Raises
+        ------
+        ArithmeticError
+            If Newton's method does not converge, which it does for every elevator of the source.
+        """
+        y = np.zeros(5)
+        for _ in range(_NEWTON_STEPS):
+            increment = np.linalg.solve(self.jacobian(y, 0.0)[0], self.residual(y, 0.0))
+            y = y - increment
+            if np.linalg.norm(increment) <= _NEWTON_TOLERANCE * (1.0 + np.linalg.norm(y)):
+                return y, 0.0
+        raise ArithmeticError(f"elevator = {self.elevator}: no equilibrium at aileron 0 was reached from level flight")
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """The five equations, shape (5,)."""
+        products = _QUADRATIC @ (y[_FIRST] * y[_SECOND])
+        deflections = self.elevator * _ELEVATOR + lam * (_AILERON + _ATTACK_AILERON * y[_ATTACK])
+        equations: Array = _STATE @ y + products + deflections
+        return equations
+
+    @quiet
+    def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
+        """(H_y, H_lam), shapes (5, 5) and (5,)."""
+        eye = np.eye(5)
+        by_state = _QUADRATIC @ (y[_SECOND, None] * eye[_FIRST] + y[_FIRST, None] * eye[_SECOND])
+        by_state = by_state + _STATE + lam * np.outer(_ATTACK_AILERON, eye[_ATTACK])
+        return by_state, _AILERON + _ATTACK_AILERON * y[_ATTACK]

@@ -1,0 +1,62 @@
+"""The Freudenstein-Roth function, embedded as by Rheinboldt and Burkardt."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array
+from problems.bibliography import FREUDENSTEIN_ROTH, RHEINBOLDT_BURKARDT
+from problems.options import finite_or_none, quiet
+
+_CUBIC = np.array([-1.0, 1.0])
+_SQUARE = np.array([5.0, 1.0])
+_LINEAR = np.array([-2.0, -14.0])
+_CONSTANT = np.array([-13.0, -29.0])
+_EMBEDDING = np.array([34.0, 10.0])
+
+
+@frozen
+class FreudensteinRoth:
+    """Two equations whose path to the root (5, 4) turns twice in lam and passes a sharp bend.
+
+    ``H1 = x1 - x2^3 + 5 x2^2 - 2 x2 - 13 + 34 (lam - 1)`` and ``H2 = x1 + x2^3 + x2^2 - 14 x2 - 29 + 10 (lam - 1)``,
+    y = (x1, x2), from (15, -2) at lam = 0 to (5, 4) at lam = 1.
+
+    Parameters
+    ----------
+    target : float or None
+        Where the path ends.
+
+    Notes
+    -----
+    Near x2 = -1.74 the tangent turns by more than 90 degrees within one generous step, which misleads an orientation by
+    angle alone into a fold at lam = 0.3057 that does not exist.
+
+    References
+    ----------
+    Freudenstein and Roth, J. ACM 10, 1963; Rheinboldt and Burkardt, ACM TOMS 9(2), 1983.
+    """
+
+    target: float | None = field(default=1.0, validator=finite_or_none)
+    references: ClassVar[tuple[str, ...]] = (FREUDENSTEIN_ROTH, RHEINBOLDT_BURKARDT)
+
+    def start(self) -> tuple[Array, float]:
+        """(15, -2) at lam = 0, exactly on the path."""
+        return np.array([15.0, -2.0]), 0.0
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """(H1, H2), shape (2,)."""
+        x1, x2 = y[0], y[1]
+        polynomial = x2 * (_LINEAR + x2 * (_SQUARE + x2 * _CUBIC))
+        equations: Array = x1 + polynomial + _CONSTANT + (lam - 1.0) * _EMBEDDING
+        return equations
+
+    @quiet
+    def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
+        """(H_y, H_lam), shapes (2, 2) and (2,)."""
+        slope = _LINEAR + y[1] * (2.0 * _SQUARE + 3.0 * y[1] * _CUBIC)
+        return np.stack((np.ones(2), slope), axis=1), _EMBEDDING.copy()

@@ -1,0 +1,55 @@
+"""Brown's almost linear function."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array
+from problems.bibliography import BROWN
+from problems.options import positive_integer, quiet
+
+
+@frozen
+class BrownAlmostLinear:
+    """F_1 = prod_j x_j - 1, F_k = x_k + sum_j x_j - (n + 1) for k = 2..n; F(1, ..., 1) = 0.
+
+    ``F(x)`` is its value and ``F.jacobian(x)`` its derivative.
+
+    Parameters
+    ----------
+    n : int
+        Number of equations and unknowns.
+
+    References
+    ----------
+    Brown, SIAM J. Numer. Anal. 6, 1969.
+    """
+
+    n: int = field(validator=positive_integer)
+    references: ClassVar[tuple[str, ...]] = (BROWN,)
+
+    @quiet
+    def __call__(self, x: Array) -> Array:
+        """F(x), shape (n,); ValueError unless x has that shape."""
+        if x.shape != (self.n,):
+            raise ValueError(f"x: expected shape {(self.n,)}, found {x.shape}")
+        return np.concatenate((np.prod(x, keepdims=True) - 1.0, x[1:] + np.sum(x) - (self.n + 1.0)))
+
+    @quiet
+    def jacobian(self, x: Array) -> Array:
+        """F'(x), shape (n, n)."""
+        # Products of all but one, from both sides: dividing prod x by x_k would fail at x_k = 0.
+        before = np.cumprod(np.concatenate((np.ones(1), x[:-1])))
+        after = np.cumprod(np.concatenate((np.ones(1), x[:0:-1])))[::-1]
+        return np.concatenate(((before * after)[None, :], np.eye(self.n)[1:] + 1.0))
+
+
+def brown(n: int) -> BrownAlmostLinear:
+    """Brown's almost linear function of n unknowns: ``F = brown(n)``, with ``F.jacobian``.
+
+    ``fixed_point(F, a, F.jacobian)`` is then the classical test path.
+    """
+    return BrownAlmostLinear(n)

@@ -1,0 +1,57 @@
+"""What is checked before a path is begun: the function, the point, and the function's value there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from continuation.arrays import Array, Matrix
+from problems.options import finite_vector, quiet
+
+Function = Callable[[Array], Array]
+"""A map R^n -> R^n on numpy arrays; with plain numpy inside, complex numbers and jets pass through it."""
+
+Jacobian = Callable[[Array], Matrix]
+"""Its derivative, (n, n): dense, scipy sparse, or any other matrix that `continuation.linear` factors."""
+
+
+def require_callable(name: str, value: Any) -> None:
+    """Raise TypeError unless `value` can be called."""
+    if not callable(value):
+        raise TypeError(f"{name}: expected a function, found {type(value).__name__}")
+
+
+def start_vector(a: Any) -> Array:
+    """A copy of the start a as a finite vector, or ValueError."""
+    return finite_vector("a", a)
+
+
+def value_at(F: Function, a: Array) -> Array:
+    """F(a), finite and of the shape of `a`.
+
+    Raises
+    ------
+    TypeError
+        If F is not callable, or returns no numpy array.
+    ValueError
+        If F(a) is no finite real vector, or not of the shape of `a`.
+    """
+    require_callable("F", F)
+    value: Any = quiet(F)(a.copy())
+    if not isinstance(value, np.ndarray):
+        raise TypeError(f"F(a): expected an array of shape {a.shape}, found {type(value).__name__}")
+    if value.shape != a.shape:
+        raise ValueError(f"F(a): expected shape {a.shape}, that of a, found {value.shape}")
+    return finite_vector("F(a)", value)
+
+
+def check_jacobian_shape(jacobian: Jacobian, a: Array) -> None:
+    """Raise TypeError unless `jacobian` is a function of a matrix, ValueError unless that has shape (n, n)."""
+    require_callable("jacobian", jacobian)
+    shape = getattr(quiet(jacobian)(a.copy()), "shape", None)
+    if shape is None:
+        raise TypeError("jacobian(a): expected a matrix, found an object without a shape")
+    if shape != (a.size, a.size):
+        raise ValueError(f"jacobian(a): expected shape {(a.size, a.size)}, found {shape}")

@@ -1,0 +1,81 @@
+"""The fixed-point homotopy."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from attrs import field, frozen
+
+from continuation.arrays import Array, Matrix
+from problems.bibliography import CHOW_MALLET_PARET_YORKE
+from problems.nonlinear.differentiable import Differentiable
+from problems.nonlinear.door import Function, Jacobian, start_vector, value_at
+from problems.nonlinear.identity import blend_with_identity
+from problems.options import quiet
+
+
+@frozen(eq=False)
+class FixedPointHomotopy:
+    """H(x, lam) = (1 - lam) F(x) + lam (x - a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
+
+    It has no `jacobian`; `fixed_point` adds one where F has a derivative.
+
+    Parameters
+    ----------
+    F : callable
+        ``F(x) -> (n,)`` for x of shape (n,).
+    a : array_like, shape (n,)
+        The start. For almost every one the path is a regular curve.
+
+    Raises
+    ------
+    TypeError
+        If F is not callable, or returns no numpy array.
+    ValueError
+        If `a` or F(a) is no finite real vector, or their shapes differ.
+
+    References
+    ----------
+    Chow, Mallet-Paret and Yorke, Math. Comp. 32, 1978.
+    """
+
+    F: Function
+    a: Array = field(converter=start_vector)
+    target: ClassVar[float | None] = 0.0
+    references: ClassVar[tuple[str, ...]] = (CHOW_MALLET_PARET_YORKE,)
+
+    def __attrs_post_init__(self) -> None:
+        value_at(self.F, self.a)
+
+    def start(self) -> tuple[Array, float]:
+        """(a, 1)."""
+        return self.a.copy(), 1.0
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """H, shape (n,)."""
+        return (1.0 - lam) * self.F(y) + lam * (y - self.a)
+
+    @quiet
+    def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) from slope = F'(y), at the price of one evaluation of F."""
+        return blend_with_identity(slope, lam), y - self.a - self.F(y)
+
+
+def fixed_point(
+    F: Function, a: Any, jacobian: Jacobian | None = None
+) -> FixedPointHomotopy | Differentiable[FixedPointHomotopy]:
+    """The fixed-point homotopy of F from `a`, see `FixedPointHomotopy`.
+
+    Parameters
+    ----------
+    F : callable
+        ``F(x) -> (n,)``.
+    a : array_like, shape (n,)
+        The start.
+    jacobian : callable, optional
+        ``jacobian(x) -> (n, n)``, F' as a dense array, a scipy sparse array, `Banded`, `Symmetric` or a
+        LinearOperator; without it the homotopy has no `jacobian` either.
+    """
+    homotopy = FixedPointHomotopy(F, a)
+    return homotopy if jacobian is None else Differentiable(homotopy, jacobian)

@@ -1,0 +1,81 @@
+"""The Newton homotopy, also called global homotopy."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from attrs import field, frozen
+
+from continuation.arrays import Array, Matrix
+from problems.bibliography import ALLGOWER_GEORG, KELLER
+from problems.nonlinear.differentiable import Differentiable
+from problems.nonlinear.door import Function, Jacobian, start_vector, value_at
+from problems.options import quiet
+
+
+@frozen(eq=False)
+class NewtonHomotopy:
+    """H(x, lam) = F(x) - lam F(a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
+
+    It has no `jacobian`; `newton` adds one where F has a derivative.
+
+    Parameters
+    ----------
+    F : callable
+        ``F(x) -> (n,)`` for x of shape (n,).
+    a : array_like, shape (n,)
+        The start, where F' should be regular.
+
+    Raises
+    ------
+    TypeError
+        If F is not callable, or returns no numpy array.
+    ValueError
+        If `a` or F(a) is no finite real vector, or their shapes differ.
+
+    References
+    ----------
+    Keller, Global Homotopies and Newton Methods, 1978; Allgower and Georg, Introduction to Numerical Continuation
+    Methods, 2003.
+    """
+
+    F: Function
+    a: Array = field(converter=start_vector)
+    value: Array = field(init=False, repr=False)
+    """F(a), shape (n,)."""
+    target: ClassVar[float | None] = 0.0
+    references: ClassVar[tuple[str, ...]] = (KELLER, ALLGOWER_GEORG)
+
+    @value.default
+    def _value_at_start(self) -> Array:
+        return value_at(self.F, self.a)
+
+    def start(self) -> tuple[Array, float]:
+        """(a, 1)."""
+        return self.a.copy(), 1.0
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """H, shape (n,)."""
+        return self.F(y) - lam * self.value
+
+    def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) from slope = F'(y)."""
+        return slope, -self.value
+
+
+def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomotopy | Differentiable[NewtonHomotopy]:
+    """The Newton homotopy of F from `a`, see `NewtonHomotopy`.
+
+    Parameters
+    ----------
+    F : callable
+        ``F(x) -> (n,)``.
+    a : array_like, shape (n,)
+        The start.
+    jacobian : callable, optional
+        ``jacobian(x) -> (n, n)``, F' as any matrix that `continuation.linear` factors; without it the homotopy has no
+        `jacobian` either.
+    """
+    homotopy = NewtonHomotopy(F, a)
+    return homotopy if jacobian is None else Differentiable(homotopy, jacobian)

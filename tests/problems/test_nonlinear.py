@@ -1,0 +1,201 @@
+"""Homotopies for F(x) = 0: derivatives in every matrix structure, capabilities by presence, checks at the door."""
+
+import pickle
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_array, csr_array, issparse
+from scipy.sparse.linalg import LinearOperator, aslinearoperator
+
+from continuation import jets
+from continuation.homotopy import SupportsJacobian, SupportsReferences, SupportsTarget
+from continuation.linear import Banded, Operator, Symmetric
+from problems.nonlinear import brown, fixed_point, newton
+
+both = pytest.mark.parametrize("make", [fixed_point, newton])
+
+
+def complex_step(function, u):
+    return np.stack([function(row).imag * 1e200 for row in u + 1e-200j * np.eye(u.size)], axis=1)
+
+
+def whole(homotopy):
+    return lambda u: homotopy.residual(u[:-1], u[-1])
+
+
+@pytest.mark.parametrize("n", [1, 2, 5, 12])
+def test_brown_has_the_root_of_ones(n):
+    F = brown(n)
+    np.testing.assert_array_equal(F(np.ones(n)), np.zeros(n))
+    x = np.random.default_rng(n).normal(size=n)
+    np.testing.assert_allclose(F(x)[1:], x[1:] + x.sum() - (n + 1), rtol=0, atol=1e-13)
+    assert F(x)[0] == pytest.approx(np.prod(x) - 1, abs=1e-14)
+
+
+@pytest.mark.parametrize("zeros", [0, 1, 2])
+@pytest.mark.parametrize("n", [2, 5])
+def test_brown_jacobian_also_where_components_vanish(n, zeros):
+    x = np.random.default_rng(n).normal(size=n)
+    x[:zeros] = 0.0
+    np.testing.assert_allclose(brown(n).jacobian(x), complex_step(brown(n), x), rtol=0, atol=1e-13)
+
+
+def test_brown_of_another_size_is_refused():
+    with pytest.raises(ValueError, match=r"x: expected shape \(3,\), found \(2,\)"):
+        brown(3)(np.zeros(2))
+    with pytest.raises(ValueError, match="n: expected at least 1, found 0"):
+        brown(0)
+
+
+@both
+def test_path_joins_the_start_to_a_root(make):
+    F, a = brown(4), np.array([0.1, -0.2, 0.3, 0.4])
+    homotopy = make(F, a)
+    y, lam = homotopy.start()
+    np.testing.assert_array_equal(y, a)
+    assert lam == 1.0
+    assert homotopy.target == 0.0
+    np.testing.assert_array_equal(homotopy.residual(y, lam), np.zeros(4))
+    x = np.array([0.5, 2.0, -1.0, 0.0])
+    np.testing.assert_array_equal(homotopy.residual(x, 0.0), F(x))
+    np.testing.assert_array_equal(homotopy.residual(np.ones(4), 0.0), np.zeros(4))
+
+
+def test_fixed_point_homotopy_reads_as_published_with_lam_reversed():
+    F, a, x, published = brown(3), np.zeros(3), np.array([0.2, -0.4, 0.9]), 0.3
+    expected = published * F(x) + (1 - published) * (x - a)
+    np.testing.assert_allclose(fixed_point(F, a).residual(x, 1 - published), expected, rtol=1e-14)
+
+
+def test_newton_homotopy_reads_as_published():
+    F, a, x = brown(3), np.array([2.0, 1.0, 3.0]), np.array([0.2, -0.4, 0.9])
+    np.testing.assert_allclose(newton(F, a).residual(x, 0.3), F(x) - 0.3 * F(a), rtol=1e-15)
+
+
+@both
+def test_jacobian_is_the_derivative(make):
+    F = brown(5)
+    homotopy = make(F, np.full(5, 0.3), F.jacobian)
+    for u in np.random.default_rng(2).normal(size=(4, 6)):
+        found = np.column_stack(homotopy.jacobian(u[:-1], u[-1]))
+        np.testing.assert_allclose(found, complex_step(whole(homotopy), u), rtol=0, atol=1e-13)
+        np.testing.assert_allclose(found, jets.jacobian(whole(homotopy), u), rtol=0, atol=1e-13)
+
+
+@both
+def test_capabilities_are_those_that_were_given(make):
+    F = brown(3)
+    plain, differentiable = make(F, np.zeros(3)), make(F, np.zeros(3), F.jacobian)
+    assert not isinstance(plain, SupportsJacobian)
+    assert isinstance(differentiable, SupportsJacobian)
+    for homotopy in (plain, differentiable):
+        assert isinstance(homotopy, SupportsTarget)
+        assert isinstance(homotopy, SupportsReferences)
+        assert all(entry.startswith("@") and entry.count("{") == entry.count("}") for entry in homotopy.references)
+    x = np.array([1.0, -2.0, 0.5])
+    np.testing.assert_array_equal(plain.residual(x, 0.4), differentiable.residual(x, 0.4))
+    again = pickle.loads(pickle.dumps(differentiable))
+    np.testing.assert_array_equal(again.jacobian(x, 0.4)[0], differentiable.jacobian(x, 0.4)[0])
+
+
+TRIDIAGONAL = np.diag([2.0, 3.0, 4.0, 5.0]) + np.diag([1.0, 1.0, 1.0], 1) + np.diag([1.0, 1.0, 1.0], -1)
+
+
+def banded(x):
+    bands = np.zeros((3, 4))
+    bands[0, 1:] = bands[2, :-1] = 1.0
+    bands[1] = TRIDIAGONAL.diagonal() + 3 * x**2
+    return Banded(bands, 1, 1)
+
+
+def cubic(x):
+    return TRIDIAGONAL @ x + x**3 - 1.0
+
+
+def cubic_slope(x):
+    return TRIDIAGONAL + np.diag(3 * x**2)
+
+
+@both
+@pytest.mark.parametrize(
+    ("slope", "kind"),
+    [
+        (cubic_slope, np.ndarray),
+        (lambda x: csr_array(cubic_slope(x)), csr_array),
+        (lambda x: csc_array(cubic_slope(x)), csc_array),
+        (banded, Banded),
+        (lambda x: Symmetric(cubic_slope(x)), Symmetric),
+        (lambda x: aslinearoperator(cubic_slope(x)), LinearOperator),
+    ],
+    ids=["dense", "csr", "csc", "banded", "symmetric", "operator"],
+)
+def test_the_structure_of_the_derivative_is_kept(make, slope, kind):
+    homotopy = make(cubic, np.full(4, 0.5), slope)
+    u = np.array([0.3, -0.7, 1.1, 0.2, 0.6])
+    H_y, H_lam = homotopy.jacobian(u[:-1], u[-1])
+    assert isinstance(H_y, kind)
+    dense = H_y.toarray() if issparse(H_y) else H_y @ np.eye(4)
+    np.testing.assert_allclose(np.column_stack((dense, H_lam)), complex_step(whole(homotopy), u), rtol=0, atol=1e-13)
+
+
+def test_blending_leaves_the_given_matrix_alone():
+    kept = banded(np.zeros(4))
+    bands = kept.ab.copy()
+    fixed_point(cubic, np.zeros(4), lambda x: kept).jacobian(np.zeros(4), 0.5)
+    np.testing.assert_array_equal(kept.ab, bands)
+
+
+def test_fixed_point_refuses_a_matrix_that_it_cannot_blend():
+    with pytest.raises(TypeError, match=r"F'\(x\) is of type Operator; expected"):
+        fixed_point(cubic, np.zeros(4), lambda x: Operator(cubic_slope(x)))
+
+
+@both
+@pytest.mark.parametrize(
+    ("F", "a", "jacobian", "error", "message"),
+    [
+        (3, [0.0], None, TypeError, "F: expected a function, found int"),
+        (cubic, [], None, ValueError, r"a: expected a vector of real numbers, found shape \(0,\)"),
+        (cubic, [[0.0]], None, ValueError, r"a: expected a vector of real numbers, found shape \(1, 1\)"),
+        (cubic, [[0.0], [1.0, 2.0]], None, ValueError, "a: expected a vector of real numbers, found list"),
+        (cubic, ["x"], None, ValueError, "a: expected a vector of real numbers"),
+        (cubic, [1j], None, ValueError, "a: expected a vector of real numbers.*complex128"),
+        (cubic, [0.0, np.inf], None, ValueError, "a: expected finite numbers, found inf"),
+        (lambda x: [0.0], [0.0], None, TypeError, r"F\(a\): expected an array of shape \(1,\), found list"),
+        (lambda x: x[:1], [0.0, 1.0], None, ValueError, r"F\(a\): expected shape \(2,\), that of a, found \(1,\)"),
+        (lambda x: np.log(x), [-1.0], None, ValueError, r"F\(a\): expected finite numbers, found nan"),
+        (lambda x: x + 1j, [0.0], None, ValueError, r"F\(a\): expected a vector of real numbers.*complex128"),
+        (cubic, np.zeros(4), 3, TypeError, "jacobian: expected a function, found int"),
+        (cubic, np.zeros(4), lambda x: 1.0, TypeError, r"jacobian\(a\): expected a matrix"),
+        (
+            cubic,
+            np.zeros(4),
+            lambda x: np.eye(3),
+            ValueError,
+            r"jacobian\(a\): expected shape \(4, 4\), found \(3, 3\)",
+        ),
+    ],
+)
+def test_wrong_input_is_named_at_the_door(make, F, a, jacobian, error, message):
+    with pytest.raises(error, match=message):
+        make(F, a, jacobian)
+
+
+@both
+def test_the_start_is_the_homotopys_own(make):
+    a = np.zeros(4)
+    homotopy = make(cubic, a)
+    a += 7.0
+    first, _ = homotopy.start()
+    first += 1.0
+    np.testing.assert_array_equal(homotopy.start()[0], np.zeros(4))
+
+
+@both
+def test_wild_iterates_make_no_noise(make):
+    # Warnings are errors in this suite; Brown's product overflows here.
+    F = brown(4)
+    homotopy = make(F, np.zeros(4), F.jacobian)
+    for size in (1e200, np.inf, np.nan):
+        assert not np.isfinite(homotopy.residual(np.full(4, size), 0.5)).all()
+        homotopy.jacobian(np.full(4, size), 0.5)
