@@ -1,0 +1,29 @@
+"""How much a trace may cost."""
+
+from __future__ import annotations
+
+import math
+
+from attrs import field, frozen
+from attrs.validators import gt
+
+from continuation.evaluation import Counts
+
+
+@frozen
+class Budget:
+    """Limits on accepted steps, wall-clock seconds and factorisations; reaching one ends as BUDGET_EXHAUSTED."""
+
+    steps: float = field(default=10_000, validator=gt(0))
+    seconds: float = field(default=math.inf, validator=gt(0))
+    factorizations: float = field(default=math.inf, validator=gt(0))
+
+    def spent(self, counts: Counts, seconds: float) -> str:
+        """Which limit is reached, as text; empty if none is."""
+        if counts.accepted >= self.steps:
+            return f"{self.steps:g} steps"
+        if counts.factorizations >= self.factorizations:
+            return f"{self.factorizations:g} factorisations"
+        if seconds >= self.seconds:
+            return f"{self.seconds:g} seconds"
+        return ""

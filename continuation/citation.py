@@ -1,0 +1,71 @@
+"""`cite`: what to quote for a run."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from continuation.bibliography import ALLGOWER_GEORG, MORGAN_SOMMESE_WAMPLER, SOFTWARE
+from continuation.path import Path
+
+_KEY = re.compile(r"@\w+\s*\{\s*([^,\s]+)\s*,")
+_FIELD = re.compile(r"^\s*(author|year|title)\s*=\s*\{(.*)\},?\s*$", re.MULTILINE)
+_MARKUP = re.compile(r"\\[\"'`^~=.uvHcdbtk]?|[{}$]")
+
+
+def cite(source: Any) -> str:
+    """BibTeX of what to quote: the library, the methods that a run used, and the homotopy's own sources.
+
+    Parameters
+    ----------
+    source : Path or Homotopy
+        A traced path knows its parts; of a homotopy alone its own references are given.
+
+    Returns
+    -------
+    str
+        Entries with an empty line between them, each key once.
+
+    Raises
+    ------
+    TypeError
+        If `source` is neither: it has no `references`, and is no homotopy.
+    """
+    if isinstance(source, Path):
+        ends = (MORGAN_SOMMESE_WAMPLER,) if source.winding_number is not None else ()
+        return "\n\n".join(unique((SOFTWARE, ALLGOWER_GEORG, *source.references, *ends)))
+    if not hasattr(source, "references") and not callable(getattr(source, "residual", None)):
+        raise TypeError(f"source: expected a path or a homotopy, found {type(source).__name__}")
+    return "\n\n".join(unique((SOFTWARE, *references_of(source))))
+
+
+def references_of(*parts: Any) -> tuple[str, ...]:
+    """The BibTeX entries in the attribute `references` of each part that has one, each key once."""
+    return unique(tuple(entry for part in parts for entry in getattr(part, "references", ())))
+
+
+def unique(entries: tuple[str, ...]) -> tuple[str, ...]:
+    """The entries without those whose key occurred before."""
+    return tuple({key(entry): entry for entry in reversed(entries)}[name] for name in dict.fromkeys(map(key, entries)))
+
+
+def key(entry: str) -> str:
+    """The name by which an entry is cited; the entry itself where it has none."""
+    found = _KEY.search(entry)
+    return found.group(1) if found else entry
+
+
+def short(entry: str) -> str:
+    """Author, year and title of an entry in one line of plain text."""
+    fields = {name: _plain(value) for name, value in _FIELD.findall(entry)}
+    names = [name.partition(",")[0].strip() for name in fields.get("author", "").split(" and ")]
+    if len(names) > 1:
+        last = names.pop()
+        names = [", ".join(names) + (" et al." if last == "others" else f" and {last}")]
+    parts = [" ".join(filter(None, (names[0], fields.get("year", "")))), fields.get("title", "")]
+    return ", ".join(filter(None, parts)) or key(entry)
+
+
+def _plain(text: str) -> str:
+    """Without TeX's braces and accents."""
+    return _MARKUP.sub("", text).strip()

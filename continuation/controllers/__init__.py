@@ -1,0 +1,17 @@
+"""Step controllers: how long the next step is, and whether the last one is accepted."""
+
+from continuation.controllers.base import Attempt, Bounds, Controller, Decision
+from continuation.controllers.rules import AllgowerGeorg, Curvature, Fixed, Geometric, IterationCount, SeriesRange
+
+__all__ = [
+    "AllgowerGeorg",
+    "Attempt",
+    "Bounds",
+    "Controller",
+    "Curvature",
+    "Decision",
+    "Fixed",
+    "Geometric",
+    "IterationCount",
+    "SeriesRange",
+]

@@ -1,0 +1,89 @@
+"""What a step controller is: frozen settings, and a state that is a tuple of floats, so that it can be archived."""
+
+from __future__ import annotations
+
+from typing import Protocol, TypeAlias
+
+from attrs import field, frozen
+from attrs.validators import gt
+
+State: TypeAlias = tuple[float, ...]
+
+
+@frozen
+class Attempt:
+    """What a controller learns of one attempt.
+
+    Attributes
+    ----------
+    h : float
+        Its step length, in arclength of the metric.
+    converged : bool
+        Whether the corrector converged inside the domain; the other measures are meaningful only then.
+    iterations : int
+        The corrector's increments.
+    contraction : float
+        Worst ratio of successive increments.
+    distance : float
+        Length of the correction.
+    angle : float
+        Between the tangents, radians.
+    order : int
+        The predictor's order p: the distance behaves like h^(p + 1).
+    rejections : int
+        Attempts at this step before this one.
+    """
+
+    h: float
+    converged: bool
+    iterations: int
+    contraction: float
+    distance: float
+    angle: float
+    order: int
+    rejections: int
+
+
+@frozen
+class Decision:
+    """Whether the attempt is accepted, the next step length to try, and the controller's new state."""
+
+    accept: bool
+    h: float
+    state: State
+
+
+@frozen
+class Bounds:
+    """Floor, ceiling and first value of the step length, in arclength of the metric."""
+
+    minimum: float = field(default=1e-10, validator=gt(0))
+    maximum: float = field(default=float("inf"), validator=gt(0))
+    initial: float = field(default=0.1, validator=gt(0))
+
+    def __attrs_post_init__(self) -> None:
+        if not self.minimum <= self.initial:
+            raise ValueError(f"minimum: expected at most the initial step {self.initial:g}, found {self.minimum:g}")
+        if not self.minimum <= self.maximum:
+            raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
+
+    def clip(self, h: float) -> float:
+        """The step kept below the ceiling; the floor is the tracer's to check."""
+        return min(h, self.maximum)
+
+
+class Controller(Protocol):
+    """A rule for the step length."""
+
+    @property
+    def bounds(self) -> Bounds:
+        """Floor, ceiling and first value."""
+        ...
+
+    def init(self) -> State:
+        """The state before the first step."""
+        ...
+
+    def update(self, state: State, attempt: Attempt) -> Decision:
+        """Judge an attempt; pure, so that a resumed run decides alike."""
+        ...

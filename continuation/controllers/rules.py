@@ -1,0 +1,187 @@
+"""The step controllers."""
+
+from __future__ import annotations
+
+import math
+
+from attrs import field, frozen
+from attrs.validators import and_, gt, lt
+
+from continuation.controllers.base import Attempt, Bounds, Decision, State
+
+_FRACTION = and_(gt(0.0), lt(1.0))
+
+
+@frozen
+class Fixed:
+    """The same step always; halved within a step that fails, and restored after it."""
+
+    bounds: Bounds = field(factory=Bounds)
+    max_angle: float = field(default=0.8, validator=gt(0))
+
+    def init(self) -> State:
+        """No state."""
+        return ()
+
+    def update(self, state: State, attempt: Attempt) -> Decision:
+        """Accept whatever converged within the angle."""
+        if attempt.converged and attempt.angle <= self.max_angle:
+            return Decision(True, self.bounds.clip(self.bounds.initial), state)
+        return Decision(False, attempt.h / 2.0, state)
+
+
+@frozen
+class Geometric:
+    """The backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, and l starts at 0 at every point.
+
+    `bounds.initial` is the longest step (1 in the paper). It accepts whatever the corrector accepts, however far the
+    tangent turned, so it can jump between paths: here to be compared with, not to be used.
+    """
+
+    ratio: float = field(default=0.5, validator=_FRACTION)
+    bounds: Bounds = field(factory=lambda: Bounds(minimum=1e-6, initial=1.0))
+
+    def init(self) -> State:
+        """No state."""
+        return ()
+
+    def update(self, state: State, attempt: Attempt) -> Decision:
+        """Back to the longest step after success, one power of the ratio down after failure."""
+        if attempt.converged:
+            return Decision(True, self.bounds.initial, state)
+        return Decision(False, attempt.h * self.ratio, state)
+
+
+@frozen
+class IterationCount:
+    """The step grows when the corrector needs fewer increments than `target`, and shrinks when it needs more."""
+
+    target: int = field(default=3, validator=gt(0))
+    grow: float = field(default=2.0, validator=gt(1))
+    shrink: float = field(default=0.5, validator=_FRACTION)
+    max_angle: float = field(default=0.4, validator=gt(0))
+    bounds: Bounds = field(factory=Bounds)
+
+    def init(self) -> State:
+        """No state."""
+        return ()
+
+    def update(self, state: State, attempt: Attempt) -> Decision:
+        """Accept what converged within the angle; scale by grow^((target - iterations) / target)."""
+        if not attempt.converged or attempt.angle > self.max_angle:
+            return Decision(False, attempt.h * self.shrink, state)
+        factor = self.grow ** ((self.target - attempt.iterations) / self.target)
+        return Decision(True, self.bounds.clip(attempt.h * max(factor, self.shrink)), state)
+
+
+@frozen
+class AllgowerGeorg:
+    """Asymptotic expansions of contraction, distance and angle in h (Allgower and Georg, Algorithm 6.1.10).
+
+    For a predictor of order p the contraction and the distance behave like h^(p + 1) and the angle like h, so each
+    measure over its goal says by which factor the step was too long; the worst decides. An attempt with a measure
+    beyond `deceleration` times its goal is rejected.
+
+    Parameters
+    ----------
+    contraction, distance, angle : float
+        The goals; distance is relative to the step length, the angle is in radians.
+    deceleration, acceleration : float
+        How far beyond a goal is still accepted; how fast the step may grow.
+    bounds : Bounds
+    """
+
+    contraction: float = field(default=0.3, validator=gt(0))
+    distance: float = field(default=0.1, validator=gt(0))
+    angle: float = field(default=0.3, validator=gt(0))
+    deceleration: float = field(default=1.5, validator=gt(1))
+    acceleration: float = field(default=2.0, validator=gt(1))
+    bounds: Bounds = field(factory=Bounds)
+
+    def init(self) -> State:
+        """No state."""
+        return ()
+
+    def update(self, state: State, attempt: Attempt) -> Decision:
+        """Divide the step by the worst factor."""
+        if not attempt.converged:
+            return Decision(False, attempt.h / 2.0, state)
+        root = 1.0 / (attempt.order + 1)
+        contraction = attempt.contraction / self.contraction
+        distance = attempt.distance / (self.distance * attempt.h)
+        angle = attempt.angle / self.angle
+        factor = max(contraction**root, distance**root, angle)
+        # Judged by the measures themselves, not by their roots: for a predictor of high order a root forgives a
+        # correction half as long as the step, and that is how paths are jumped.
+        if max(contraction, distance, angle) > self.deceleration:
+            return Decision(False, attempt.h / min(max(factor, 1.2), 2.0 * self.deceleration), state)
+        limited = max(factor, 1.0 / self.acceleration)
+        # Right after a rejection the step must not grow: the reason for it lies just ahead.
+        grown = attempt.h / (max(limited, 1.0) if attempt.rejections else limited)
+        return Decision(True, self.bounds.clip(grown), state)
+
+
+@frozen
+class Curvature:
+    """Steps from the predicted curvature and the corrector's quality, as in PITCON (den Heijer and Rheinboldt 1981).
+
+    The curvature over the last step is |2 sin(angle / 2)| / h; the next step's is extrapolated linearly, and the step
+    chosen so that Euler's predictor would err by the distance the corrector is known to like, h = sqrt(2 distance /
+    curvature). That distance is adapted by the corrector's contraction.
+
+    State: the curvature of the step before, its length, and the liked distance.
+    """
+
+    contraction: float = field(default=0.1, validator=_FRACTION)
+    initial_distance: float = field(default=1e-2, validator=gt(0))
+    max_angle: float = field(default=0.4, validator=gt(0))
+    growth: float = field(default=3.0, validator=gt(1))
+    bounds: Bounds = field(factory=Bounds)
+
+    def init(self) -> State:
+        """No curvature known."""
+        return (-1.0, 0.0, self.initial_distance)
+
+    def update(self, state: State, attempt: Attempt) -> Decision:
+        """Judge by angle; choose by curvature."""
+        before, length, liked = state
+        if not attempt.converged or attempt.angle > self.max_angle:
+            return Decision(False, attempt.h / 2.0, state)
+        curvature = 2.0 * math.sin(attempt.angle / 2.0) / attempt.h
+        ahead = curvature
+        if before >= 0.0:
+            ahead = curvature + attempt.h / (attempt.h + length) * (curvature - before)
+        ahead = max(ahead, 0.01 / attempt.h, 1e-3 * curvature)
+        quality = math.sqrt(self.contraction / max(attempt.contraction, 1e-3))
+        liked = liked * min(max(quality, 0.5), 2.0)
+        wanted = math.sqrt(2.0 * liked / ahead)
+        # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.
+        wanted = min(wanted, self.max_angle / ahead, self.growth * attempt.h)
+        wanted = max(wanted, attempt.h / self.growth)
+        if attempt.rejections:
+            wanted = min(wanted, attempt.h)
+        return Decision(True, self.bounds.clip(wanted), (curvature, attempt.h, liked))
+
+
+@frozen
+class SeriesRange:
+    """The whole range of a series predictor at every step; a failed attempt halves it for that step alone.
+
+    The range carries its own error bound, so what is watched is the corrector: a correction longer than `distance`
+    times the step means that the series and the path have parted.
+    """
+
+    distance: float = field(default=1e-3, validator=gt(0))
+    max_angle: float = field(default=1.4, validator=gt(0))
+    bounds: Bounds = field(factory=lambda: Bounds(initial=math.inf))
+
+    def init(self) -> State:
+        """No state."""
+        return ()
+
+    def update(self, state: State, attempt: Attempt) -> Decision:
+        """Accept small corrections; ask for the whole range again."""
+        near = attempt.distance <= self.distance * attempt.h and attempt.angle <= self.max_angle
+        if attempt.converged and near:
+            return Decision(True, self.bounds.clip(self.bounds.initial), state)
+        return Decision(False, attempt.h / 2.0, state)

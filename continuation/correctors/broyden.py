@@ -1,0 +1,50 @@
+"""The quasi-Newton corrector: Broyden's good update in product form on the factorisation of the last point."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from attrs import field, frozen
+from attrs.validators import gt
+
+from continuation.arrays import Array
+from continuation.correctors.base import Correction, iterate
+from continuation.evaluation import EvaluationError, Evaluator
+from continuation.linearization import Linearization
+from continuation.tolerance import Tolerance
+
+
+@frozen
+class Broyden:
+    """Broyden's method on the bordered system, started anew at each step from the tangent's factorisation.
+
+    One factorisation a step, superlinear convergence; the updates are kept as increments only (Kelley, Iterative
+    Methods for Linear and Nonlinear Equations, Section 7.3), so a step carries no matrix over and resuming a path
+    from its archive needs none.
+    """
+
+    max_iterations: int = field(default=15, validator=gt(0))
+    max_contraction: float = field(default=0.7, validator=gt(0))
+
+    def correct(
+        self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
+    ) -> Correction:
+        """See `Corrector.correct`."""
+        increments: list[Array] = []
+
+        def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
+            z = point.solve(-r, 0.0, border)
+            for before, after in itertools.pairwise(increments):
+                z = z + (float(np.dot(before, z)) / float(np.dot(before, before))) * after
+            if increments:
+                last = increments[-1]
+                square = float(np.dot(last, last))
+                shrink = 1.0 - float(np.dot(last, z)) / square if square > 0.0 else 1.0
+                if shrink == 0.0:
+                    raise EvaluationError("Broyden's update is singular")
+                z = z / shrink
+            increments.append(z)
+            return z
+
+        return iterate(evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction)

@@ -1,0 +1,122 @@
+"""Correctors of Newton's kind: bordered, chord, Moore-Penrose, at a fixed parameter."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import evolve, field, frozen
+from attrs.validators import and_, ge, gt, le
+
+from continuation.arrays import Array
+from continuation.correctors.base import Correction, iterate
+from continuation.evaluation import Evaluator
+from continuation.linearization import Anchor, Linearization, linearize
+from continuation.tolerance import Tolerance
+
+
+@frozen
+class BorderedNewton:
+    """Keller's pseudo-arclength corrector: Newton on H(u) = 0, border . (u - predicted) = 0.
+
+    Parameters
+    ----------
+    reuse : float
+        A factorisation serves again while the increments shrink by this factor or better; 0 is Newton's method,
+        which factors at every iterate.
+    max_iterations : int
+    max_contraction : float
+        Increments that shrink by less end the attempt.
+
+    References
+    ----------
+    H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977; the reuse is the
+    simplified Newton method with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1).
+    """
+
+    reuse: float = field(default=0.1, validator=and_(ge(0), le(1)))
+    max_iterations: int = field(default=8, validator=gt(0))
+    max_contraction: float = field(default=0.6, validator=gt(0))
+
+    def correct(
+        self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
+    ) -> Correction:
+        """See `Corrector.correct`."""
+        anchor: Anchor | None = None
+        fresh_at = 0
+
+        def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
+            nonlocal anchor, fresh_at
+            if anchor is None or self.reuse == 0.0 or (contraction > self.reuse and k > fresh_at + 1):
+                anchor, fresh_at = Anchor(u.copy(), border, evaluator.factor(u, border)), k
+            return anchor.system.solve(-r, 0.0)
+
+        correction = iterate(
+            evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction
+        )
+        return evolve(correction, anchor=anchor if self.reuse > 0.0 else None)
+
+
+@frozen
+class Chord:
+    """The bordered iteration with the factorisation of the last accepted point: no factorisation of its own.
+
+    Converges linearly with a ratio proportional to the step, so steps are shorter and each costs one factorisation in
+    all, that of the tangent.
+    """
+
+    max_iterations: int = field(default=12, validator=gt(0))
+    max_contraction: float = field(default=0.4, validator=gt(0))
+
+    def correct(
+        self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
+    ) -> Correction:
+        """See `Corrector.correct`."""
+
+        def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
+            return point.solve(-r, 0.0, border)
+
+        return iterate(evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction)
+
+
+@frozen
+class MoorePenrose:
+    """Normal-flow Newton: the increment is -H'(u)^+ H(u), orthogonal to the kernel at the iterate.
+
+    With the default metric's weights in the inner product. It needs no hyperplane, and lands near the foot of the
+    perpendicular (Allgower and Georg, Chapter 3).
+
+    Parameters
+    ----------
+    max_iterations : int
+    max_contraction : float
+    """
+
+    max_iterations: int = field(default=8, validator=gt(0))
+    max_contraction: float = field(default=0.6, validator=gt(0))
+
+    def correct(
+        self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
+    ) -> Correction:
+        """See `Corrector.correct`."""
+
+        def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
+            return linearize(evaluator, u, point.weights, point.border, 0).solve(-r)
+
+        return iterate(evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction)
+
+
+@frozen
+class NaturalParameter:
+    """Newton at the predicted value of the parameter: the border is e_{N+1}. Fails at folds, as it must."""
+
+    reuse: float = field(default=0.1, validator=and_(ge(0), le(1)))
+    max_iterations: int = field(default=8, validator=gt(0))
+    max_contraction: float = field(default=0.6, validator=gt(0))
+
+    def correct(
+        self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
+    ) -> Correction:
+        """See `Corrector.correct`."""
+        unit = np.zeros_like(predicted)
+        unit[-1] = 1.0
+        newton = BorderedNewton(self.reuse, self.max_iterations, self.max_contraction)
+        return newton.correct(evaluator, point, predicted, unit, tolerance)

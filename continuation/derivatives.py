@@ -1,0 +1,96 @@
+"""Derivatives of a homotopy that gives only its residual, and the check of one that gives more."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array, Matrix
+
+
+@frozen
+class Derivative:
+    """A way to get (H_y, H_lam), what it costs in residual evaluations, and its name."""
+
+    function: Callable[[Array, float], tuple[Matrix, Array]]
+    evaluations: int
+    source: str
+
+    def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) at a point."""
+        return self.function(y, lam)
+
+
+def _split(full: Array) -> tuple[Array, Array]:
+    return full[:, :-1], full[:, -1]
+
+
+def by_jets(residual: Callable[..., Any]) -> Callable[[Array, float], tuple[Array, Array]]:
+    """Exact derivatives by truncated Taylor arithmetic, `continuation.jets`."""
+    from continuation import jets
+
+    def function(y: Array, lam: float) -> tuple[Array, Array]:
+        return _split(jets.jacobian(lambda u: residual(u[:-1], u[-1]), np.append(y, lam)))
+
+    return function
+
+
+def by_complex_step(residual: Callable[..., Any]) -> Callable[[Array, float], tuple[Array, Array]]:
+    """Derivatives to round-off by the complex step (Squire and Trapp, SIAM Review 40, 1998)."""
+
+    def function(y: Array, lam: float) -> tuple[Array, Array]:
+        u = np.append(y, lam).astype(complex)
+        columns = []
+        for i in range(u.size):
+            u[i] += 1e-200j
+            columns.append(np.asarray(residual(u[:-1], u[-1])).imag * 1e200)
+            u[i] = u[i].real
+        return _split(np.stack(columns, axis=1))
+
+    return function
+
+
+def by_differences(residual: Callable[..., Any]) -> Callable[[Array, float], tuple[Array, Array]]:
+    """Derivatives by central differences, step eps^(1/3) relative: about ten digits."""
+
+    def function(y: Array, lam: float) -> tuple[Array, Array]:
+        u = np.append(y, lam)
+        columns = []
+        for i in range(u.size):
+            h = 6e-6 * max(1.0, abs(u[i]))
+            ahead, behind = u.copy(), u.copy()
+            ahead[i] += h
+            behind[i] -= h
+            difference = np.asarray(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
+            columns.append(difference / (ahead[i] - behind[i]))
+        return _split(np.stack(columns, axis=1))
+
+    return function
+
+
+def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> Derivative:
+    """The best derivative that a residual allows: jets, else complex step, else central differences.
+
+    Each is tried at the start, and believed when it agrees with differences there, since a residual may well run on
+    complex numbers and be wrong on them (``abs``, ``np.real``).
+    """
+    y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
+    m = y.size + 1
+    with np.errstate(all="ignore"):
+        reference = np.column_stack(by_differences(residual)(y, lam))
+    for name, maker, cost in (("jets", by_jets, -(-m // 128)), ("complex step", by_complex_step, m)):
+        try:
+            function = maker(residual)
+            with warnings.catch_warnings(), np.errstate(all="ignore"):
+                warnings.simplefilter("error", np.exceptions.ComplexWarning)
+                found = np.column_stack(function(y, lam))
+        except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
+            continue
+        scale = 1.0 + float(np.abs(reference).max())
+        if found.shape == reference.shape and np.allclose(found, reference, rtol=1e-4, atol=1e-4 * scale):
+            return Derivative(function, cost, name)
+    return Derivative(by_differences(residual), 2 * m, "differences")

@@ -1,0 +1,177 @@
+"""Where a path ends: landing on the target, ends that are singular, returns to the start."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation import guards
+from continuation.arrays import Array
+from continuation.arrival import crossing, cut
+from continuation.attempt import Stepper, Trial
+from continuation.endgame import End, endgame, touching
+from continuation.evaluation import EvaluationError
+from continuation.linearization import Linearization
+from continuation.location import Arc
+from continuation.metric import share
+from continuation.path import Kind
+from continuation.predictors import Prediction, SupportsSegment
+from continuation.state import State
+from continuation.status import Status
+
+ENDGAME = 1e-2
+"""How near to the target, as a fraction of the whole way, a singular end is looked for."""
+
+SINGULAR = 1e-10
+"""Share of the parameter in the tangent below which an end counts as singular in the parameter."""
+
+
+@frozen(eq=False)
+class Ending:
+    """An accepted arc, cut where the path ends on it if it does; `limit` is set where the end is singular."""
+
+    arc: Arc
+    kind: int = Kind.REGULAR
+    status: Status = Status.TRACING
+    limit: End | None = None
+
+
+@frozen(eq=False)
+class Ends:
+    """The target of a trace and the ways to end on it."""
+
+    stepper: Stepper
+    target: float | None
+
+    @property
+    def interior(self) -> bool:
+        """Whether the path lives inside a domain whose boundary may hold the target."""
+        return self.stepper.max_step is not None
+
+    # -- before a step ----------------------------------------------------------------------------------------
+
+    def land(self, point: Linearization, prediction: Prediction, h: float, tried: float) -> Trial | None:
+        """A landing on the target, if the prediction reaches it; a Trial that failed where landing did."""
+        guess = self._guess(point, prediction, h, tried)
+        if guess is None:
+            return None
+        trial = self.stepper.land(point, *guess)
+        arrival = trial.arrival
+        if arrival is None or trial.angle > 1.0 or share(arrival.weights, arrival.tangent) <= SINGULAR:
+            return evolve(trial, landed=False)
+        return trial
+
+    def _guess(
+        self, point: Linearization, prediction: Prediction, h: float, tried: float
+    ) -> tuple[Array, float] | None:
+        """The predicted point with the target's parameter value, and its step, if that is within reach."""
+        if self.target is None:
+            return None
+        gap = self.target - point.lam
+        if gap * point.tangent[-1] <= 0.0:
+            return None
+        if self.interior and abs(gap) > 0.3 * abs(tried - self.target):
+            return None
+        # An interior path creeps towards a target on its boundary, so there a longer jump is tried, now and then.
+        low, high = 0.0, min(prediction.reach, 10.0 * h if self.interior else h)
+        try:
+            if (prediction(high)[-1] - self.target) * gap < 0.0:
+                return None
+            while high - low > 1e-12 * high:
+                middle = 0.5 * (low + high)
+                if (prediction(middle)[-1] - self.target) * gap < 0.0:
+                    low = middle
+                else:
+                    high = middle
+            guess = prediction(high).copy()
+        except EvaluationError:
+            return None
+        guess[-1] = self.target
+        if self.stepper.max_step is not None and self.stepper.max_step(point.u, guess - point.u) < 0.9:
+            return None
+        return guess, high
+
+    def touches(self, point: Linearization, prediction: Prediction) -> End | None:
+        """The end where a series sees the parameter touch its target in a fold: a half-power end, found as a fold.
+
+        The far side of the fold lies outside the domain of an interior homotopy, but the formulas mostly do not mind;
+        where they do, the endgame is still there.
+        """
+        if self.target is None or not hasattr(prediction, "segment"):
+            return None
+        assert isinstance(prediction, SupportsSegment)
+        fold = touching(prediction, point, self.target)
+        if fold is None:
+            return None
+        far = min(2.0 * fold, prediction.reach)
+        trial = evolve(self.stepper, max_step=None).attempt(point, prediction, far)
+        if trial.arrival is None:
+            return None
+        arc = Arc(point, trial.arrival, point.border, prediction.segment(far, trial.arrival.u))
+        try:
+            end = crossing(self.stepper.evaluator, arc, self.target, self.stepper.tolerance)
+            return None if end is None else self._limit(arc, end, self.target)
+        except EvaluationError:
+            return None
+
+    def wants_endgame(self, point: Linearization, state: State) -> bool:
+        """Whether the path is so near the target that a singular end is to be looked for.
+
+        An interior path creeps towards a singular end on its boundary; any path may have failed to land. Asked for
+        again only when the parameter has come nearer by a good factor.
+        """
+        if self.target is None or state.index == 0:
+            return False
+        gap, whole = point.lam - self.target, float(state.origin.u[-1]) - self.target
+        near = abs(gap) <= ENDGAME * abs(whole) and gap * point.tangent[-1] < 0.0
+        failed = state.tried == point.lam or self.interior
+        return near and failed and abs(gap) <= 0.05 * abs(state.ended - self.target)
+
+    def endgame(self, point: Linearization) -> End | None:
+        """The limit at the target by the endgame."""
+        assert self.target is not None
+        stepper = self.stepper
+        try:
+            return endgame(stepper.evaluator, point, self.target, stepper.tolerance, stepper.max_step)
+        except EvaluationError:
+            return None
+
+    # -- after a step -----------------------------------------------------------------------------------------
+
+    def on(self, arc: Arc, state: State) -> Ending:
+        """Where the path ends on an accepted arc: at the target, at its own start, or beyond the start's parameter."""
+        evaluator, tolerance = self.stepper.evaluator, self.stepper.tolerance
+        ends = []
+        if self.target is not None:
+            ends.append((self.target, Kind.TARGET, Status.REACHED_TARGET))
+            if self.interior and state.index > 0:
+                ends.append((float(state.origin.u[-1]), Kind.REGULAR, Status.TURNED_BACK))
+        for value, kind, status in ends:
+            point = crossing(evaluator, arc, value, tolerance)
+            if point is not None:
+                limit = self._limit(arc, point, value)
+                u: Array = np.append(point.u[:-1], value) if limit is None else limit.u
+                end = Linearization(u, point.weights, point.anchor, point.tangent, point.orientation)
+                return Ending(cut(arc, end), kind, status, limit)
+        origin = state.origin
+        if state.index > 0 and guards.closes(evaluator, origin, state.origin_weights, arc, tolerance):
+            b = arc.b
+            end = Linearization(origin.u, b.weights, b.anchor, origin.tangent, b.orientation)
+            return Ending(cut(arc, end), Kind.REGULAR, Status.CLOSED)
+        return Ending(arc)
+
+    def _limit(self, arc: Arc, end: Linearization, value: float) -> End | None:
+        """The end of the arc where the parameter stands still on its value; None where it does not, or none is found.
+
+        In a simple fold the end is known to round-off. Where the parameter stands still to a higher order it is known
+        to a root of round-off only, and the endgame says more. Which it is, is seen from the beginning of the arc:
+        lam - value ~ sigma^w, so the ratio below is near 1/w.
+        """
+        if share(end.weights, end.tangent) > SINGULAR:
+            return None
+        sigma = float(np.dot(arc.border, end.u - arc.a.u))
+        ratio = abs(arc.a.lam - value) / abs(sigma * arc.a.tangent[-1])
+        if (arc.a.lam - value) * (arc.b.lam - value) >= 0.0 and 0.4 < ratio < 0.8:
+            return End(np.append(end.u[:-1], value), abs(end.lam - value) ** 0.5, 2)
+        stepper = self.stepper
+        return endgame(stepper.evaluator, arc.a, value, stepper.tolerance, stepper.max_step)

@@ -1,0 +1,238 @@
+"""What comes back from a trace: steps, events, counts, and the path as arrays and as a function of arclength."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from attrs import define, field, frozen
+
+from continuation.arrays import Array
+from continuation.evaluation import Counts
+from continuation.segment import Segment, parameter_at
+from continuation.status import Status
+
+
+class Kind:
+    """What a stored point is. Numbers are stored in archives: they are added to, never renumbered."""
+
+    REGULAR = 0
+    START = 1
+    TARGET = 2
+    TURNING_POINT = 3
+    BRANCH_POINT = 4
+    EVENT = 5
+
+    NAMES = ("regular", "start", "target", "turning_point", "branch_point", "event")
+
+
+@frozen(eq=False)
+class Step:
+    """One accepted point of the path and how it was reached.
+
+    Attributes
+    ----------
+    index : int
+        0 at the start.
+    u, tangent : ndarray, shape (N + 1,)
+    arclength : float
+        Accumulated in the metric of the trace.
+    step_length : float
+        The predictor's step that led here; 0 at the start.
+    residual_norm : float
+        Largest component of the residual, evaluated at u.
+    orientation : int
+        Sign of det [[H'], [tangent']].
+    kind : int
+        One of `Kind`.
+    corrector_iterations, rejections : int
+        Of the accepted attempt, and the attempts before it.
+    contraction, distance, angle, share : float
+        First ratio of the corrector's increments; length of its correction; angle (radians) between the tangents; the
+        parameter's share of the tangent.
+    segment : Segment or None
+        The path from the point before to this one.
+    weights : ndarray or None
+        The metric in which that was measured.
+    observed : mapping
+        Extra scalars of the homotopy.
+    """
+
+    index: int
+    u: Array
+    tangent: Array
+    arclength: float
+    step_length: float = 0.0
+    residual_norm: float = 0.0
+    orientation: int = 0
+    kind: int = Kind.REGULAR
+    corrector_iterations: int = 0
+    rejections: int = 0
+    contraction: float = 0.0
+    distance: float = 0.0
+    angle: float = 0.0
+    share: float = 0.0
+    segment: Segment | None = None
+    weights: Array | None = None
+    observed: Mapping[str, float] = field(factory=dict)
+
+    @property
+    def y(self) -> Array:
+        """The unknowns, shape (N,)."""
+        return self.u[:-1]
+
+    @property
+    def lam(self) -> float:
+        """The parameter."""
+        return float(self.u[-1])
+
+
+@frozen(eq=False)
+class LocatedEvent:
+    """A point of the path at which a monitor vanishes, corrected onto the path and polished.
+
+    Attributes
+    ----------
+    name : str
+    kind : int
+        One of `Kind`.
+    arclength : float
+    u, tangent : ndarray, shape (N + 1,)
+    residual_norm : float
+        Of H at u.
+    monitor : float
+        The monitor's value at u: how well the event is located.
+    orientation : int
+    step : int
+        Index of the step in which it lies (from step - 1 to step).
+    """
+
+    name: str
+    kind: int
+    arclength: float
+    u: Array
+    tangent: Array
+    residual_norm: float
+    monitor: float
+    orientation: int
+    step: int
+
+    @property
+    def y(self) -> Array:
+        """The unknowns, shape (N,)."""
+        return self.u[:-1]
+
+    @property
+    def lam(self) -> float:
+        """The parameter."""
+        return float(self.u[-1])
+
+
+@define(eq=False)
+class Path:
+    """A traced path.
+
+    Attributes
+    ----------
+    steps : list of Step
+        The accepted points, the start first.
+    events : list of LocatedEvent
+        In order along the path.
+    status : Status
+    message : str
+        The status' sentence with the particulars of this path.
+    counts : Counts
+    seconds : float
+        Wall-clock time.
+    references : tuple of str
+        BibTeX of the homotopy and of the parts that traced it; see `continuation.cite`.
+    end_error : float or None
+        Where the end is singular in the parameter: an estimate of its largest absolute error.
+    winding_number : int or None
+        There: the path is a power series in |lam - target|^(1 / winding_number).
+    """
+
+    steps: list[Step] = field(factory=list)
+    events: list[LocatedEvent] = field(factory=list)
+    status: Status = Status.TRACING
+    message: str = ""
+    counts: Counts = field(factory=Counts)
+    seconds: float = 0.0
+    references: tuple[str, ...] = ()
+    end_error: float | None = None
+    winding_number: int | None = None
+
+    def __len__(self) -> int:
+        return len(self.steps)
+
+    def __repr__(self) -> str:
+        end = f", lam {self.steps[0].lam:g} -> {self.steps[-1].lam:g}" if self.steps else ""
+        return f"<Path {self.status.name}: {len(self.steps)} points{end}, {len(self.events)} events>"
+
+    @property
+    def u(self) -> Array:
+        """All points, shape (m, N + 1)."""
+        return np.array([step.u for step in self.steps])
+
+    @property
+    def y(self) -> Array:
+        """The unknowns, shape (m, N)."""
+        return self.u[:, :-1]
+
+    @property
+    def lam(self) -> Array:
+        """The parameter, shape (m,)."""
+        return self.u[:, -1]
+
+    @property
+    def arclength(self) -> Array:
+        """Accumulated arclength in the metric of the trace, shape (m,)."""
+        return np.array([step.arclength for step in self.steps])
+
+    @property
+    def tangents(self) -> Array:
+        """Unit tangents, shape (m, N + 1)."""
+        return np.array([step.tangent for step in self.steps])
+
+    @property
+    def endpoint(self) -> Step:
+        """The last point."""
+        return self.steps[-1]
+
+    @property
+    def turning_points(self) -> list[LocatedEvent]:
+        """The located turning points of the parameter."""
+        return [event for event in self.events if event.kind == Kind.TURNING_POINT and event.name == "turning point"]
+
+    def __call__(self, s: float | Array) -> Array:
+        """The path at arclength s: dense output, shape (N + 1,) or (k, N + 1).
+
+        Raises
+        ------
+        ValueError
+            If s lies outside [0, arclength[-1]].
+        """
+        wanted = np.asarray(s, dtype=float)
+        knots = [step.arclength for step in self.steps]
+        if wanted.size and (wanted.min() < knots[0] or wanted.max() > knots[-1] * (1 + 1e-15)):
+            found = f"{wanted.min():g} .. {wanted.max():g}"
+            raise ValueError(f"s: expected values in [{knots[0]:g}, {knots[-1]:g}], found {found}")
+        points = [self._at(float(value), knots) for value in np.atleast_1d(wanted)]
+        return np.array(points) if wanted.ndim else points[0]
+
+    def _at(self, s: float, knots: list[float]) -> Array:
+        i = min(max(bisect_right(knots, s), 1), len(knots) - 1)
+        if len(knots) == 1:
+            return self.steps[0].u
+        segment, weights = self.steps[i].segment, self.steps[i].weights
+        fraction = (s - knots[i - 1]) / (knots[i] - knots[i - 1])
+        if segment is None:
+            return (1 - fraction) * self.steps[i - 1].u + fraction * self.steps[i].u
+        # An archive keeps no metric: there the fraction itself serves, right at the knots and smooth in between.
+        return segment.at(fraction if weights is None else parameter_at(segment, weights, fraction))
+
+    def summary(self) -> dict[str, Any]:
+        """The end in numbers, for tables and logs."""
+        return {"status": self.status.name, "points": len(self), "events": len(self.events), **self.counts.as_dict()}

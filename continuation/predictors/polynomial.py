@@ -1,0 +1,164 @@
+"""Predictors that pass a polynomial through past points and tangents: no evaluation of the homotopy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import field, frozen
+from attrs.validators import ge
+
+from continuation.arrays import Array
+from continuation.evaluation import Evaluator
+from continuation.linearization import Linearization
+from continuation.predictors.base import Knot, unrolled
+
+
+@frozen(eq=False)
+class Interpolant:
+    """Newton's form of the polynomial through the current point (h = 0) and past data, with coincident nodes."""
+
+    nodes: Array
+    coefficients: Array
+    reach: float = math.inf
+
+    def __call__(self, h: float) -> Array:
+        """Horner's scheme on the divided differences."""
+        value: Array = self.coefficients[-1]
+        for node, coefficient in zip(self.nodes[-2::-1], self.coefficients[-2::-1]):
+            value = coefficient + (h - node) * value
+        return value
+
+
+def interpolate(nodes: Sequence[float], values: Sequence[Array], slopes: Sequence[Array | None]) -> Interpolant:
+    """Divided differences for Hermite data; a node with a slope counts twice.
+
+    Nodes may come in any order, but a repeated node must follow its twin, which is how they are laid out here.
+    """
+    z: list[float] = []
+    table: list[Array] = []
+    first: list[Array | None] = []
+    for node, value, slope in zip(nodes, values, slopes):
+        for copy in range(1 if slope is None else 2):
+            z.append(node)
+            table.append(value)
+            first.append(slope if copy else None)
+    coefficients = [table[0]]
+    for level in range(1, len(z)):
+        following = []
+        for i in range(len(z) - level):
+            slope = first[i + 1]
+            if level == 1 and slope is not None:
+                following.append(slope)
+            else:
+                following.append((table[i + 1] - table[i]) / (z[i + level] - z[i]))
+        table = following
+        coefficients.append(table[0])
+    return Interpolant(np.array(z), np.array(coefficients))
+
+
+@frozen(eq=False)
+class Line:
+    """u + h v."""
+
+    u: Array
+    v: Array
+    reach: float = math.inf
+
+    def __call__(self, h: float) -> Array:
+        """The point at h."""
+        point: Array = self.u + h * self.v
+        return point
+
+
+@frozen
+class Tangent:
+    """Euler's predictor, u + h v."""
+
+    memory: int = field(default=1, init=False)
+    order: int = field(default=1, init=False)
+
+    def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Line:
+        """The tangent line."""
+        return Line(point.u, point.tangent)
+
+
+@frozen
+class Secant:
+    """The line through the last two points; the tangent at the start."""
+
+    memory: int = field(default=2, init=False)
+    order: int = field(default=1, init=False)
+
+    def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Line:
+        """The secant line, with unit speed in the metric of the point."""
+        knots = unrolled(point, history)
+        if len(knots) < 2:
+            return Line(point.u, point.tangent)
+        sigma, past, _ = knots[1]
+        return Line(point.u, (past - point.u) / sigma)
+
+
+@frozen
+class Hermite:
+    """The cubic through the last two points and their tangents; Euler's step at the start.
+
+    The parameter is the pseudo-arclength of the current point. Order 3, no cost beyond the tangents that the engine
+    has anyway.
+    """
+
+    memory: int = field(default=2, init=False)
+    order: int = field(default=3, init=False)
+
+    def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Interpolant | Line:
+        """The Hermite cubic, read ahead of the current point."""
+        knots = unrolled(point, history)
+        if len(knots) < 2:
+            return Line(point.u, point.tangent)
+        nodes, values, slopes = zip(*knots[:2])
+        return interpolate(nodes, values, slopes)
+
+
+@frozen
+class Polynomial:
+    """A polynomial of up to `degree` through past points, with the current tangent.
+
+    The degree actually used is the one whose last two terms at the length of the previous step fall off (a high
+    degree on a rough history is worse than none), so the order varies with the path.
+    """
+
+    degree: int = field(default=4, validator=ge(2))
+
+    @property
+    def memory(self) -> int:
+        """One knot a degree: the tangent counts as one condition."""
+        return self.degree
+
+    @property
+    def order(self) -> int:
+        """The highest order used."""
+        return self.degree
+
+    def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Interpolant | Line:
+        """The interpolant of the chosen degree."""
+        knots = unrolled(point, history)
+        if len(knots) < 2:
+            return Line(point.u, point.tangent)
+        nodes, values, slopes = zip(*knots)
+        full = interpolate(nodes, values, [slopes[0], *(None for _ in nodes[1:])])
+        keep = _falling(full, -nodes[1], point.weights)
+        return Interpolant(full.nodes[:keep], full.coefficients[:keep])
+
+
+def _falling(full: Interpolant, step: float, weights: Array) -> int:
+    """How many Newton terms to keep: up to the first that is not smaller than the one before it."""
+    factor, previous = 1.0, math.inf
+    for k, coefficient in enumerate(full.coefficients):
+        if k:
+            factor *= abs(step - full.nodes[k - 1])
+        size = factor * math.sqrt(float(np.dot(weights * coefficient, coefficient)))
+        if k > 1 and size >= previous:
+            return k
+        previous = size if k else math.inf
+    return len(full.coefficients)

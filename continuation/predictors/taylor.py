@@ -1,0 +1,148 @@
+"""The Taylor predictor: the path's own power series, every coefficient from one factorisation.
+
+The asymptotic numerical method (Cochelin, Computers & Structures 53, 1994) in the pseudo-arclength of the current
+metric: u(s) with border . (u(s) - u(0)) = s, border = W tangent.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import field, frozen
+from attrs.validators import and_, ge, gt, lt, optional
+
+from continuation.arrays import Array
+from continuation.evaluation import EvaluationError, Evaluator
+from continuation.homotopy import SupportsTaylor
+from continuation.linearization import Linearization, linearize, sharpened
+from continuation.pade import Pade, best
+from continuation.predictors.base import Knot
+from continuation.segment import SeriesSegment
+from continuation.tolerance import Tolerance
+
+ORDERS = (8, 30)
+"""Bounds of the orders that the cost model chooses from: beyond 30 round-off in the last terms eats the gain."""
+
+
+HORIZON = 100.0
+"""The longest step, in sizes of the point."""
+
+
+@frozen(eq=False)
+class Series:
+    """The truncated series, and the length for which it is trusted."""
+
+    coefficients: Array
+    reach: float
+
+    def __call__(self, h: float) -> Array:
+        """The point at pseudo-arclength h, by Horner's rule."""
+        value: Array = self.coefficients[-1].copy()
+        for coefficient in self.coefficients[-2::-1]:
+            value *= h
+            value += coefficient
+        return value
+
+    def segment(self, h: float, end: Array) -> SeriesSegment:
+        """The path up to the corrected point at pseudo-arclength h."""
+        return SeriesSegment(self, h, end - self(h), len(self.coefficients))
+
+    def derivative(self, h: float) -> Array:
+        """du/ds at pseudo-arclength h."""
+        order = len(self.coefficients) - 1
+        value: Array = order * self.coefficients[-1]
+        for k in range(order - 1, 0, -1):
+            value *= h
+            value += k * self.coefficients[k]
+        return value
+
+
+def best_order(n: int, accuracy: float) -> int:
+    """The order that minimises work for a length of path: (f + K) solves a step, a step proportional to accuracy^(1/K).
+
+    f is what a factorisation and the rest of a step cost in solves, about 4 + n/60 for dense matrices of order n
+    (measured,
+    docs: "choosing"). Setting the derivative of (f + K) exp(L/K), L = -ln accuracy, to zero gives K^2 = L (K + f).
+    """
+    f = 4.0 + n / 60.0
+    L = -math.log(accuracy)
+    best = 0.5 * (L + math.sqrt(L * L + 4.0 * L * f))
+    return min(max(round(best), ORDERS[0]), ORDERS[1])
+
+
+def series_reach(coefficients: Array, accuracy: float) -> float:
+    """The step at which the last two terms reach `accuracy`, relative to the point's components (a mixed measure).
+
+    Two terms, since one may vanish by symmetry; the shorter answer counts.
+    """
+    measure = Tolerance(absolute=accuracy, relative=accuracy).measure
+    order = len(coefficients) - 1
+    # A polynomial path has no last terms; its series is still not asked about the other end of the world.
+    reach = HORIZON * (1.0 + float(np.abs(coefficients[0]).max())) / float(np.abs(coefficients[1]).max())
+    for k in (order - 1, order):
+        size = measure(coefficients[k], coefficients[0])
+        if size > 0.0:
+            reach = min(reach, size ** (-1.0 / k))
+    return reach
+
+
+@frozen
+class Taylor:
+    """Series prediction of any order, with the plug-in's own coefficients or those of `continuation.jets`.
+
+    Parameters
+    ----------
+    order : int, optional
+        Chosen by `best_order` where not given.
+    accuracy : float
+        Size of the last terms, relative to the components of the point, at the end of a step. The corrector's first
+        increment brings an error of this size to its square, so that it need not be the tolerance of the trace; the
+        dense output between points has about this accuracy times 2^-order in the middle of a step.
+    safety : float
+        Factor on the reach.
+    rational : bool
+        Pade approximants with a common denominator: a larger range, ended before a pole.
+    """
+
+    order_wanted: int | None = field(default=None, validator=optional(ge(2)), alias="order")
+    accuracy: float = field(default=1e-5, validator=and_(gt(0.0), lt(1.0)))
+    safety: float = field(default=0.95, validator=and_(gt(0.0)))
+    rational: bool = False
+    memory: int = field(default=1, init=False)
+
+    @property
+    def order(self) -> int:
+        """The order given, or the lowest that is ever chosen."""
+        return self.order_wanted if self.order_wanted is not None else ORDERS[0]
+
+    def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series | Pade:
+        """The coefficients at the point, with the factorisation at hand."""
+        order = self.order_wanted or best_order(point.u.size, self.accuracy)
+        try:
+            coefficients = coefficients_at(evaluator, sharpened(evaluator, point), order)
+        except EvaluationError:
+            exact = linearize(evaluator, point.u, point.weights, point.border, 0)
+            point = Linearization(point.u, point.weights, exact.anchor, point.tangent, point.orientation)
+            coefficients = coefficients_at(evaluator, point, order)
+        series = Series(coefficients, self.safety * series_reach(coefficients, self.accuracy))
+        if not self.rational:
+            return series
+        rational = best(coefficients, point.weights, self.accuracy, series.reach, self.safety)
+        return series if rational is None else rational
+
+
+def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> Array:
+    """Coefficients of the path at a point, shape (order + 1, N + 1)."""
+    homotopy = evaluator.homotopy
+    if isinstance(homotopy, SupportsTaylor):
+        coefficients: Array = homotopy.taylor(point, order)
+    else:
+        from continuation import jets
+
+        evaluator.counts.residuals += order - 1
+        coefficients = jets.path_series(homotopy.residual, point.u, point.tangent, point.solve, order)
+    if not np.isfinite(coefficients.sum()):
+        raise EvaluationError("the Taylor coefficients are not finite")
+    return coefficients

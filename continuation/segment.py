@@ -1,0 +1,151 @@
+"""The path between two accepted points, as a function of t in [0, 1]: cubic Hermite, or the predictor's own series."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+
+
+class Segment(Protocol):
+    """A smooth curve between two accepted points."""
+
+    @property
+    def inside(self) -> tuple[float, ...]:
+        """Where in (0, 1) to sample it so that no oscillation of it is missed."""
+        ...
+
+    def at(self, t: float) -> Array:
+        """The point at t in [0, 1], shape (N + 1,)."""
+        ...
+
+    def derivative(self, t: float) -> Array:
+        """Its derivative with respect to t, shape (N + 1,)."""
+        ...
+
+    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
+        """The part up to the point `end` of the path, at pseudo-arclength sigma, where the tangent is v."""
+        ...
+
+
+@frozen(eq=False)
+class HermiteSegment:
+    """The cubic through two points with given derivatives with respect to t."""
+
+    u0: Array
+    u1: Array
+    d0: Array
+    d1: Array
+
+    @property
+    def inside(self) -> tuple[float, ...]:
+        """Quarters: the derivative of a cubic changes sign twice at most."""
+        return (0.25, 0.5, 0.75)
+
+    def at(self, t: float) -> Array:
+        """The cubic at t."""
+        chord = self.u1 - self.u0
+        a = self.d0 - chord
+        b = chord - self.d1
+        point: Array = self.u0 + t * chord + t * (1.0 - t) * ((1.0 - t) * a + t * b)
+        return point
+
+    def derivative(self, t: float) -> Array:
+        """Its derivative at t."""
+        chord = self.u1 - self.u0
+        a = self.d0 - chord
+        b = chord - self.d1
+        slope: Array = chord + (1.0 - t) * (1.0 - 3.0 * t) * a + t * (2.0 - 3.0 * t) * b
+        return slope
+
+    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
+        """The cubic to the new end."""
+        return hermite(self.u0, self.d0, end, v, border)
+
+
+_SIXTEENTHS = tuple(k / 16 for k in range(1, 16))
+
+
+class Curve(Protocol):
+    """A series in pseudo-arclength, trusted up to `reach`."""
+
+    @property
+    def reach(self) -> float:
+        """The longest step for which it is trusted."""
+        ...
+
+    def __call__(self, h: float) -> Array:
+        """The point at h."""
+        ...
+
+    def derivative(self, h: float) -> Array:
+        """du/dh."""
+        ...
+
+
+@frozen(eq=False)
+class SeriesSegment:
+    """The path between two accepted points by a series at the first, made to end on the second.
+
+    What the series leaves at the end is its first neglected term, so it is restored as t^power times the gap, which is
+    worth one more order in between.
+    """
+
+    curve: Curve
+    length: float
+    gap: Array
+    power: int
+
+    @property
+    def inside(self) -> tuple[float, ...]:
+        """Sixteenths: a series may turn several times within its range."""
+        return _SIXTEENTHS
+
+    def at(self, t: float) -> Array:
+        """The point at t."""
+        point: Array = self.curve(t * self.length) + t**self.power * self.gap
+        return point
+
+    def derivative(self, t: float) -> Array:
+        """Its derivative at t."""
+        slope: Array = self.length * self.curve.derivative(t * self.length)
+        return slope + self.power * t ** (self.power - 1) * self.gap
+
+    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
+        """The same series to the new end."""
+        return SeriesSegment(self.curve, sigma, end - self.curve(sigma), self.power)
+
+
+def hermite(u0: Array, v0: Array, u1: Array, v1: Array, border: Array) -> HermiteSegment:
+    """The Hermite segment in the pseudo-arclength parameter sigma = border . (u - u0), rescaled to [0, 1].
+
+    The derivative of the path with respect to sigma is v / (border . v), which needs no estimate of the arclength.
+    """
+    sigma = float(np.dot(border, u1 - u0))
+    return HermiteSegment(u0, u1, v0 * (sigma / float(np.dot(border, v0))), v1 * (sigma / float(np.dot(border, v1))))
+
+
+def parameter_at(segment: Segment, weights: Array, fraction: float) -> float:
+    """The t at which a fraction of the segment's arclength lies behind.
+
+    The speed is integrated by Gauss' rule on the piece, and t found by Newton's method, which that speed makes
+    quadratic; three rounds serve segments that turn by a right angle.
+    """
+    if fraction <= 0.0 or fraction >= 1.0:
+        return min(max(fraction, 0.0), 1.0)
+    x, w = np.polynomial.legendre.leggauss(8)
+
+    def speed(t: float) -> float:
+        slope = segment.derivative(t)
+        return float(np.sqrt(np.dot(weights * slope, slope)))
+
+    def behind(t: float) -> float:
+        return 0.5 * t * sum(float(b) * speed(0.5 * t * (float(a) + 1.0)) for a, b in zip(x, w))
+
+    goal, t = fraction * behind(1.0), fraction
+    for _ in range(5):
+        t = min(max(t - (behind(t) - goal) / max(speed(t), 1e-300), 0.0), 1.0)
+    return t

@@ -1,0 +1,46 @@
+"""How a path ended: one enum for the whole library, each value a sentence with the next move."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    """The end of a path. Numbers are stored in archives: they are added to, never renumbered."""
+
+    TRACING = 0
+    REACHED_TARGET = 1
+    STOPPED_AT_EVENT = 2
+    CLOSED = 3
+    TURNED_BACK = 4
+    DIVERGED = 5
+    STEP_TOO_SMALL = 6
+    LEFT_DOMAIN = 7
+    SINGULAR_START = 8
+    BUDGET_EXHAUSTED = 9
+    INTERRUPTED = 10
+    START_NOT_ON_PATH = 11
+
+    def __str__(self) -> str:
+        return _SENTENCES[self]
+
+    @property
+    def flag(self) -> str:
+        """The name in lower case, as CF flag_meanings want it."""
+        return self.name.lower()
+
+
+_SENTENCES = {
+    Status.TRACING: "The path is still being traced.",
+    Status.REACHED_TARGET: "The path reached the target.",
+    Status.STOPPED_AT_EVENT: "The path stopped at a terminal event.",
+    Status.CLOSED: "The path returned to its start with the same direction: it is a closed curve.",
+    Status.TURNED_BACK: "The path came back to the start's parameter value: it will not reach the target this way.",
+    Status.DIVERGED: "The path runs off to infinity while the parameter stalls: there is no end to reach.",
+    Status.STEP_TOO_SMALL: "The step fell below its floor; loosen `tolerance`, or look for a singular point near it.",
+    Status.LEFT_DOMAIN: "The path left the set on which the homotopy can be evaluated; check the formulas there.",
+    Status.SINGULAR_START: "The Jacobian [H_y, H_lam] has no full rank at the start; start elsewhere.",
+    Status.BUDGET_EXHAUSTED: "The budget is used up; raise `budget`, or resume from the archive.",
+    Status.INTERRUPTED: "The trace was interrupted; all accepted points are kept and it can be resumed.",
+    Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
+}

@@ -1,0 +1,44 @@
+"""When a correction is small enough: a mixed absolute and relative rule."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import field, frozen
+from attrs.validators import ge, gt
+
+from continuation.arrays import Array
+
+
+@frozen
+class Tolerance:
+    """An increment d of the point u is small if ``max_i |d_i| / (absolute + relative max(|u|_i, |u|_inf / 1e3)) <= 1``.
+
+    Not absolute alone (round-off makes 1e-10 unreachable at N = 1000), not relative alone (zero is a solution too).
+    A residual r counts as small if it is below `residual` in size; the default, infinity, judges by increments only,
+    since a residual has the units of the equations and an increment those of the unknowns.
+    """
+
+    absolute: float = field(default=1e-8, validator=gt(0))
+    relative: float = field(default=1e-8, validator=ge(0))
+    residual: float = field(default=float("inf"), validator=gt(0))
+
+    def measure(self, increment: Array, u: Array) -> float:
+        """The largest increment in units of the tolerance: small is <= 1."""
+        size = np.abs(u)
+        scale = self.absolute + self.relative * np.maximum(size, 1e-3 * float(size.max()))
+        return float((np.abs(increment) / scale).max())
+
+
+def as_tolerance(value: float | Tolerance) -> Tolerance:
+    """A Tolerance as it is, a number as both its absolute and its relative part.
+
+    Raises
+    ------
+    ValueError
+        If the number is not positive and finite.
+    """
+    if isinstance(value, Tolerance):
+        return value
+    if not (np.isfinite(value) and value > 0):
+        raise ValueError(f"tolerance: expected a positive finite number or a Tolerance, found {value!r}")
+    return Tolerance(absolute=float(value), relative=float(value))

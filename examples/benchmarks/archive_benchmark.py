@@ -1,0 +1,164 @@
+"""The archive, measured: cost a step, kills, many small paths.
+
+    python examples/benchmarks/archive_benchmark.py [cost] [kills] [small]
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import random
+import signal
+import statistics
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import xarray
+from attrs import evolve
+
+from continuation import Budget, Step, Tracer, trace
+from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
+from continuation.controllers import Bounds, Fixed
+from problems.bifurcation import Circle, ExponentialCosine
+
+
+class Diagonal:
+    """A homotopy of any size, for the sake of a tracer."""
+
+    target = None
+
+    def __init__(self, unknowns: int) -> None:
+        self.unknowns = unknowns
+
+    def start(self):
+        return np.zeros(self.unknowns), 0.0
+
+    def residual(self, y, lam):
+        return y - lam
+
+    def jacobian(self, y, lam):
+        return np.eye(self.unknowns), -np.ones(self.unknowns)
+
+
+def cost(folder: Path) -> None:
+    """Microseconds a step of the observer alone, in a loop that does nothing else."""
+    print("cost a step, microseconds: least and median of 7 runs; processor time")
+    for unknowns, steps in ((10, 40_000), (1000, 6_000)):
+        for durable in (False, True):
+            runs = [_cost(folder / f"{unknowns}{durable}{k}.h5", unknowns, steps, durable) for k in range(7)]
+            walls, processor = [run[0] for run in runs], min(run[1] for run in runs)
+            print(f"  N = {unknowns:<5} {'durable' if durable else 'default':<8} {min(walls):6.1f} "
+                  f"{statistics.median(walls):6.1f}; {processor:.1f}")
+
+
+def _cost(file: Path, unknowns: int, steps: int, durable: bool) -> tuple[float, float]:
+    tracer = Tracer(Diagonal(unknowns))
+    next(iter(tracer))
+    points = np.random.default_rng(0).random((steps, unknowns + 1))
+    states = [evolve(tracer.state, index=k) for k in range(steps)]
+    log = PathLog(file, durable=durable)
+    records = [Step(k, points[k], points[k], 0.1 * k, 0.1, 1e-9, 1, 0, 3, 0) for k in range(steps)]
+    log.step(tracer, records[0])
+    begin, busy = time.perf_counter(), time.process_time()
+    for state, record in zip(states[1:], records[1:]):
+        tracer.state = state
+        log.step(tracer, record)
+    seconds, busy = time.perf_counter() - begin, time.process_time() - busy
+    log.close()
+    file.unlink()
+    return 1e6 * seconds / (steps - 1), 1e6 * busy / (steps - 1)
+
+
+HOMOTOPY = ExponentialCosine(5)
+OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.01))}
+
+
+def _write(file: Path, rows: int) -> None:
+    trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), **OPTIONS)
+
+
+def kills(folder: Path, count: int = 200) -> None:
+    """kill -9 at random moments, from the first millisecond on; each file recovered, compared, and resumed."""
+    begin = time.perf_counter()
+    path = trace(HOMOTOPY, **OPTIONS)
+    seconds = time.perf_counter() - begin
+    generator, context, found = random.Random(1), multiprocessing.get_context("fork"), Counter()
+    for k in range(count):
+        file = folder / f"killed{k}.h5"
+        process = context.Process(target=_write, args=(file, generator.choice([1, 2, 7, 64])))
+        process.start()
+        time.sleep(generator.uniform(0.0, 0.1 if k % 4 == 0 else 1.5 * seconds))
+        os.kill(process.pid, signal.SIGKILL)
+        process.join()
+        found[_verdict(file, path)] += 1
+    print(f"kill -9, {count} times: " + ", ".join(f"{number} {what}" for what, number in found.most_common()))
+
+
+def _verdict(file: Path, path) -> str:
+    if not file.exists():
+        return "before there was a file"
+    try:
+        recover(file)
+    except ArchiveError as error:
+        return f"before the first commit ({str(error).partition(': ')[2]})"
+    with open_archive(file) as archive:
+        if not len(archive):
+            return "recovered without a row"
+        rows = archive.path(0)
+    exact = np.array_equal(rows.u, path.u[: len(rows)]) and np.array_equal(rows.arclength, path.arclength[: len(rows)])
+    if not exact:
+        return "WRONG ROWS"
+    if rows.status is path.status:
+        return "complete"
+    again = resume(file)
+    same = np.array_equal(again.u, path.u) and again.counts == path.counts and again.status is path.status
+    return "recovered to an exact prefix and resumed to the exact path" if same else "RESUMED WRONG"
+
+
+def small(folder: Path, count: int = 10_000) -> None:
+    """Ten thousand small paths in one file: how fast they are written, how large it is, how fast it is read."""
+    file = folder / "small.h5"
+    options = {"budget": Budget(steps=12)}
+    begin = time.perf_counter()
+    for _ in range(300):
+        trace(Circle(), **options)
+    bare = (time.perf_counter() - begin) / 300
+    begin = time.perf_counter()
+    with PathLog(file) as log:
+        for _ in range(count):
+            trace(Circle(), archive=log, **options)
+    each = (time.perf_counter() - begin) / count
+    print(f"{count} paths: {1e3 * each:.2f} ms a path, of which the archive takes {1e3 * (each - bare):.2f} ms")
+    with open_archive(file) as archive:
+        rows = archive.points.size
+    size = file.stat().st_size
+    print(f"  {rows} rows, {size / 2**20:.1f} MiB, {size / rows:.0f} bytes a row")
+    begin = time.perf_counter()
+    archive = open_archive(file)
+    opened = time.perf_counter()
+    longest = np.bincount(archive.points["path_index"], archive.points["step_length"] > 0)
+    grouped = time.perf_counter()
+    archive.path(count // 2)
+    read = time.perf_counter()
+    print(f"  ours: open {1e3 * (opened - begin):.1f} ms, group {1e3 * (grouped - opened):.1f} ms, "
+          f"one path {1e3 * (read - grouped):.1f} ms; {longest.max():.0f} steps at most")
+    archive.close()
+    for engine in ("h5netcdf", "netcdf4"):
+        begin = time.perf_counter()
+        with xarray.open_dataset(file, engine=engine) as data:
+            opened = time.perf_counter()
+            data.arclength.groupby(data.path_index).max().load()
+            grouped = time.perf_counter()
+        print(f"  xarray, {engine}: open {1e3 * (opened - begin):.0f} ms, "
+              f"group by path {1e3 * (grouped - opened):.0f} ms")
+
+
+if __name__ == "__main__":
+    wanted = sys.argv[1:] or ["cost", "kills", "small"]
+    with tempfile.TemporaryDirectory() as name:
+        for part in wanted:
+            {"cost": cost, "kills": kills, "small": small}[part](Path(name))

@@ -1,0 +1,71 @@
+"""Bratu's problem in one and two dimensions: the folds of the difference equations, at few factorisations."""
+
+import numpy as np
+import pytest
+
+from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TargetValue, trace
+from continuation.audit import audit
+from problems.bifurcation import Bratu1D, Bratu2D
+
+# n: lam and max u at the fold.
+INTERVAL = {
+    100: (3.513651506259, 1.186668404831),
+    200: (3.513785470018, 1.186798294404),
+    500: (3.513823435897, 1.186835106661),
+    1000: (3.513828894680, 1.186840399612),
+}
+SQUARE = {10: 6.795336259705, 20: 6.804690882680, 30: 6.806555879189, 50: 6.807546291652}
+# At n = 1000 to full precision, by an independent Newton method on Moore and Spence's system.
+FOLD_1000 = 3.5138288946800
+every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+
+
+def upper_branch(homotopy, lam, **options):
+    path = trace(homotopy, events=[TargetValue(lam, direction=-1)], **options)
+    assert path.status is Status.STOPPED_AT_EVENT
+    assert path.endpoint.lam == lam
+    (fold,) = path.turning_points
+    return path, fold
+
+
+@every_preset
+@pytest.mark.parametrize("n", INTERVAL)
+def test_the_fold_in_one_dimension(n, preset):
+    _, fold = upper_branch(Bratu1D(n), 1.0, preset=preset)
+    lam, height = INTERVAL[n]
+    assert fold.lam == pytest.approx(lam, abs=1e-12)
+    assert fold.y.max() == pytest.approx(height, abs=3e-12)
+
+
+def test_the_upper_branch_within_forty_factorisations():
+    path, fold = upper_branch(Bratu1D(1000), 0.99)
+    assert path.counts.factorizations <= 40
+    assert fold.lam == pytest.approx(FOLD_1000, abs=1e-12)
+
+
+@pytest.mark.parametrize("m", SQUARE)
+def test_the_fold_in_two_dimensions(m):
+    _, fold = upper_branch(Bratu2D(m), 2.0)
+    assert fold.lam == pytest.approx(SQUARE[m], abs=1e-11)
+
+
+def test_the_square_within_fifty_factorisations():
+    path, fold = upper_branch(Bratu2D(50), 1.99)
+    assert path.counts.factorizations <= 50
+    assert fold.lam == pytest.approx(SQUARE[50], abs=1e-11)
+    assert fold.y.max() == pytest.approx(1.390069754724, abs=1e-11)
+
+
+def test_the_number_of_steps_does_not_grow_with_the_grid():
+    lengths = [len(upper_branch(Bratu1D(n), 1.0)[0]) for n in (50, 500, 5000)]
+    assert max(lengths) <= 1.3 * min(lengths)
+
+
+def test_the_solution_is_symmetric_about_the_middle():
+    path, _ = upper_branch(Bratu1D(101), 1.0)
+    np.testing.assert_allclose(path.y, path.y[:, ::-1], rtol=0, atol=1e-10)
+
+
+def test_the_audit_agrees():
+    path, _ = upper_branch(Bratu1D(200), 1.0)
+    assert audit(Bratu1D(200), path).same

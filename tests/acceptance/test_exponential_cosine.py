@@ -1,0 +1,78 @@
+"""The exponential-cosine family, on which other tracers jump: the right end, turns and length, whatever the steps."""
+
+from math import inf
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
+from continuation.audit import arclength, audit
+from continuation.controllers import Bounds, Geometric
+from continuation.predictors import Tangent
+from problems.bifurcation import ExponentialCosine
+from problems.bifurcation.truth import exponential_cosine
+
+# n: x1 at the end, arclength, turning points of lam.
+TABLE = {
+    2: (1.1003509626909, 1.6199408163807, 0),
+    3: (0.37472756109156, 5.1124703543198, 4),
+    4: (0.42145547339476, 6.5195070281339, 4),
+    5: (1.5875828159969, 14.828190064503, 10),
+    6: (1.9949909313114, 17.260258578309, 12),
+    7: (2.3730945655736, 24.433767691728, 18),
+    8: (0.39859096762391, 48.712616148201, 24),
+}
+
+every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+
+
+@every_preset
+@pytest.mark.parametrize("longest", [inf, 1.0, 0.3, 0.1])
+@pytest.mark.parametrize("n", TABLE)
+def test_the_right_end_and_every_turning_point(n, preset, longest):
+    path = trace(
+        ExponentialCosine(n), preset=preset, controller=evolve(preset.controller, bounds=Bounds(maximum=longest))
+    )
+    x1, _, turns = TABLE[n]
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.lam == 1.0
+    assert path.endpoint.y[0] == pytest.approx(x1, abs=1e-10)
+    assert len(path.turning_points) == turns
+    expected = exponential_cosine.turning_points(n)
+    found = np.array([event.u for event in path.turning_points]).reshape(expected.shape)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
+
+
+@every_preset
+@pytest.mark.parametrize("n", [2, 3, 4, 5])
+def test_the_right_length(n, preset):
+    assert arclength(ExponentialCosine(n), trace(ExponentialCosine(n), preset=preset)) == pytest.approx(
+        TABLE[n][1], rel=1e-8
+    )
+
+
+@pytest.mark.parametrize("n", [6, 7, 8])
+def test_the_right_length_of_a_long_path(n):
+    assert arclength(ExponentialCosine(n), trace(ExponentialCosine(n))) == pytest.approx(TABLE[n][1], rel=1e-8)
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("n", [3, 5, 8])
+def test_the_audit_agrees(n, backwards):
+    found = audit(ExponentialCosine(n), trace(ExponentialCosine(n)), backwards=backwards)
+    assert found.same, found
+
+
+@pytest.mark.parametrize("n", [5, 6, 7, 8])
+def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
+    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric())
+    assert path.status is Status.REACHED_TARGET
+    assert len(path.turning_points) != TABLE[n][2]
+    assert not audit(ExponentialCosine(n), path).same
+
+
+def test_a_path_that_jumped_has_no_length():
+    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=Geometric())
+    with pytest.raises(ArithmeticError, match="are not joined"):
+        arclength(ExponentialCosine(5), path)

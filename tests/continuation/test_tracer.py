@@ -1,0 +1,331 @@
+"""The loop: every combination of parts, resuming bit for bit, and what is refused at the door."""
+
+from itertools import product
+from math import pi
+
+import numpy as np
+import pytest
+from attrs import evolve
+from scipy.sparse import diags_array
+
+from continuation import (
+    CONSERVATIVE,
+    DEFAULT,
+    FAST,
+    Budget,
+    Kind,
+    Status,
+    TargetValue,
+    Tracer,
+    TurningPoint,
+    from_functions,
+    trace,
+)
+from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Geometric, IterationCount
+from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
+from continuation.metric import Euclidean, Relative, RootMeanSquare, Weighted
+from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent
+from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
+
+PREDICTORS = [
+    Tangent(),
+    Secant(),
+    Hermite(),
+    Polynomial(2),
+    Polynomial(4),
+    RungeKutta(2),
+    RungeKutta(4),
+    AdamsBashforth(2),
+    AdamsBashforth(4),
+]
+CORRECTORS = [BorderedNewton(), BorderedNewton(reuse=0.0), Chord(), Broyden(), MoorePenrose()]
+CONTROLLERS = [
+    Fixed(Bounds(initial=0.2)),
+    Geometric(bounds=Bounds(minimum=1e-6, initial=0.25)),
+    IterationCount(),
+    AllgowerGeorg(),
+    Curvature(),
+]
+METRICS = [None, Euclidean(), Relative(floor=0.1), RootMeanSquare(), Weighted(np.array([2.0]), 0.5)]
+
+
+@pytest.mark.parametrize(
+    ("predictor", "corrector", "controller"), list(product(PREDICTORS, CORRECTORS, CONTROLLERS)), ids=repr
+)
+def test_every_combination_goes_round_the_circle(predictor, corrector, controller):
+    path = trace(Circle(), predictor=predictor, corrector=corrector, controller=controller, metric=Euclidean())
+    assert path.status is Status.CLOSED
+    assert [round(event.lam, 9) for event in path.turning_points] == [1.0, -1.0]
+    assert path.endpoint.arclength == pytest.approx(2.0 * pi, rel=1e-4)
+    assert np.abs(np.hypot(path.y[:, 0], path.lam) - 1.0).max() <= 1e-7
+
+
+@pytest.mark.parametrize(("predictor", "controller"), list(product(PREDICTORS, CONTROLLERS)), ids=repr)
+def test_the_natural_parameter_follows_what_does_not_turn(predictor, controller):
+    path = trace(Cusp(-0.7), predictor=predictor, corrector=NaturalParameter(), controller=controller)
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y, 1.0 + np.sqrt(0.7), rtol=1e-8)
+
+
+@pytest.mark.parametrize("metric", METRICS, ids=repr)
+@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+def test_every_metric_follows_the_cusp(metric, preset):
+    path = trace(Cusp(), metric=metric, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.u, (2.0, 6.0), rtol=1e-8)
+    assert len(path.turning_points) == 2
+
+
+# -- what a path is ---------------------------------------------------------------------------------------------
+
+
+def test_the_columns_of_a_path_agree():
+    path = trace(FreudensteinRoth())
+    m = len(path)
+    assert path.y.shape == (m, 2)
+    assert path.lam.shape == path.arclength.shape == (m,)
+    assert path.tangents.shape == path.u.shape == (m, 3)
+    assert path.steps[0].kind == Kind.START
+    assert path.endpoint.kind == Kind.TARGET
+    assert [step.index for step in path.steps] == list(range(m))
+    assert (np.diff(path.arclength) > 0).all()
+    assert all(step.residual_norm <= 1e-6 for step in path.steps)
+    assert all(0.0 <= step.share <= 1.0 for step in path.steps)
+    for before, after in zip(path.arclength, path.arclength[1:]):
+        assert before < after
+
+
+def test_tangents_are_of_unit_length_in_the_metric_and_in_the_kernel():
+    path = trace(FreudensteinRoth(), metric=Euclidean())
+    np.testing.assert_allclose(np.linalg.norm(path.tangents, axis=1), 1.0, rtol=1e-12)
+    for step in path.steps:
+        H_y, H_lam = FreudensteinRoth().jacobian(step.y, step.lam)
+        image = H_y @ step.tangent[:-1] + H_lam * step.tangent[-1]
+        assert np.abs(image).max() <= 1e-9 * np.abs(np.column_stack((H_y, H_lam))).max()
+
+
+def test_the_orientation_never_changes_without_a_branch_point():
+    path = trace(FreudensteinRoth())
+    # The end is landed on at a fixed parameter; its determinant may be left unknown.
+    assert {step.orientation for step in path.steps[:-1]} in ({1}, {-1})
+    for step in path.steps[:-1]:
+        H_y, H_lam = FreudensteinRoth().jacobian(step.y, step.lam)
+        whole = np.vstack((np.column_stack((H_y, H_lam)), step.tangent))
+        assert np.sign(np.linalg.det(whole)) == step.orientation
+
+
+def test_dense_output_is_close_to_the_path():
+    path = trace(Circle(), metric=Euclidean())
+    s = np.linspace(0.0, path.endpoint.arclength, 200)
+    np.testing.assert_allclose(np.hypot(*path(s).T), 1.0, rtol=0, atol=2e-4)
+    np.testing.assert_allclose(path(s), np.column_stack((np.cos(s), np.sin(s))), rtol=0, atol=5e-3)
+    np.testing.assert_array_equal(path(0.0), path.steps[0].u)
+    with pytest.raises(ValueError, match="s: expected values in"):
+        path(path.endpoint.arclength + 1.0)
+
+
+def test_the_iterator_yields_every_step_and_the_last():
+    tracer = Tracer(Cusp())
+    steps = list(tracer)
+    assert steps == tracer.path.steps
+    assert steps[-1].kind == Kind.TARGET
+    assert tracer.path.status is Status.REACHED_TARGET
+
+
+def test_an_iterator_left_early_leaves_a_consistent_path():
+    tracer = Tracer(Cusp())
+    for step in tracer:
+        if step.index == 3:
+            break
+    del step
+    assert len(tracer.path) == 4
+
+
+class Watcher:
+    def __init__(self):
+        self.seen = []
+        self.states = []
+
+    def step(self, tracer, step):
+        self.seen.append(("step", step.index))
+        self.states.append(tracer.state)
+
+    def event(self, tracer, event):
+        self.seen.append(("event", event.name))
+
+    def end(self, tracer):
+        self.seen.append(("end", tracer.path.status))
+
+
+def test_observers_see_all_of_it_in_order():
+    watcher = Watcher()
+    path = trace(Cusp(), observers=(watcher,))
+    assert [what for what in watcher.seen if what[0] == "step"] == [("step", k) for k in range(len(path))]
+    assert watcher.seen[-1] == ("end", Status.REACHED_TARGET)
+    assert sum(what[0] == "event" for what in watcher.seen) == len(path.events)
+    # An event comes before the step that holds it.
+    for event in path.events:
+        assert watcher.seen.index(("event", event.name)) < watcher.seen.index(("step", event.step))
+
+
+def test_accepted_and_rejected_are_counted():
+    path = trace(FreudensteinRoth())
+    assert path.counts.accepted == len(path) - 1
+    assert path.counts.rejected == sum(step.rejections for step in path.steps)
+
+
+# -- resuming ---------------------------------------------------------------------------------------------------
+
+ONE_AT_A_TIME = (
+    [{"predictor": predictor} for predictor in PREDICTORS]
+    + [{"corrector": corrector} for corrector in CORRECTORS]
+    + [{"controller": controller} for controller in CONTROLLERS]
+    + [{"metric": metric} for metric in METRICS]
+    + [{"preset": preset} for preset in (FAST, CONSERVATIVE)]
+)
+
+
+def assert_resumes_bit_for_bit(homotopy, **options):
+    watcher = Watcher()
+    path = trace(homotopy, observers=(watcher,), **options)
+    for k, state in enumerate(watcher.states[:-1]):
+        resumed = trace(homotopy, state=state, **options)
+        rest = path.steps[k + 1 :]
+        assert len(resumed.steps) == len(rest)
+        for mine, original in zip(resumed.steps, rest):
+            np.testing.assert_array_equal(mine.u, original.u)
+            np.testing.assert_array_equal(mine.tangent, original.tangent)
+            same = ("index", "arclength", "step_length", "residual_norm", "orientation", "kind", "rejections", "angle")
+            assert all(getattr(mine, name) == getattr(original, name) for name in same)
+        later = [event for event in path.events if event.step > k]
+        assert [event.name for event in resumed.events] == [event.name for event in later]
+        for mine, original in zip(resumed.events, later):
+            np.testing.assert_array_equal(mine.u, original.u)
+        assert resumed.status is path.status
+        # All but the one factorisation that restores the state was in the first trace too.
+        assert resumed.counts.accepted == len(rest)
+
+
+@pytest.mark.parametrize("options", ONE_AT_A_TIME, ids=repr)
+def test_a_resumed_circle_is_the_same_bit_for_bit(options):
+    assert_resumes_bit_for_bit(Circle(), events=[TargetValue(0.3, terminal=0)], **options)
+
+
+@pytest.mark.parametrize("preset", [FAST, DEFAULT], ids=lambda preset: preset.name)
+def test_a_resumed_path_with_rejections_is_the_same_bit_for_bit(preset):
+    assert_resumes_bit_for_bit(FreudensteinRoth(), preset=preset, events=[TurningPoint(0)])
+
+
+def test_a_resumed_path_of_a_band_is_the_same_bit_for_bit():
+    assert_resumes_bit_for_bit(Bratu1D(30), events=[TargetValue(1.0, direction=-1)])
+
+
+def test_a_resumed_trace_counts_its_events_on():
+    watcher = Watcher()
+    events = [TargetValue(0.3, terminal=2)]
+    path = trace(Circle(), events=events, observers=(watcher,))
+    first = next(event for event in path.events if event.name == "lam = 0.3")
+    resumed = trace(Circle(), events=events, state=watcher.states[first.step])
+    assert resumed.status is Status.STOPPED_AT_EVENT
+    np.testing.assert_array_equal(resumed.endpoint.u, path.endpoint.u)
+
+
+# -- sizes ------------------------------------------------------------------------------------------------------
+
+
+def test_one_unknown_given_as_a_number():
+    path = trace(from_functions(lambda y, lam: y * y * y + y - lam, start=(0.0, 0.0), target=2.0))
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.u == pytest.approx([1.0, 2.0], abs=1e-10)
+
+
+def test_five_thousand_sparse_unknowns():
+    n = 5000
+    laplacian = diags_array([np.ones(n - 1), np.full(n, -2.0), np.ones(n - 1)], offsets=[-1, 0, 1], format="csc")
+
+    def residual(y, lam):
+        return laplacian @ y + lam * np.exp(y) / (n + 1.0) ** 2
+
+    def jacobian(y, lam):
+        slope = np.exp(y) / (n + 1.0) ** 2
+        return laplacian + diags_array([lam * slope], offsets=[0], format="csc"), slope
+
+    homotopy = from_functions(residual, jacobian, start=(np.zeros(n), 0.0), target=None)
+    path = trace(homotopy, events=[TargetValue(2.0, direction=-1)])
+    assert path.status is Status.STOPPED_AT_EVENT
+    (fold,) = path.turning_points
+    # lam* - lam*_n = 1.8281 h^2 + O(h^4).
+    assert fold.lam == pytest.approx(3.513830719125161 - 1.8281 / (n + 1) ** 2, abs=2e-11)
+
+
+# -- the door ---------------------------------------------------------------------------------------------------
+
+GOOD = from_functions(lambda y, lam: y - lam, start=([0.0], 0.0), target=1.0)
+
+
+class Without:
+    def __init__(self, **methods):
+        self.__dict__.update(methods)
+
+
+@pytest.mark.parametrize(
+    ("homotopy", "options", "error", "words"),
+    [
+        (Without(start=lambda: (np.zeros(1), 0.0)), {}, TypeError, "residual"),
+        (Without(residual=lambda y, lam: y), {}, TypeError, "start"),
+        (Without(start=lambda: np.zeros(2), residual=lambda y, lam: y), {}, ValueError, "start"),
+        (from_functions(lambda y, lam: y, start=([np.nan], 0.0)), {}, ValueError, "start"),
+        (from_functions(lambda y, lam: y, start=([0.0], np.inf)), {}, ValueError, "start"),
+        (from_functions(lambda y, lam: y, start=([], 0.0)), {}, ValueError, "start"),
+        (from_functions(lambda y, lam: y, start=(np.zeros((2, 2)), 0.0)), {}, ValueError, "start"),
+        (from_functions(lambda y, lam: np.append(y, lam), start=([0.0], 0.0)), {}, ValueError, "residual"),
+        (from_functions(lambda y, lam: y + 1j, start=([0.0], 0.0)), {}, ValueError, "residual"),
+        (GOOD, {"direction": 2}, ValueError, "direction"),
+        (GOOD, {"target": np.nan}, ValueError, "target"),
+        (GOOD, {"target": "there"}, ValueError, "target"),
+        (GOOD, {"tolerance": 0.0}, ValueError, "tolerance"),
+        (GOOD, {"tolerance": -1e-8}, ValueError, "tolerance"),
+        (GOOD, {"controler": AllgowerGeorg()}, TypeError, "controler"),
+        (GOOD, {"predictor": "tangent"}, TypeError, "predictor"),
+        (GOOD, {"corrector": Hermite()}, TypeError, "corrector"),
+        (GOOD, {"controller": 0.1}, TypeError, "controller"),
+        (GOOD, {"metric": "euclidean"}, TypeError, "metric"),
+        (GOOD, {"preset": "FAST"}, TypeError, "preset"),
+        (GOOD, {"budget": 100}, TypeError, "budget"),
+        (GOOD, {"events": TurningPoint()}, TypeError, "events"),
+        (GOOD, {"events": [lambda u, v: 0.0]}, TypeError, "events"),
+        (GOOD, {"start": (np.zeros(3), np.ones(3))}, ValueError, "start"),
+        (GOOD, {"start": (np.zeros(2), np.zeros(2))}, ValueError, "start"),
+        (GOOD, {"metric": Weighted(-1.0)}, ValueError, "y"),
+    ],
+    ids=lambda value: next(iter(value), "") if isinstance(value, dict) else None,
+)
+def test_bad_arguments_are_named(homotopy, options, error, words):
+    with pytest.raises(error, match=words):
+        trace(homotopy, **options)
+
+
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda: Budget(steps=0), "steps"),
+        (lambda: Budget(seconds=-1.0), "seconds"),
+        (lambda: TurningPoint(direction=2), "direction"),
+        (lambda: TurningPoint(terminal=-1), "terminal"),
+        (lambda: evolve(DEFAULT.controller, bounds=Bounds(maximum=0.0)), "maximum"),
+    ],
+)
+def test_bad_settings_are_named(make, name):
+    with pytest.raises(ValueError, match=name):
+        make()
+
+
+def test_a_component_that_does_not_exist_is_named():
+    with pytest.raises((IndexError, ValueError), match="component"):
+        trace(GOOD, events=[TurningPoint(component=7)])
+
+
+def test_the_homotopys_target_can_be_overridden():
+    assert trace(GOOD, target=3.0).endpoint.lam == 3.0
+    assert trace(GOOD, target=-3.0).endpoint.lam == -3.0
+    assert trace(GOOD, target=None, budget=Budget(steps=4)).status is Status.BUDGET_EXHAUSTED
