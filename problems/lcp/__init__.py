@@ -1,0 +1,55 @@
+"""The linear complementarity problem LCP(q, A): homotopies, a solver, certificates, matrix classes, references."""
+
+from problems.hypothesis_hook import register
+from problems.lcp.certificate import Certificate, ExactCertificate, certify, certify_exactly
+from problems.lcp.classes import classify
+from problems.lcp.enumeration import solve_by_enumeration
+from problems.lcp.feasible import NoStrictlyFeasiblePoint, strictly_feasible_start
+from problems.lcp.homotopies import (
+    KKTHomotopy,
+    KojimaMegiddoMizunoHomotopy,
+    Start,
+    Structure,
+    TwoVectorHomotopy,
+    WangHomotopy,
+    XuHomotopy,
+    YuHomotopy,
+    ZhaoHomotopy,
+    default_start,
+    random_start,
+)
+from problems.lcp.infeasible import Farkas, empty_interior, farkas
+from problems.lcp.outcome import Outcome, Solution
+from problems.lcp.problem import LCP
+from problems.lcp.solve import solve
+
+__all__ = [
+    "LCP",
+    "Certificate",
+    "ExactCertificate",
+    "Farkas",
+    "KKTHomotopy",
+    "KojimaMegiddoMizunoHomotopy",
+    "NoStrictlyFeasiblePoint",
+    "Outcome",
+    "Solution",
+    "Start",
+    "Structure",
+    "TwoVectorHomotopy",
+    "WangHomotopy",
+    "XuHomotopy",
+    "YuHomotopy",
+    "ZhaoHomotopy",
+    "certify",
+    "certify_exactly",
+    "classify",
+    "default_start",
+    "empty_interior",
+    "solve_by_enumeration",
+    "farkas",
+    "random_start",
+    "solve",
+    "strictly_feasible_start",
+]
+
+register()

@@ -1,0 +1,144 @@
+"""Exact matrix classes of the linear complementarity problem, each answer with its evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from problems.lcp.classes.closure import is_almost_n_bar, is_n_bar, is_n_bar_of_exact_order
+from problems.lcp.classes.cones import (
+    is_almost_copositive,
+    is_copositive,
+    is_r0,
+    is_s,
+    is_semimonotone,
+    is_semimonotone_star,
+    is_strictly_copositive,
+    is_strictly_semimonotone,
+)
+from problems.lcp.classes.exact import ExactMatrix
+from problems.lcp.classes.membership import Certificate, Classification, Membership, table
+from problems.lcp.classes.minors import (
+    is_almost_n,
+    is_almost_n0,
+    is_almost_p,
+    is_almost_p0,
+    is_k,
+    is_k0,
+    is_n,
+    is_n0,
+    is_n0_of_exact_order,
+    is_n_of_exact_order,
+    is_nondegenerate,
+    is_p,
+    is_p0,
+    is_z,
+)
+from problems.lcp.classes.solvability import is_q, is_q0
+from problems.lcp.classes.sufficiency import (
+    is_column_sufficient,
+    is_p_star,
+    is_psd,
+    is_row_sufficient,
+    is_sufficient,
+)
+
+_TESTS: tuple[Callable[[Any], Membership], ...] = (
+    is_psd,
+    is_p,
+    is_p0,
+    is_row_sufficient,
+    is_column_sufficient,
+    is_sufficient,
+    is_p_star,
+    is_z,
+    is_k,
+    is_k0,
+    is_nondegenerate,
+    is_almost_p,
+    is_almost_p0,
+    is_n,
+    is_n0,
+    is_n_bar,
+    is_almost_n,
+    is_almost_n0,
+    is_almost_n_bar,
+    is_n_of_exact_order,
+    is_n0_of_exact_order,
+    is_n_bar_of_exact_order,
+    is_copositive,
+    is_strictly_copositive,
+    is_almost_copositive,
+    is_semimonotone,
+    is_strictly_semimonotone,
+    is_semimonotone_star,
+    is_r0,
+    is_s,
+    is_q0,
+    is_q,
+)
+
+
+def classify(A: Any) -> Classification:
+    """Every class test on one matrix, in exact arithmetic.
+
+    Parameters
+    ----------
+    A : array_like or scipy sparse, shape (n, n)
+        Floats are taken as the rational numbers that they are.
+
+    Returns
+    -------
+    dict of str to Membership
+        In a fixed order. Beyond the documented limits of an exponential test (12 for minors, 10 and 8 for index sets,
+        7 for sign vectors, 5 for the cover by cones) the answer is None, with the reason.
+
+    Raises
+    ------
+    ValueError
+        If A is not a square matrix of finite real numbers.
+    """
+    matrix = ExactMatrix.of(A)
+    return {membership.name: membership for membership in (test(matrix) for test in _TESTS)}
+
+
+__all__ = [
+    "Certificate",
+    "Classification",
+    "ExactMatrix",
+    "Membership",
+    "classify",
+    "is_almost_copositive",
+    "is_almost_n",
+    "is_almost_n0",
+    "is_almost_n_bar",
+    "is_almost_p",
+    "is_almost_p0",
+    "is_column_sufficient",
+    "is_copositive",
+    "is_k",
+    "is_k0",
+    "is_n",
+    "is_n0",
+    "is_n0_of_exact_order",
+    "is_n_bar",
+    "is_n_bar_of_exact_order",
+    "is_n_of_exact_order",
+    "is_nondegenerate",
+    "is_p",
+    "is_p0",
+    "is_p_star",
+    "is_psd",
+    "is_q",
+    "is_q0",
+    "is_r0",
+    "is_row_sufficient",
+    "is_s",
+    "is_semimonotone",
+    "is_semimonotone_star",
+    "is_strictly_copositive",
+    "is_strictly_semimonotone",
+    "is_sufficient",
+    "is_z",
+    "table",
+]

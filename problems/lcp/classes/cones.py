@@ -1,0 +1,173 @@
+"""Classes that sign conditions on vectors define: copositive, semimonotone, R0, S and their relatives.
+
+Each condition is homogeneous, so on each index set it is one exact linear feasibility problem with x >= 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices
+from problems.lcp.classes.membership import CPS, Certificate, Membership, show_set, show_vector, undecided
+from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point, positive_point
+
+LARGEST = 10
+"""Largest order of the tests with one linear program an index set."""
+
+LARGEST_STAR = 8
+"""Largest order of the E0^s test, n linear programs an index set."""
+
+Build = Callable[[ExactMatrix, Indices], list[Constraint]]
+
+
+def columns(matrix: ExactMatrix, support: Indices) -> list[list[int]]:
+    """The columns of the index set, row by row."""
+    return [[row[j] for j in support] for row in matrix.entries]
+
+
+def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
+    """The vector of length n with `values` on the support and zero elsewhere."""
+    known = dict(zip(support, values, strict=True))
+    return tuple(known.get(i, Fraction(0)) for i in range(n))
+
+
+def _first_violation(matrix: ExactMatrix, build: Build) -> tuple[Indices, Point] | None:
+    """The smallest index set whose system has a positive solution, with that solution."""
+    for mask in index_sets(matrix.n):
+        support = indices(mask)
+        found = positive_point(build(matrix, support), len(support))
+        if found is not None:
+            return support, embed(matrix.n, support, found)
+    return None
+
+
+def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str, str], cited: str) -> Membership:
+    """No index set has a violating vector; `words` say what a violation shows and what its absence proves."""
+    if matrix.n > LARGEST:
+        return undecided(name, matrix.n, LARGEST, cited)
+    violation = _first_violation(matrix, build)
+    if violation is None:
+        return Membership(name, True, Certificate(words[1]), cited)
+    support, x = violation
+    sentence = f"x = {show_vector(x)} with support {show_set(support)} has {words[0]}"
+    return Membership(name, False, Certificate(sentence, support, vector=x), cited)
+
+
+def _all_negative(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
+    block = columns(matrix, support)
+    return [at_most(block[i], -1) for i in support]
+
+
+def _all_nonpositive(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
+    block = columns(matrix, support)
+    return [at_most(block[i]) for i in support]
+
+
+def _homogeneous_solution(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
+    block = columns(matrix, support)
+    return [equal(row) if i in support else at_least(row) for i, row in enumerate(block)]
+
+
+def is_semimonotone(A: Any) -> Membership:
+    """E0: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i >= 0."""
+    words = ("(Ax)_i < 0 wherever x_i > 0", "no x has (Ax)_i < 0 wherever x_i > 0")
+    return _by_supports(ExactMatrix.of(A), "E0", _all_negative, words, CPS + ", section 3.9")
+
+
+def is_strictly_semimonotone(A: Any) -> Membership:
+    """E: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i > 0."""
+    words = ("(Ax)_i <= 0 wherever x_i > 0", "no x has (Ax)_i <= 0 wherever x_i > 0")
+    return _by_supports(ExactMatrix.of(A), "E", _all_nonpositive, words, CPS + ", section 3.9")
+
+
+def is_r0(A: Any) -> Membership:
+    """R0: LCP(0, A) has no solution but zero."""
+    words = ("Ax >= 0 and x'Ax = 0: it solves LCP(0, A)", "LCP(0, A) has no nonzero solution")
+    return _by_supports(ExactMatrix.of(A), "R0", _homogeneous_solution, words, CPS + ", section 3.8")
+
+
+def is_copositive(A: Any) -> Membership:
+    """Copositive (C0): x'Ax >= 0 for x >= 0. For the symmetric part that is E0 (CPS, section 3.9)."""
+    return _copositive(ExactMatrix.of(A), "copositive", _all_negative, "nonnegative")
+
+
+def is_strictly_copositive(A: Any) -> Membership:
+    """Strictly copositive (C): x'Ax > 0 for nonzero x >= 0. For the symmetric part that is E (CPS, section 3.9)."""
+    return _copositive(ExactMatrix.of(A), "strictly copositive", _all_nonpositive, "positive")
+
+
+def _copositive(matrix: ExactMatrix, name: str, build: Build, wanted: str) -> Membership:
+    cited = CPS + ", section 3.8"
+    if matrix.n > LARGEST:
+        return undecided(name, matrix.n, LARGEST, cited)
+    violation = _first_violation(matrix.symmetric_part, build)
+    if violation is None:
+        return Membership(name, True, Certificate(f"x'Ax is {wanted} for every nonzero x >= 0"), cited)
+    support, x = violation
+    value = quadratic_form(matrix, x)
+    sentence = f"x = {show_vector(x)} has x'Ax = {value}, not {wanted}"
+    return Membership(name, False, Certificate(sentence, support, value, x), cited)
+
+
+def quadratic_form(matrix: ExactMatrix, x: Sequence[Fraction]) -> Fraction:
+    """x'Ax, in the units of A."""
+    return sum((v * y for v, y in zip(x, matrix.image(x), strict=True)), Fraction(0))
+
+
+def is_almost_copositive(A: Any) -> Membership:
+    """Almost C0: every principal submatrix of order n - 1 copositive, A itself not."""
+    matrix = ExactMatrix.of(A)
+    cited = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
+    plain = is_copositive(matrix)
+    if plain.holds is None:
+        return undecided("almost copositive", matrix.n, LARGEST, cited)
+    if plain.holds:
+        return Membership("almost copositive", False, Certificate("A is copositive of order n too"), cited)
+    alpha = plain.certificate.indices or ()
+    if len(alpha) < matrix.n:
+        sentence = f"the principal submatrix of {show_set(alpha)} is not copositive: {plain.certificate}"
+        certificate = Certificate(sentence, alpha, plain.certificate.value, plain.certificate.vector)
+        return Membership("almost copositive", False, certificate, cited)
+    sentence = f"copositive up to order n - 1, and {plain.certificate}"
+    certificate = Certificate(sentence, alpha, plain.certificate.value, plain.certificate.vector)
+    return Membership("almost copositive", True, certificate, cited)
+
+
+def is_semimonotone_star(A: Any) -> Membership:
+    """E0^s as the paper prints it: x'Ax = 0, Ax >= 0, x >= 0 imply A'x <= 0.
+
+    Jana, Das and Sinha, whose class it is, ask for E0 as well; the sentence says whether that holds.
+    """
+    matrix = ExactMatrix.of(A)
+    cited = "Dutta, Das and Jana, section 2; Jana, Das and Sinha, On semimonotone star matrices, 2018, ask for E0 too"
+    if matrix.n > LARGEST_STAR:
+        return undecided("E0^s", matrix.n, LARGEST_STAR, cited)
+    for mask in index_sets(matrix.n):
+        support = indices(mask)
+        base = _homogeneous_solution(matrix, support)
+        for i, row in enumerate(columns(matrix.transpose, support)):
+            found = positive_point([*base, at_least(row, 1)], len(support))
+            if found is not None:
+                x = embed(matrix.n, support, found)
+                value = matrix.transpose.image(x)[i]
+                sentence = f"x = {show_vector(x)} has x'Ax = 0 and Ax >= 0, but (A'x)_{i} = {value}"
+                return Membership("E0^s", False, Certificate(sentence, support, vector=x), cited)
+    also = "is" if is_semimonotone(matrix).holds else "is not"
+    sentence = f"every solution x of LCP(0, A) has A'x <= 0; A {also} E0"
+    return Membership("E0^s", True, Certificate(sentence), cited)
+
+
+def is_s(A: Any) -> Membership:
+    """S: Ax > 0 for some x > 0, so that every LCP(q, A) has a strictly feasible point. One linear program."""
+    matrix = ExactMatrix.of(A)
+    cited = CPS + ", section 3.1; Ville's theorem"
+    x = positive_point([at_least(row, 1) for row in matrix.entries], matrix.n)
+    if x is not None:
+        return Membership("S", True, Certificate(f"x = {show_vector(x)} > 0 has Ax > 0", vector=x), cited)
+    rows = [at_most(row) for row in matrix.transpose.entries]
+    y = feasible_point([*rows, at_least([1] * matrix.n, 1)], matrix.n)
+    assert y is not None, "Ville's theorem of the alternative"
+    sentence = f"y = {show_vector(y)} >= 0 is nonzero and A'y <= 0, so no x >= 0 has Ax > 0"
+    return Membership("S", False, Certificate(sentence, vector=y), cited)

@@ -1,0 +1,213 @@
+"""Exact linear algebra on small matrices: every float is a rational number, so every answer is a proof.
+
+A matrix is stored as integers over one positive scale. All class definitions are invariant under positive scaling,
+so the tests read the integers only; the scale serves when a value is reported.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+
+IntRow = Sequence[int]
+Indices = tuple[int, ...]
+
+
+def _fraction(value: Any) -> Fraction:
+    """One entry, exactly; numpy scalars become Python numbers first, so that no integer wraps around."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    if isinstance(plain, float) and not math.isfinite(plain):
+        raise ValueError(f"A: expected finite numbers, found {plain}")
+    if not isinstance(plain, (bool, int, float, Fraction)):
+        raise ValueError(f"A: expected real numbers, found {type(plain).__name__}")
+    return Fraction(plain)
+
+
+def over_common_denominator(values: Sequence[Fraction]) -> tuple[list[int], int]:
+    """Integers and the positive scale with values = integers / scale."""
+    scale = math.lcm(*(value.denominator for value in values))
+    return [value.numerator * (scale // value.denominator) for value in values], scale
+
+
+@frozen(slots=False)
+class ExactMatrix:
+    """A square rational matrix, entries / scale.
+
+    Parameters
+    ----------
+    entries : tuple of n tuples of n int
+    scale : int
+        Positive.
+    """
+
+    entries: tuple[tuple[int, ...], ...]
+    scale: int = 1
+
+    @staticmethod
+    def of(A: Any) -> ExactMatrix:
+        """The exact value of a dense, sparse or nested matrix of floats, ints or Fractions.
+
+        Parameters
+        ----------
+        A : array_like or scipy sparse, shape (n, n)
+            Each float is taken as the rational number that it is: 0.8 is not 4/5.
+
+        Raises
+        ------
+        ValueError
+            If A is not a square matrix of at least one finite real number.
+        """
+        if isinstance(A, ExactMatrix):
+            return A
+        dense = np.array(A.toarray() if sp.issparse(A) else A, dtype=object)
+        if dense.ndim != 2 or dense.shape[0] != dense.shape[1] or dense.size == 0:
+            raise ValueError(f"A: expected a square matrix, found shape {dense.shape}")
+        n = dense.shape[0]
+        flat, scale = over_common_denominator([_fraction(value) for value in dense.flat])
+        return ExactMatrix(tuple(tuple(flat[i * n : (i + 1) * n]) for i in range(n)), scale)
+
+    @property
+    def n(self) -> int:
+        """The order."""
+        return len(self.entries)
+
+    @cached_property
+    def transpose(self) -> ExactMatrix:
+        """The transposed matrix."""
+        return ExactMatrix(tuple(zip(*self.entries, strict=True)), self.scale)
+
+    @cached_property
+    def symmetric_part(self) -> ExactMatrix:
+        """(A + A') / 2."""
+        pairs = zip(self.entries, self.transpose.entries, strict=True)
+        return ExactMatrix(tuple(tuple(a + b for a, b in zip(r, c, strict=True)) for r, c in pairs), 2 * self.scale)
+
+    @cached_property
+    def minors(self) -> tuple[int, ...]:
+        """All 2^n principal minors of the integer matrix; position m belongs to the index set of m's bits."""
+        return tuple(principal_minors(self.entries))
+
+    def minor(self, mask: int) -> Fraction:
+        """The principal minor of the index set `mask`, in the units of A."""
+        return Fraction(self.minors[mask], self.scale ** mask.bit_count())
+
+    def image(self, x: Sequence[Fraction]) -> tuple[Fraction, ...]:
+        """A x, in the units of A."""
+        products = (sum((a * v for a, v in zip(row, x, strict=True)), Fraction(0)) for row in self.entries)
+        return tuple(product / self.scale for product in products)
+
+
+def indices(mask: int) -> Indices:
+    """The index set, counted from 0, whose bits are set in `mask`."""
+    return tuple(i for i in range(mask.bit_length()) if mask >> i & 1)
+
+
+def index_sets(n: int) -> Iterator[int]:
+    """The nonempty index sets as masks, small ones first, so that a violation found first is a smallest one."""
+    return iter(sorted(range(1, 1 << n), key=lambda mask: (mask.bit_count(), mask)))
+
+
+def determinant(rows: Sequence[IntRow]) -> int:
+    """The determinant of an integer matrix, by fraction-free elimination.
+
+    References
+    ----------
+    Bareiss, Mathematics of Computation 22 (1968) 565-578.
+    """
+    work = [list(row) for row in rows]
+    n, sign, previous = len(work), 1, 1
+    for k in range(n - 1):
+        pivot = next((i for i in range(k, n) if work[i][k]), None)
+        if pivot is None:
+            return 0
+        if pivot != k:
+            work[k], work[pivot], sign = work[pivot], work[k], -sign
+        for i in range(k + 1, n):
+            head, row, top = work[i][k], work[i], work[k]
+            work[i] = [(top[k] * row[j] - head * top[j]) // previous for j in range(n)]
+        previous = work[k][k]
+    return sign * work[-1][-1] if n else 1
+
+
+def principal_minors(rows: Sequence[IntRow]) -> list[int]:
+    """All 2^n principal minors of an integer matrix, by Schur complements that the index sets share.
+
+    Minors without the first index come from the rest of the matrix, minors with it from the fraction-free Schur
+    complement. Where the pivot is zero, the diagonal entry is raised by one: the determinant is linear in it, so the
+    minors without the index, which are known, undo the change exactly.
+
+    Parameters
+    ----------
+    rows : sequence of n sequences of n int
+
+    Returns
+    -------
+    list of int, length 2^n
+        Position m holds the minor of the index set given by m's bits.
+
+    References
+    ----------
+    Griffin and Tsatsomeros, Principal minors, part I, Linear Algebra Appl. 419 (2006) 107-124.
+    """
+    return _minors([list(row) for row in rows], 1)
+
+
+def _minors(block: list[list[int]], determinant_so_far: int) -> list[int]:
+    if not block:
+        return [determinant_so_far]
+    top, rest = block[0], block[1:]
+    without = _minors([row[1:] for row in rest], determinant_so_far)
+    lifted = top[0] == 0
+    pivot = determinant_so_far if lifted else top[0]
+    complement = [[(pivot * v - row[0] * t) // determinant_so_far for v, t in zip(row[1:], top[1:])] for row in rest]
+    with_index = _minors(complement, pivot)
+    if lifted:
+        with_index = [a - b for a, b in zip(with_index, without)]
+    merged = [0] * (2 * len(without))
+    merged[0::2], merged[1::2] = without, with_index
+    return merged
+
+
+def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[int]], int] | None:
+    """Numerators X and a positive denominator d with rows X = d right, or None for a singular matrix.
+
+    Fraction-free Gauss-Jordan elimination: every intermediate number is a minor, so every division is exact.
+
+    Parameters
+    ----------
+    rows : sequence of m sequences of m int
+    right : sequence of m sequences of k int
+    """
+    work = [[*row, *b] for row, b in zip(rows, right, strict=True)]
+    m, previous = len(work), 1
+    for k in range(m):
+        pivot = next((i for i in range(k, m) if work[i][k]), None)
+        if pivot is None:
+            return None
+        work[k], work[pivot] = work[pivot], work[k]
+        top = work[k]
+        head = top[k]
+        for i in range(m):
+            if i != k:
+                factor = work[i][k]
+                work[i] = [(head * v - factor * t) // previous for v, t in zip(work[i], top)]
+        previous = head
+    sign = 1 if previous > 0 else -1
+    return [[sign * v for v in row[m:]] for row in work], sign * previous
+
+
+def simplest(vector: Sequence[Fraction], accepts: Callable[[Sequence[Fraction]], bool]) -> tuple[Fraction, ...]:
+    """A positive multiple of the vector, rounded to integers as small as `accepts` allows, or else the vector."""
+    largest = max(abs(v) for v in vector)
+    for bits in range(24):
+        rounded = tuple(Fraction(round(v * 2**bits / largest)) for v in vector)
+        if accepts(rounded):
+            return rounded
+    return tuple(vector)

@@ -1,0 +1,107 @@
+"""What a class test returns: yes, no or not decided, with the evidence and the source of the criterion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from attrs import frozen
+
+Rows = tuple[tuple[int, ...], ...]
+
+CPS = "Cottle, Pang and Stone, The Linear Complementarity Problem, 1992"
+
+
+@frozen
+class Certificate:
+    """The evidence for a membership, in data and in one sentence. Indices are counted from 0.
+
+    Parameters
+    ----------
+    sentence : str
+    indices : tuple of int, optional
+        The index set of the minor or principal submatrix, or the index pair, that decides.
+    value : Fraction, optional
+        The minor, quadratic form, entry or bound that decides.
+    vector : tuple of Fraction, optional
+        A vector that decides (its meaning is in the sentence).
+    perturbation : pair of integer matrices, optional
+        B and C of a sequence A + t B + t^2 C that decides a closure.
+    """
+
+    sentence: str
+    indices: tuple[int, ...] | None = None
+    value: Fraction | None = None
+    vector: tuple[Fraction, ...] | None = None
+    perturbation: tuple[Rows, Rows] | None = None
+
+    def __str__(self) -> str:
+        return self.sentence
+
+
+@frozen
+class Membership:
+    """Whether a matrix belongs to a class: `holds` is True, False, or None where it was not decided.
+
+    Parameters
+    ----------
+    name : str
+        The class.
+    holds : bool or None
+    certificate : Certificate
+        Why; for None, why not decided.
+    cited : str
+        Source of the definition or of the criterion.
+    """
+
+    name: str
+    holds: bool | None
+    certificate: Certificate
+    cited: str = CPS
+
+    def __bool__(self) -> bool:
+        raise TypeError(f"membership in {self.name} has three values, True, False and None: read .holds")
+
+    def __str__(self) -> str:
+        return f"{self.name}: {ANSWERS[self.holds]}, {self.certificate}"
+
+
+ANSWERS: Mapping[bool | None, str] = {True: "yes", False: "no", None: "not decided"}
+
+Classification = Mapping[str, Membership]
+
+
+def undecided(name: str, n: int, limit: int, cited: str) -> Membership:
+    """The answer for a matrix beyond the documented limit of an exponential test."""
+    sentence = f"the exact test is exponential in n and stops at n = {limit}, found n = {n}"
+    return Membership(name, None, Certificate(sentence), cited)
+
+
+def show_set(indices: Sequence[int]) -> str:
+    """An index set as text, {0, 2}."""
+    return "{" + ", ".join(map(str, indices)) + "}"
+
+
+def show_vector(vector: Sequence[Fraction]) -> str:
+    """A vector as text, (1, -1/2)."""
+    return "(" + ", ".join(map(str, vector)) + ")"
+
+
+def table(classification: Classification, width: int = 110) -> str:
+    """The classification as lines of text: class, answer, evidence.
+
+    Parameters
+    ----------
+    classification : mapping of str to Membership
+        From `classify`.
+    width : int
+        Longest evidence in characters; longer ones end in an ellipsis.
+    """
+    first = max(len(name) for name in classification)
+    second = max(len(text) for text in ANSWERS.values())
+    lines = []
+    for name, membership in classification.items():
+        evidence = str(membership.certificate)
+        short = evidence if len(evidence) <= width else evidence[: width - 3] + "..."
+        lines.append(f"{name:<{first}}  {ANSWERS[membership.holds]:<{second}}  {short}")
+    return "\n".join(lines)

@@ -1,0 +1,193 @@
+"""Classes that signs of principal minors define."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
+from problems.lcp.classes.membership import CPS, Certificate, Membership, show_set, undecided
+
+LARGEST = 12
+"""Largest order of the tests that read all 2^n - 1 principal minors."""
+
+PAPER = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
+EXACT_ORDER = "Mohan, Parthasarathy and Sridhar, Math. Oper. Res. 19 (1994) 618; " + PAPER
+
+SIGNS: Mapping[str, Callable[[int], bool]] = {
+    "positive": lambda value: value > 0,
+    "nonnegative": lambda value: value >= 0,
+    "negative": lambda value: value < 0,
+    "nonpositive": lambda value: value <= 0,
+    "nonzero": lambda value: value != 0,
+}
+
+Rule = Callable[[int], str]
+"""The sign asked of the minors of an order."""
+
+
+def two_signs(low: str, last: int, high: str) -> Rule:
+    """`low` up to the order `last`, `high` beyond it."""
+    return lambda order: low if order <= last else high
+
+
+def judge(matrix: ExactMatrix, name: str, rule: Rule, cited: str = CPS) -> Membership:
+    """Membership in the class whose principal minors of each order have the sign that `rule` asks."""
+    n = matrix.n
+    if n > LARGEST:
+        return undecided(name, n, LARGEST, cited)
+    for mask in index_sets(n):
+        sign = rule(mask.bit_count())
+        if not SIGNS[sign](matrix.minors[mask]):
+            value, alpha = matrix.minor(mask), indices(mask)
+            sentence = f"the principal minor of {show_set(alpha)} is {value}, not {sign}"
+            return Membership(name, False, Certificate(sentence, alpha, value), cited)
+    return Membership(name, True, Certificate(_all_right(n, rule)), cited)
+
+
+def _all_right(n: int, rule: Rule) -> str:
+    signs = [rule(order) for order in range(1, n + 1)]
+    change = next((k for k in range(1, n) if signs[k] != signs[0]), n)
+    first = f"all {2**n - 1} principal minors are {signs[0]}"
+    if change == n:
+        return first
+    return f"the principal minors of order 1 to {change} are {signs[0]}, those of higher order {signs[change]}"
+
+
+def is_p(A: Any) -> Membership:
+    """P: all principal minors positive."""
+    return judge(ExactMatrix.of(A), "P", lambda _: "positive", CPS + ", section 3.3")
+
+
+def is_p0(A: Any) -> Membership:
+    """P0: all principal minors nonnegative."""
+    return judge(ExactMatrix.of(A), "P0", lambda _: "nonnegative", CPS + ", section 3.4")
+
+
+def is_almost_p(A: Any) -> Membership:
+    """Almost P: the proper principal minors positive, the determinant negative."""
+    matrix = ExactMatrix.of(A)
+    return judge(matrix, "almost P", two_signs("positive", matrix.n - 1, "negative"), EXACT_ORDER)
+
+
+def is_almost_p0(A: Any) -> Membership:
+    """Almost P0: the proper principal minors nonnegative, the determinant negative."""
+    matrix = ExactMatrix.of(A)
+    return judge(matrix, "almost P0", two_signs("nonnegative", matrix.n - 1, "negative"), EXACT_ORDER)
+
+
+def is_n(A: Any) -> Membership:
+    """N: all principal minors negative."""
+    return judge(ExactMatrix.of(A), "N", lambda _: "negative", PAPER)
+
+
+def is_n0(A: Any) -> Membership:
+    """N0: all principal minors nonpositive."""
+    return judge(ExactMatrix.of(A), "N0", lambda _: "nonpositive", PAPER)
+
+
+def is_almost_n(A: Any) -> Membership:
+    """Almost N: the proper principal minors negative, the determinant positive (N of exact order 1)."""
+    matrix = ExactMatrix.of(A)
+    return judge(matrix, "almost N", two_signs("negative", matrix.n - 1, "positive"), PAPER)
+
+
+def is_almost_n0(A: Any) -> Membership:
+    """Almost N0: the proper principal minors nonpositive, the determinant positive (N0 of exact order 1)."""
+    matrix = ExactMatrix.of(A)
+    return judge(matrix, "almost N0", two_signs("nonpositive", matrix.n - 1, "positive"), PAPER)
+
+
+def is_n_of_exact_order(A: Any, k: int | None = None) -> Membership:
+    """N of exact order k: principal minors negative up to order n - k and positive beyond.
+
+    Parameters
+    ----------
+    A : array_like, shape (n, n)
+    k : int, optional
+        1 <= k < n. Without it, any k serves, and the one found is the certificate's value.
+    """
+    return of_exact_order(
+        A, "N", k, lambda matrix, name, last: judge(matrix, name, two_signs("negative", last, "positive"), EXACT_ORDER)
+    )
+
+
+def is_n0_of_exact_order(A: Any, k: int | None = None) -> Membership:
+    """N0 of exact order k: principal minors nonpositive up to order n - k, positive beyond; k as for N."""
+    return of_exact_order(
+        A,
+        "N0",
+        k,
+        lambda matrix, name, last: judge(matrix, name, two_signs("nonpositive", last, "positive"), EXACT_ORDER),
+    )
+
+
+def of_exact_order(A: Any, base: str, k: int | None, test: Callable[[ExactMatrix, str, int], Membership]) -> Membership:
+    """`test(matrix, name, n - k)` for the k given, or for k = 1, ..., n - 1 until one holds."""
+    matrix = ExactMatrix.of(A)
+    n = matrix.n
+    if k is not None:
+        if not 1 <= k < n:
+            raise ValueError(f"k: expected 1 <= k < n = {n}, found {k}")
+        return test(matrix, f"{base} of exact order {k}", n - k)
+    name = f"{base} of exact order k"
+    if n == 1:
+        return Membership(name, False, Certificate("no order k with 1 <= k < n = 1"), EXACT_ORDER)
+    results = [test(matrix, name, n - order) for order in range(1, n)]
+    for order, result in enumerate(results, start=1):
+        if result.holds:
+            sentence = f"k = {order}: {result.certificate}"
+            found = Certificate(sentence, value=Fraction(order), perturbation=result.certificate.perturbation)
+            return Membership(name, True, found, result.cited)
+    for result in results:
+        if result.holds is None:
+            return result
+    reasons = "; ".join(f"k = {order}: {result.certificate}" for order, result in enumerate(results, start=1))
+    return Membership(name, False, Certificate(reasons), EXACT_ORDER)
+
+
+def is_nondegenerate(A: Any) -> Membership:
+    """Nondegenerate: all principal minors nonzero."""
+    return judge(ExactMatrix.of(A), "nondegenerate", lambda _: "nonzero", CPS + ", section 3.6")
+
+
+def is_z(A: Any) -> Membership:
+    """Z: off-diagonal entries nonpositive."""
+    matrix = ExactMatrix.of(A)
+    cited = CPS + ", section 3.11"
+    for i, row in enumerate(matrix.entries):
+        for j, entry in enumerate(row):
+            if i != j and entry > 0:
+                value = Fraction(entry, matrix.scale)
+                sentence = f"the off-diagonal entry {(i, j)} is {value}, positive"
+                return Membership("Z", False, Certificate(sentence, (i, j), value), cited)
+    return Membership("Z", True, Certificate("no off-diagonal entry is positive"), cited)
+
+
+def is_k(A: Any) -> Membership:
+    """K: Z and P (nonsingular M-matrix), read off the leading principal minors, so polynomial in n."""
+    matrix = ExactMatrix.of(A)
+    cited = CPS + ", section 3.11 (Fiedler and Pták 1962)"
+    z = is_z(matrix)
+    if not z.holds:
+        return Membership("K", False, z.certificate, cited)
+    work = [list(row) for row in matrix.entries]
+    previous = 1
+    for order in range(1, matrix.n + 1):
+        top, rest = work[0], work[1:]
+        if top[0] <= 0:
+            value, alpha = Fraction(top[0], matrix.scale**order), tuple(range(order))
+            sentence = f"the leading principal minor of order {order} is {value}, not positive"
+            return Membership("K", False, Certificate(sentence, alpha, value), cited)
+        work = [[(top[0] * v - row[0] * t) // previous for v, t in zip(row[1:], top[1:])] for row in rest]
+        previous = top[0]
+    return Membership("K", True, Certificate("Z, and all leading principal minors are positive"), cited)
+
+
+def is_k0(A: Any) -> Membership:
+    """K0: Z and P0."""
+    matrix = ExactMatrix.of(A)
+    z = is_z(matrix)
+    part = z if not z.holds else is_p0(matrix)
+    return Membership("K0", part.holds, part.certificate, PAPER)

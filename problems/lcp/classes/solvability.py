@@ -1,0 +1,174 @@
+"""Q0 and Q: every feasible, or every, right-hand side gives a solvable problem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from attrs import define, evolve
+
+from problems.lcp.classes.cones import is_r0, is_s, is_semimonotone
+from problems.lcp.classes.exact import ExactMatrix, index_sets, indices, over_common_denominator, simplest, solve
+from problems.lcp.classes.faces import face_point
+from problems.lcp.classes.membership import CPS, Certificate, Membership, show_vector
+from problems.lcp.classes.minors import is_p, is_z
+from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, feasible_point, positive_point
+from problems.lcp.classes.sufficiency import is_row_sufficient
+
+LARGEST_COVER = 5
+"""Largest order for which the complementary cones are subtracted from the cone of feasible right-hand sides."""
+
+BUDGET = 4000
+"""Most linear programs spent on that subtraction before the answer is `not decided`."""
+
+Normals = list[list[int]]
+
+
+def is_q0(A: Any) -> Membership:
+    """Q0: LCP(q, A) has a solution whenever it is feasible.
+
+    Z and row sufficient matrices are Q0. Otherwise, for n up to `LARGEST_COVER`: A is Q0 exactly when the full
+    complementary cones cover pos[I, -A]; they are subtracted from it one by one with exact linear programs, and what is
+    left over is a q that is feasible and has no solution.
+    """
+    matrix = ExactMatrix.of(A)
+    cited = CPS + ", sections 3.2, 3.5 and 3.11"
+    for name, test in _SUFFICIENT_FOR_Q0.items():
+        if test(matrix).holds:
+            return Membership("Q0", True, Certificate(f"{name}, hence Q0"), cited)
+    return _by_cover(matrix, "Q0", "every feasible q", cited)
+
+
+_SUFFICIENT_FOR_Q0: dict[str, Callable[[Any], Membership]] = {"Z": is_z, "row sufficient": is_row_sufficient}
+
+
+def is_q(A: Any) -> Membership:
+    """Q: LCP(q, A) has a solution for every q. Q is the intersection of Q0 and S; E0 and R0 together imply it."""
+    matrix = ExactMatrix.of(A)
+    cited = CPS + ", sections 3.1, 3.2 and 3.9"
+    s = is_s(matrix)
+    if not s.holds:
+        return Membership("Q", False, evolve(s.certificate, sentence=f"not S: {s.certificate}"), cited)
+    if is_p(matrix).holds:
+        return Membership("Q", True, Certificate("P, hence Q with unique solutions"), cited)
+    if is_semimonotone(matrix).holds and is_r0(matrix).holds:
+        return Membership("Q", True, Certificate("E0 and R0, hence Q"), cited)
+    for name, test in _SUFFICIENT_FOR_Q0.items():
+        if test(matrix).holds:
+            return Membership("Q", True, Certificate(f"S and {name}, hence S and Q0"), cited)
+    return _by_cover(matrix, "Q", "every q (A is S, so every q is feasible)", cited)
+
+
+def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Membership:
+    if matrix.n > LARGEST_COVER:
+        sentence = f"no criterion that we use applies, and the cover of cones is decided up to n = {LARGEST_COVER} only"
+        return Membership(name, None, Certificate(sentence), cited)
+    search = _Subtraction(matrix)
+    try:
+        witness = search.leftover([])
+    except _BudgetSpentError:
+        sentence = f"the complementary cones were not subtracted within {BUDGET} linear programs"
+        return Membership(name, None, Certificate(sentence), cited)
+    if witness is None:
+        return Membership(name, True, Certificate(f"the full complementary cones cover {scope}"), cited)
+    sentence = f"q = {show_vector(witness)} is feasible and LCP(q, A) has no solution"
+    return Membership(name, False, Certificate(sentence, vector=witness), cited)
+
+
+class _BudgetSpentError(Exception):
+    """The subtraction has used its linear programs."""
+
+
+@define
+class _Subtraction:
+    """The cone pos[I, -A] minus the full complementary cones, as a search for a point left over.
+
+    The cone of feasible right-hand sides is q = y - A x with x, y >= 0; a region is a list of normals r with r . q > 0.
+    Only interiors matter: the union of the cones is closed, so what it misses is open.
+    """
+
+    matrix: ExactMatrix
+    spent: int = 0
+    cones: list[Normals] | None = None
+
+    def leftover(self, region: Normals) -> Point | None:
+        """A feasible q of the region with which the problem has no solution, or None if the cones cover the region."""
+        if self.cones is None:
+            self.cones = full_cones(self.matrix)
+        q = self._interior(region)
+        if q is None:
+            return None
+        cone = next((c for c in self.cones if all(_dot(r, q) >= 0 for r in c)), None)
+        if cone is None:
+            return self._unsolvable_near(q, region)
+        for i, normal in enumerate(cone):
+            rest = self.leftover([*region, *cone[:i], [-v for v in normal]])
+            if rest is not None:
+                return rest
+        return None
+
+    def _interior(self, region: Normals) -> Point | None:
+        if self.spent >= BUDGET:
+            raise _BudgetSpentError
+        self.spent += 1
+        n, entries = self.matrix.n, self.matrix.entries
+        system: list[Constraint] = []
+        for normal in region:
+            through_a = [sum(normal[i] * entries[i][j] for i in range(n)) for j in range(n)]
+            system.append(at_most([*through_a, *(-v for v in normal)], -1))
+        found = positive_point(system, 2 * n)
+        if found is None:
+            return None
+        x, y = found[:n], found[n:]
+        return tuple(b - _dot(row, x) for row, b in zip(entries, y))
+
+    def _unsolvable_near(self, q: Point, region: Normals) -> Point:
+        """Move q off the lower-dimensional cones, staying in the open set that the full cones miss.
+
+        The directions lie on the moment curve, which meets each hyperplane finitely often, so the search ends.
+        """
+        candidate, tries = q, 0
+        while any(_dot(r, candidate) <= 0 for r in region) or is_solvable(self.matrix, candidate):
+            tries += 1
+            step = Fraction(1, (2 * tries) ** self.matrix.n)
+            candidate = tuple(v + step * Fraction(tries**i, 2**tries) for i, v in enumerate(q))
+        return simplest(candidate, lambda v: is_feasible(self.matrix, v) and not is_solvable(self.matrix, v))
+
+
+def full_cones(matrix: ExactMatrix) -> list[Normals]:
+    """Inner normals of each complementary cone with interior: q lies in it when every product is nonnegative.
+
+    The normals are the rows of the inverse of the complementary matrix: times q, they give x on the set and w off it.
+    """
+    n = matrix.n
+    identity = [[int(i == j) for j in range(n)] for i in range(n)]
+    cones = []
+    for mask in (0, *index_sets(n)):
+        chosen = indices(mask)
+        complementary = [
+            [-entry if j in chosen else unit for j, (entry, unit) in enumerate(zip(row, units, strict=True))]
+            for row, units in zip(matrix.entries, identity, strict=True)
+        ]
+        inverse = solve(complementary, identity)
+        if inverse is not None:
+            cones.append(inverse[0])
+    return cones
+
+
+def is_solvable(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
+    """Whether LCP(q, A) has a solution, where q is given in the units of the integer matrix."""
+    scaled, _ = over_common_denominator(q)
+    masks = (0, *index_sets(matrix.n))
+    return any(face_point(matrix.entries, scaled, indices(mask)) is not None for mask in masks)
+
+
+def is_feasible(matrix: ExactMatrix, q: Sequence[Fraction]) -> bool:
+    """Whether some x >= 0 has A x + q >= 0, where q is given in the units of the integer matrix."""
+    right, scale = over_common_denominator(q)
+    system = [at_least([scale * v for v in row], -b) for row, b in zip(matrix.entries, right)]
+    return feasible_point(system, matrix.n) is not None
+
+
+def _dot(a: Sequence[int], b: Sequence[Fraction]) -> Fraction:
+    return sum((u * v for u, v in zip(a, b)), Fraction(0))

@@ -1,0 +1,189 @@
+"""Positive semidefinite, column and row sufficient, sufficient, P_*."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Any
+
+from attrs import evolve
+
+from problems.lcp.classes.cones import columns, embed, quadratic_form
+from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices, simplest
+from problems.lcp.classes.membership import CPS, Certificate, Membership, show_set, show_vector, undecided
+from problems.lcp.classes.minors import is_p, is_p0
+from problems.lcp.classes.simplex import Point, at_most, positive_point
+
+LARGEST_SIGNED = 7
+"""Largest order of the sufficiency test, one linear program a sign vector, (3^n - 1)/2 of them."""
+
+LARGEST_DENSE = 64
+"""Largest order of the elimination that decides positive semidefiniteness; its numbers grow with n."""
+
+VALIAHO = "Väliaho, P_*-matrices are just sufficient, Linear Algebra Appl. 239 (1996) 103-108"
+HANDICAP = "Kojima, Megiddo, Noma and Yoshise, 1991; Väliaho, Linear Algebra Appl. 253 (1997) 279-298"
+
+
+def is_psd(A: Any) -> Membership:
+    """PSD: x'Ax >= 0 for all x; A need not be symmetric. Polynomial in n."""
+    matrix = ExactMatrix.of(A)
+    cited = CPS + ", section 3.1"
+    if matrix.n > LARGEST_DENSE:
+        return undecided("PSD", matrix.n, LARGEST_DENSE, cited)
+    x = _negative_direction([[Fraction(v) for v in row] for row in matrix.symmetric_part.entries])
+    if x is None:
+        sentence = "the elimination of the symmetric part meets no negative pivot"
+        return Membership("PSD", True, Certificate(sentence), cited)
+    x = simplest(x, lambda v: quadratic_form(matrix, v) < 0)
+    value = quadratic_form(matrix, x)
+    sentence = f"x = {show_vector(x)} has x'Ax = {value}"
+    return Membership("PSD", False, Certificate(sentence, value=value, vector=x), cited)
+
+
+def _negative_direction(S: list[list[Fraction]]) -> Point | None:
+    """A vector with x'Sx < 0 for symmetric S, or None when S is positive semidefinite."""
+    if not S:
+        return None
+    top, rest = S[0], S[1:]
+    pivot = top[0]
+    if pivot < 0:
+        return (Fraction(1), *(Fraction(0) for _ in rest))
+    if pivot == 0:
+        partner = next((j for j, v in enumerate(top) if v), None)
+        if partner is not None:
+            head = -(S[partner][partner] + 1) / (2 * top[partner])
+            return (head, *(Fraction(j == partner) for j in range(1, len(S))))
+        below = _negative_direction([row[1:] for row in rest])
+        return None if below is None else (Fraction(0), *below)
+    below = _negative_direction([[v - row[0] * t / pivot for v, t in zip(row[1:], top[1:])] for row in rest])
+    if below is None:
+        return None
+    return (-sum((t * y for t, y in zip(top[1:], below)), Fraction(0)) / pivot, *below)
+
+
+def is_column_sufficient(A: Any) -> Membership:
+    """Column sufficient: x_i (Ax)_i <= 0 for all i implies x_i (Ax)_i = 0 for all i."""
+    return _sufficient(ExactMatrix.of(A), "column sufficient", "A")
+
+
+def is_row_sufficient(A: Any) -> Membership:
+    """Row sufficient: the transpose is column sufficient. Exactly then every KKT point solves LCP(q, A), for all q."""
+    return _sufficient(ExactMatrix.of(A).transpose, "row sufficient", "A'")
+
+
+def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
+    cited = "Cottle, Pang and Venkateswaran, Linear Algebra Appl. 114/115 (1989) 231-249; " + CPS + ", section 3.5"
+    shortcut = _known_class(matrix)
+    if shortcut is not None:
+        return Membership(name, True, Certificate(shortcut), cited)
+    p0 = is_p0(matrix)
+    if matrix.n > LARGEST_SIGNED:
+        if p0.holds is False:
+            return Membership(name, False, evolve(p0.certificate, sentence=f"not P0: {p0.certificate}"), cited)
+        return undecided(name, matrix.n, LARGEST_SIGNED, cited)
+    violation = _reversed_vector(matrix)
+    if violation is None:
+        sentence = f"no sign pattern of x allows x_i ({symbol}x)_i <= 0 for all i and < 0 for some i"
+        return Membership(name, True, Certificate(sentence), cited)
+    support, x = violation
+    products = show_vector([v * y for v, y in zip(x, matrix.image(x), strict=True)])
+    sentence = f"x = {show_vector(x)} has x_i ({symbol}x)_i = {products}"
+    return Membership(name, False, Certificate(sentence, support, vector=x), cited)
+
+
+def _known_class(matrix: ExactMatrix) -> str | None:
+    if is_psd(matrix).holds:
+        return "PSD, hence sufficient"
+    return "P, hence sufficient" if is_p(matrix).holds else None
+
+
+def _reversed_vector(matrix: ExactMatrix) -> tuple[Indices, Point] | None:
+    """An x with x_i (Ax)_i <= 0 for all i and < 0 for some i: one exact linear program a sign vector, up to x -> -x."""
+    for mask in index_sets(matrix.n):
+        support = indices(mask)
+        block = columns(matrix, support)
+        for signs in _signs(len(support)):
+            rows = [[s * t * v for t, v in zip(signs, block[i])] for s, i in zip(signs, support)]
+            total = [sum(column) for column in zip(*rows)]
+            found = positive_point([*(at_most(row) for row in rows), at_most(total, -1)], len(support))
+            if found is not None:
+                return support, embed(matrix.n, support, [s * v for s, v in zip(signs, found)])
+    return None
+
+
+def _signs(m: int) -> Iterator[tuple[int, ...]]:
+    return ((1, *rest) for rest in itertools.product((1, -1), repeat=m - 1))
+
+
+def is_sufficient(A: Any) -> Membership:
+    """Sufficient: row and column sufficient."""
+    matrix = ExactMatrix.of(A)
+    row, column = is_row_sufficient(matrix), is_column_sufficient(matrix)
+    failed = next((part for part in (row, column) if part.holds is False), None)
+    if failed is not None:
+        certificate = evolve(failed.certificate, sentence=f"not {failed.name}: {failed.certificate}")
+        return Membership("sufficient", False, certificate, row.cited)
+    if row.holds and column.holds:
+        return Membership("sufficient", True, Certificate("row sufficient and column sufficient"), row.cited)
+    return undecided("sufficient", matrix.n, LARGEST_SIGNED, row.cited)
+
+
+def is_p_star(A: Any) -> Membership:
+    """P_*: (1 + 4 kappa) sum_{I+} x_i (Ax)_i + sum_{I-} x_i (Ax)_i >= 0 for all x and some kappa >= 0.
+
+    P_* is the same as sufficient (Väliaho 1996), which decides it. The certificate's value is kappa itself where it is
+    known exactly (zero for PSD) and otherwise a lower bound, as its sentence says; the paper's tau is 4 kappa.
+    """
+    matrix = ExactMatrix.of(A)
+    sufficient = is_sufficient(matrix)
+    if not sufficient.holds:
+        return Membership("P_*", sufficient.holds, sufficient.certificate, VALIAHO)
+    if is_psd(matrix).holds:
+        return Membership("P_*", True, Certificate("PSD: kappa = 0 exactly", value=Fraction(0)), HANDICAP)
+    if matrix.n == 2:
+        kappa = _handicap_of_pair(matrix, (0, 1))
+        text = f"kappa = {float(kappa):.6g} from the closed form for n = 2; the value is that number rounded down"
+        return Membership("P_*", True, Certificate(text, value=kappa), HANDICAP)
+    kappa, source = _handicap_bound(matrix)
+    text = f"kappa >= {float(kappa):.6g}, a lower bound only, from {source}"
+    return Membership("P_*", True, Certificate(text, value=kappa), HANDICAP)
+
+
+def _handicap_bound(matrix: ExactMatrix) -> tuple[Fraction, str]:
+    """The best of the closed form on principal submatrices of order 2 and of small integer vectors."""
+    n = matrix.n
+    best, source = Fraction(0), "the definition"
+    for pair in itertools.combinations(range(n), 2):
+        kappa = _handicap_of_pair(matrix, pair)
+        if kappa > best:
+            best, source = kappa, f"the principal submatrix of {show_set(pair)}"
+    reach = 2 if n <= 5 else 1
+    vectors = itertools.product(range(-reach, reach + 1), repeat=n) if n <= LARGEST_SIGNED else ()
+    for x in vectors:
+        ratio = _ratio(matrix, x)
+        if ratio > best:
+            best, source = ratio, f"x = {x}"
+    return best, source
+
+
+def _ratio(matrix: ExactMatrix, x: Sequence[int]) -> Fraction:
+    """The kappa that this x alone asks for."""
+    products = [v * sum(a * u for a, u in zip(row, x)) for v, row in zip(x, matrix.entries)]
+    gain, total = sum(p for p in products if p > 0), sum(products)
+    return Fraction(-total, 4 * gain) if total < 0 else Fraction(0)
+
+
+def _handicap_of_pair(matrix: ExactMatrix, pair: Indices) -> Fraction:
+    """The handicap of a sufficient principal submatrix of order 2, rounded down to 40 binary digits.
+
+    1 + 4 kappa = max(b^2, c^2) / (sqrt(a d) + sqrt(a d - b c))^2 for [[a, b], [c, d]], where it exceeds 1.
+    """
+    i, j = pair
+    rows = matrix.entries
+    a, b, c, d = rows[i][i], rows[i][j], rows[j][i], rows[j][j]
+    scale = 1 << 80
+    root_sum = math.isqrt(a * d * scale) + math.isqrt((a * d - b * c) * scale) + 2
+    tau = Fraction(max(b * b, c * c) * scale, root_sum**2) - 1
+    return max(tau / 4, Fraction(0))

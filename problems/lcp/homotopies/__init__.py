@@ -1,0 +1,27 @@
+"""Homotopies for the linear complementarity problem: plug-ins of `continuation`, each with its reduction to order n."""
+
+from problems.lcp.homotopies.kkt import KKTHomotopy
+from problems.lcp.homotopies.starts import Start, default_start, random_start
+from problems.lcp.homotopies.structure import Structure
+from problems.lcp.homotopies.two_vector import (
+    KojimaMegiddoMizunoHomotopy,
+    TwoVectorHomotopy,
+    WangHomotopy,
+    XuHomotopy,
+    YuHomotopy,
+    ZhaoHomotopy,
+)
+
+__all__ = [
+    "KKTHomotopy",
+    "KojimaMegiddoMizunoHomotopy",
+    "Start",
+    "Structure",
+    "TwoVectorHomotopy",
+    "WangHomotopy",
+    "XuHomotopy",
+    "YuHomotopy",
+    "ZhaoHomotopy",
+    "default_start",
+    "random_start",
+]

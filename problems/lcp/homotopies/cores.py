@@ -1,0 +1,223 @@
+"""From the full system to its core: complementary pairs eliminated, the rest factored, the answer refined.
+
+The homotopies of this package couple unknowns in pairs, ``s_i v_i + x_i p_i - c_i l = r_i`` (l is the increment of
+lambda), which come from x_i y_i = lambda c_i. One unknown of each pair is eliminated; what is left is the core.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.linear import BorderedSystem, SingularError
+
+REFINEMENTS = 4
+"""Corrections in the full system that a solve may take; one is the rule."""
+
+FIRM = 1e-9
+"""Relative size of a correction, component by component, after which the corrected solution is at round-off."""
+
+RESOLVED = 1e-6
+"""A component smaller than this, of the largest one in the units of the point, need not have relative accuracy."""
+
+ROUND_OFF = 1e-13
+"""Relative size of the tangent's correction below which the core's solutions are taken as they are."""
+
+SPREAD = 1e3
+"""Ratio of the largest to the smallest factor of the pairs up to which the tangent's correction speaks for others."""
+
+LOOSE = 1e-3
+"""Relative size of the first correction, in the units of the point, above which a core is not believed."""
+
+
+_silently = np.errstate(all="ignore")
+"""A pair of zeros gives an inf here, which the factorisation of the core then reports."""
+
+
+@frozen(eq=False)
+class Pairs:
+    """The pairs ``s v + x p - c l = r`` solved for one unknown each.
+
+    ``v = a k + e (r + c l)`` and ``p = b k + f (r + c l)``, where k is the unknown kept: v where p is eliminated, so
+    that e = 0, and p where v is, so that f = 0.
+    """
+
+    a: Array
+    b: Array
+    e: Array
+    f: Array
+    c: Array
+    sign: int
+    """Sign of the determinant of the eliminated part: that of the whole is this times the core's."""
+
+    def of(self, k: Array, r: Array, l: float) -> tuple[Array, Array]:
+        """The pair (v, p)."""
+        t = r + self.c * l
+        return self.a * k + self.e * t, self.b * k + self.f * t
+
+
+@_silently
+def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
+    """Eliminate every p: what is left keeps the symmetry of the core."""
+    f = 1.0 / x
+    ones, zeros = np.ones_like(x), np.zeros_like(x)
+    return Pairs(ones, -s * f, zeros, f, c, _parity(np.count_nonzero(x < 0.0)))
+
+
+@_silently
+def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
+    """Eliminate the unknown with the larger coefficient: no cancellation, and either coefficient may be zero."""
+    swapped = np.abs(x) < np.abs(s)
+    pivot = np.where(swapped, s, x)
+    inverse = 1.0 / pivot
+    ratio = np.where(swapped, x, s) * -inverse
+    ones, zeros = np.ones_like(x), np.zeros_like(x)
+    # Each exchange of a v with its p is one exchange of columns.
+    sign = _parity(np.count_nonzero(pivot < 0.0) + np.count_nonzero(swapped))
+    return Pairs(
+        np.where(swapped, ratio, ones),
+        np.where(swapped, ones, ratio),
+        np.where(swapped, inverse, zeros),
+        np.where(swapped, zeros, inverse),
+        c,
+        sign,
+    )
+
+
+def sizes(*blocks: Array) -> tuple[Array, float]:
+    """Magnitudes of all components, one for a zero, with one for the parameter; and the ratio of their extremes."""
+    magnitudes = np.abs(np.concatenate([*blocks, [1.0]]))
+    smallest = float(magnitudes.min())
+    if smallest == 0.0:
+        return np.where(magnitudes > 0.0, magnitudes, 1.0), np.inf
+    with np.errstate(over="ignore"):
+        return magnitudes, float(magnitudes.max()) / smallest
+
+
+def _parity(count: int | np.intp) -> int:
+    return -1 if count % 2 else 1
+
+
+@frozen(eq=False)
+class Full:
+    """The full bordered system, known by its products.
+
+    Attributes
+    ----------
+    apply : callable
+        z -> H' z, ``(N + 1,) -> (N,)``.
+    border : Array
+        (N + 1,).
+    units : Array
+        Positive sizes of the unknowns, (N + 1,), in which a correction is called large or small.
+    spread : float
+        Ratio of the largest to the smallest coefficient in the pairs; inf if one is zero.
+    """
+
+    apply: Callable[[Array], Array]
+    border: Array
+    units: Array
+    spread: float
+
+    def residual(self, z: Array, r: Array, rho: float) -> tuple[Array, float]:
+        """``(r, rho) - M z``."""
+        return r - self.apply(z), rho - float(self.border @ z)
+
+
+@frozen(eq=False)
+class Probe:
+    """The core to be used, its tangent (the solution for (0, 1)), and whether its solutions need no correction."""
+
+    core: BorderedSystem
+    tangent: Array
+    firm: bool
+
+
+@frozen(eq=False, slots=False)
+class Refined:
+    """A bordered system solved by its quick core and corrected in full, by its robust core where that fails.
+
+    The quick core is smaller and symmetric, and loses digits as a pair approaches zero; corrections regain them. The
+    first solve is for the tangent, which the engine wants anyway: its corrections tell which core serves, and whether
+    its solutions are at round-off as they are, as they are far from the boundary.
+    """
+
+    full: Full
+    quick: BorderedSystem | None
+    make_robust: Callable[[], BorderedSystem]
+
+    @cached_property
+    def sign(self) -> int:
+        """Sign of the determinant of the full bordered matrix."""
+        return self._probe.core.sign
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The solution z, shape (N + 1,)."""
+        probe = self._probe
+        if rho == 1.0 and not r.any():
+            return probe.tangent.copy()
+        if probe.firm:
+            return probe.core.solve(r, rho)
+        solution = self._refined(probe.core, r, rho)
+        return self._robustly(r, rho)[0] if solution is None else solution[0]
+
+    @cached_property
+    def robust(self) -> BorderedSystem:
+        """The core that pivots for stability."""
+        return self.make_robust()
+
+    @cached_property
+    def _probe(self) -> Probe:
+        nothing = np.zeros(self.full.border.size - 1)
+        solution = None if self.quick is None else self._refined(self.quick, nothing, 1.0)
+        if self.quick is None or solution is None:
+            tangent, moved = self._robustly(nothing, 1.0)
+            return Probe(self.robust, tangent, self._firm(moved))
+        return Probe(self.quick, solution[0], self._firm(solution[1]))
+
+    def _firm(self, moved: float) -> bool:
+        return moved <= ROUND_OFF and self.full.spread <= SPREAD
+
+    def _robustly(self, r: Array, rho: float) -> tuple[Array, float]:
+        """The solution by the robust core, corrected once whatever that does, and the size of the correction."""
+        z = self.robust.solve(r, rho)
+        correction = self.robust.solve(*self.full.residual(z, r, rho))
+        return z + correction, self._moved(correction, z)[0]
+
+    def _refined(self, core: BorderedSystem, r: Array, rho: float) -> tuple[Array, float] | None:
+        """The solution at round-off, and the size of its first correction; None where that is large.
+
+        Corrections shrink by the error of the core times the condition of the system, down to round-off times the
+        condition: where they stall at a small size, the residual is as small as it can be.
+        """
+        try:
+            with np.errstate(all="ignore"):
+                z = core.solve(r, rho)
+                changes: list[float] = []
+                while len(changes) < REFINEMENTS:
+                    correction = core.solve(*self.full.residual(z, r, rho))
+                    z = z + correction
+                    moved, overall = self._moved(correction, z)
+                    if not overall <= LOOSE:
+                        return None
+                    stalled = bool(changes) and moved > 0.5 * changes[-1]
+                    changes.append(moved)
+                    if moved <= FIRM or stalled:
+                        break
+                return z, changes[0]
+        except SingularError:
+            pass
+        return None
+
+    def _moved(self, correction: Array, z: Array) -> tuple[float, float]:
+        """How much a correction changes z: component by component, and in the units of the point."""
+        units = self.full.units
+        size = float(np.abs(z / units).max())
+        if size == 0.0:
+            return 0.0, 0.0
+        relative = np.abs(correction) / (np.abs(z) + (RESOLVED * size) * units)
+        return float(relative.max()), float(np.abs(correction / units).max()) / size

@@ -1,0 +1,63 @@
+"""What interior paths have in common: the ratio test, the relative metric, and the numbers worth watching."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import field, frozen
+from attrs.validators import gt
+
+from continuation.arrays import Array
+from problems.lcp.problem import LCP
+
+LARGEST_FALL = 1e-3
+"""A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
+
+TINY = 1e-150
+"""Sizes below this count as this: its square can still be inverted."""
+
+
+@frozen
+class RelativeMetric:
+    """The mean square of relative changes, plus the square of the parameter's change.
+
+    ``|v|^2 = (1/N) sum_i (v_i / u_i)^2 + lam v_{N+1}^2`` for N unknowns, anew at each point: interior paths live in
+    orders of magnitude. The mean makes the step length independent of n; the sum takes about a tenth more steps.
+
+    Parameters
+    ----------
+    lam : float
+        The parameter's weight.
+    """
+
+    lam: float = field(default=1.0, validator=gt(0))
+
+    def weights(self, u: Array, v: Array, current: Array | None) -> Array:
+        """1/(N u_i^2), and `lam` for the parameter."""
+        n = u.size - 1
+        size = np.maximum(np.abs(u), TINY)
+        if current is not None:
+            # The size one step before is 1 / sqrt(n current).
+            np.maximum(size, LARGEST_FALL / np.sqrt(n * current), out=size)
+        weights: Array = 1.0 / (n * size * size)
+        weights[-1] = self.lam
+        return weights
+
+
+def longest_step(value: Array, direction: Array) -> float:
+    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components."""
+    falling = direction < 0.0
+    if not falling.any():
+        return np.inf
+    with np.errstate(over="ignore"):
+        return max(0.0, float((value[falling] / -direction[falling]).min()))
+
+
+def observed(problem: LCP, x: Array) -> dict[str, float]:
+    """The natural residual and the gap x'w, with w = A x + q."""
+    w = problem.w(x)
+    return {"natural_residual": float(np.abs(np.minimum(x, w)).max()), "gap": float(x @ w)}
+
+
+def convolved(a: Array, b: Array, k: int) -> Array:
+    """``sum_{j=1..k-1} a_j b_{k-j}``, shape (n,): what is known of coefficient k of a product of two series."""
+    return np.asarray(np.einsum("jn,jn->n", a[1:k], b[k - 1 : 0 : -1]))

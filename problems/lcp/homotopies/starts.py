@@ -1,0 +1,107 @@
+"""Where the paths begin: checks of given vectors, and default and random starts in the problem's own units.
+
+The KKT homotopy starts from any x0, z1, z2, w0 > 0: with w = A x + q + lambda (w0 - A x0 - q) it need not be feasible.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from problems.lcp.problem import LCP
+
+SCALES = (-0.5, 1.0)
+"""Random starts are scaled by ten to a power drawn from this interval."""
+
+SPREAD = (0.5, 1.5)
+"""The components of random starts vary by factors drawn from this interval."""
+
+
+@frozen(eq=False)
+class Start:
+    """A start of the KKT homotopy; each array has shape (n,) and is positive.
+
+    Attributes
+    ----------
+    x0, w0 : Array
+        The point, and what A x + q is taken for there.
+    z1, z2 : Array
+        The multipliers of x >= 0 and of A x + q >= 0.
+    """
+
+    x0: Array
+    z1: Array
+    z2: Array
+    w0: Array
+
+
+def positive_vector(name: str, value: Any, n: int) -> Array:
+    """A copy of `value` as n positive finite floats.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, what it held and what was expected.
+    """
+    try:
+        array = np.array(value)
+    except ValueError as error:
+        raise ValueError(f"{name}: expected {n} positive numbers ({error})") from None
+    if array.dtype.kind not in "fiu" or array.shape != (n,):
+        raise ValueError(f"{name}: expected {n} positive numbers, found shape {array.shape} of dtype {array.dtype}")
+    array = array.astype(float)
+    bad = ~(np.isfinite(array) & (array > 0.0))
+    if bad.any():
+        i = int(np.argmax(bad))
+        raise ValueError(f"{name}: expected positive finite numbers, found {array[i]} at index {i}")
+    return array
+
+
+def natural_units(problem: LCP) -> tuple[float, float]:
+    """Sizes (of x, of w) at which A x and q balance: |q|_inf over the largest row norm of A, and |q|_inf.
+
+    One where A or q is zero.
+    """
+    squares = problem.A.multiply(problem.A) if problem.sparse else problem.A * problem.A
+    row = float(np.sqrt(np.max(squares.sum(axis=1))))
+    w = float(np.abs(problem.q).max()) or row or 1.0
+    return w / row if 0.0 < row < np.inf else w, w
+
+
+def relaxed_w(problem: LCP, x0: Array, margin: float | Array) -> Array:
+    """A x0 + q where all of it is positive, else max(A x0 + q, 0) + margin, componentwise."""
+    w = problem.w(x0)
+    return w if (w > 0.0).all() else np.maximum(w, 0.0) + margin
+
+
+def centred(x0: Array, w0: Array) -> Start:
+    """The start whose products x0 z1 and w0 z2 all equal the geometric mean of the x0_i w0_j."""
+    product = float(np.exp(np.log(x0).mean() + np.log(w0).mean()))
+    return Start(x0, product / x0, product / w0, w0)
+
+
+def default_start(problem: LCP) -> Start:
+    """All components of x alike, in natural units; feasible where that is, else relaxed; centred."""
+    x, w = natural_units(problem)
+    x0 = np.full(problem.n, x)
+    return centred(x0, relaxed_w(problem, x0, w))
+
+
+def random_start(problem: LCP, generator: np.random.Generator) -> Start:
+    """A relaxed start for another try: scale and components random, all products x0 z1 and w0 z2 equal.
+
+    Parameters
+    ----------
+    problem : LCP
+    generator : numpy.random.Generator
+        Its state decides, so that restarts can be repeated.
+    """
+    x, w = natural_units(problem)
+    scale = 10.0 ** generator.uniform(*SCALES)
+    x0 = scale * x * generator.uniform(*SPREAD, problem.n)
+    w0 = np.maximum(problem.w(x0), 0.0) + scale * w * generator.uniform(*SPREAD, problem.n)
+    product = scale * scale * x * w
+    return Start(x0, product / x0, product / w0, w0)

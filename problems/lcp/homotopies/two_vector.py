@@ -1,0 +1,296 @@
+"""The homotopies in (x, y): Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno; one system, five sets of data."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+
+from continuation.arrays import Array, Matrix
+from continuation.linear import BorderedSystem
+from continuation.linearization import Linearization
+from problems.lcp.feasible import strictly_feasible_start
+from problems.lcp.homotopies import references
+from problems.lcp.homotopies.interior import RelativeMetric, convolved, longest_step, observed
+from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
+from problems.lcp.homotopies.starts import positive_vector
+from problems.lcp.homotopies.structure import Structure
+from problems.lcp.problem import LCP
+from problems.options import quiet
+
+
+@frozen(eq=False, slots=False)
+class TwoVectorHomotopy:
+    """A blend of ``A x + q = y`` with equations that the start satisfies, and ``x y = lambda x0 y0`` componentwise.
+
+    Made by `YuHomotopy`, `ZhaoHomotopy`, `XuHomotopy`, `WangHomotopy` and `KojimaMegiddoMizunoHomotopy`, which see to
+    the start. Where such a path reaches lambda = 0 its end solves the LCP; where it cannot, it diverges.
+
+    Attributes
+    ----------
+    name : str
+    problem : LCP
+    blend : Blend
+        What tells the five apart.
+    x0, y0 : Array
+        The start, positive, shape (n,).
+    references : tuple of str
+    structure : Structure
+    """
+
+    name: str
+    problem: LCP
+    blend: Blend
+    x0: Array
+    y0: Array
+    references: tuple[str, ...]
+    structure: Structure
+    target: ClassVar[float | None] = 0.0
+    metric: ClassVar[RelativeMetric] = RelativeMetric()
+
+    @property
+    def n(self) -> int:
+        """The order of A: the unknowns are 2n."""
+        return self.problem.n
+
+    @cached_property
+    def c(self) -> Array:
+        """X y at the start, shape (n,)."""
+        return self.x0 * self.y0
+
+    def start(self) -> tuple[Array, float]:
+        """(x0, y0) and 1."""
+        return np.concatenate([self.x0, self.y0]), 1.0
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """H, shape (2n,)."""
+        n = self.n
+        goal, origin = self._ends(y)
+        return np.concatenate([self.blend.sign * ((1.0 - lam) * goal + lam * origin), y[:n] * y[n:] - lam * self.c])
+
+    def _ends(self, y: Array) -> tuple[Array, Array]:
+        """A x + q - y, and what the blend puts in its place at lambda = 1."""
+        n, blend = self.n, self.blend
+        dx, dy = y[:n] - self.x0, self.y0 - y[n:]
+        origin = blend.x * dx + blend.y * dy
+        if blend.A:
+            origin += blend.A * (self.problem.A @ dx)
+        return self.problem.w(y[:n]) - y[n:], origin
+
+    def _system(self, y: Array, lam: float) -> PairSystem:
+        goal, origin = self._ends(y)
+        return PairSystem(self.structure, self.blend, lam, y[: self.n], y[self.n :], self.c, origin - goal)
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) in full, of order 2n, sparse as A is: for reference, the engine uses `bordered`."""
+        s, sign, eye = self._system(y, lam), self.blend.sign, sp.eye_array(self.n)
+        top = [sp.csr_array(sign * s.alpha * self.problem.A) + sign * s.beta * eye, -sign * s.gamma * eye]
+        whole = sp.block_array([top, [sp.diags_array(s.y), sp.diags_array(s.x)]], format="csr")
+        column = np.concatenate([sign * s.column, -self.c])
+        return (whole if self.problem.sparse else whole.toarray()), column
+
+    @quiet
+    def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
+        """Factor the bordered matrix of order 2n + 1 by way of one of order n + 1; see `factor_pairs`."""
+        # Copied, as what is factored must not follow a caller that goes on to change its y in place.
+        return factor_pairs(self._system(y.copy(), lam), border.copy())
+
+    @quiet
+    def differential(self, y: Array, lam: float, v: Array) -> Array:
+        """H' v, shape (2n,)."""
+        return self._system(y, lam).apply(v)
+
+    @quiet
+    def taylor(self, point: Linearization, order: int) -> Array:
+        """Coefficients of the path in the pseudo-arclength of `point`, shape (order + 1, 2n + 1)."""
+        n, blend = self.n, self.blend
+        c = np.zeros((order + 1, 2 * n + 1))
+        c[0] = point.u
+        c[1:2] = point.tangent
+        x, y, lam = c[:, :n], c[:, n:-1], c[:, -1:]
+        pull = np.zeros((order + 1, n))
+        defect = np.empty(2 * n)
+        for k in range(2, order + 1):
+            j = k - 1
+            slope = self.problem.A @ x[j]
+            pull[j] = blend.sign * (blend.x * x[j] - blend.y * y[j] + blend.A * slope - (slope - y[j]))
+            defect[:n] = convolved(lam, pull, k)
+            defect[n:] = convolved(x, y, k)
+            c[k] = point.solve(-defect)
+        return c
+
+    def max_step(self, u: Array, v: Array) -> float:
+        """How far along v until a component of x or y reaches zero; lambda itself is free."""
+        return longest_step(u[:-1], v[:-1])
+
+    def observe(self, y: Array, lam: float) -> dict[str, float]:
+        """The natural residual and the gap x'w at x."""
+        return observed(self.problem, y[: self.n])
+
+
+def YuHomotopy(
+    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+) -> TwoVectorHomotopy:
+    """Yu et al. 2006, for positive semidefinite A: ``(1-l)(A x + q - y) + l (x - x0)``, ``x y - l x0 y0``.
+
+    Parameters
+    ----------
+    problem : LCP
+    x0 : array_like, shape (n,), optional
+        Positive; ones by default.
+    y0 : array_like, shape (n,), optional
+        Positive; 1/x0 by default, which makes the second equation the published x y = l e.
+    structure : Structure, optional
+        That of the problem, to be shared.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument.
+    """
+    x0 = np.ones(_order(problem)) if x0 is None else positive_vector("x0", x0, _order(problem))
+    y0 = 1.0 / x0 if y0 is None else y0
+    return _made("Yu", problem, Blend(sign=1, x=1), x0, y0, references.YU, structure)
+
+
+def ZhaoHomotopy(
+    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+) -> TwoVectorHomotopy:
+    """Zhao et al. 2010, for N-matrices: ``(1-l)(y - A x - q) + l (x - x0)``, ``x y - l x0 y0``.
+
+    The reduced matrix (1-l)(A + diag(y/x)) - l I is indefinite even for positive definite A.
+
+    Parameters
+    ----------
+    problem : LCP
+    x0 : array_like, shape (n,), optional
+        Strictly feasible where y0 is not given; by default one found by `strictly_feasible_start`.
+    y0 : array_like, shape (n,), optional
+        Positive; A x0 + q by default. Any one satisfies the equations at l = 1.
+    structure : Structure, optional
+        That of the problem, to be shared.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument; `NoStrictlyFeasiblePoint` where a start was to be found and there is none.
+    """
+    x0, y0 = _feasible(problem, x0, y0)
+    return _made("Zhao", problem, Blend(sign=-1, x=-1), x0, y0, references.ZHAO, structure)
+
+
+def XuHomotopy(
+    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+) -> TwoVectorHomotopy:
+    """Xu et al., for P-matrices: ``(1-l)(y - A x - q) - l (x - x0)``, ``x y - l x0 y0``.
+
+    The first equation is Yu's with the sign changed: the same path if y0 is the same, started at y0 = A x0 + q.
+
+    Parameters
+    ----------
+    problem : LCP
+    x0 : array_like, shape (n,), optional
+        Strictly feasible where y0 is not given; by default one found by `strictly_feasible_start`.
+    y0 : array_like, shape (n,), optional
+        Positive; A x0 + q by default. Any one satisfies the equations at l = 1.
+    structure : Structure, optional
+        That of the problem, to be shared.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument; `NoStrictlyFeasiblePoint` where a start was to be found and there is none.
+    """
+    x0, y0 = _feasible(problem, x0, y0)
+    return _made("Xu", problem, Blend(sign=-1, x=1), x0, y0, references.XU, structure)
+
+
+def WangHomotopy(
+    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+) -> TwoVectorHomotopy:
+    """Wang et al. 2010, for P*-matrices: ``(1-l)(A x + q) - y + l y0``, ``x y - l x0 y0``.
+
+    No feasibility is needed. Not the homotopy of Kojima, Megiddo and Mizuno, whose y - A x - q fades in proportion to
+    l: the two differ by l A (x - x0), see `KojimaMegiddoMizunoHomotopy`.
+
+    Parameters
+    ----------
+    problem : LCP
+    x0 : array_like, shape (n,), optional
+        Positive; ones by default.
+    y0 : array_like, shape (n,), optional
+        Positive; max(1, |q|) by default.
+    structure : Structure, optional
+        That of the problem, to be shared.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument.
+    """
+    x0 = np.ones(_order(problem)) if x0 is None else x0
+    y0 = np.maximum(1.0, np.abs(problem.q)) if y0 is None else y0
+    return _made("Wang", problem, Blend(sign=1, y=1), x0, y0, references.WANG, structure)
+
+
+def KojimaMegiddoMizunoHomotopy(
+    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+) -> TwoVectorHomotopy:
+    """Kojima, Megiddo and Mizuno 1993: ``A x + q - y + l (y0 - A x0 - q)``, ``x y - l x0 y0``.
+
+    The central path of infeasible interior-point methods, which Han carried over to tensors. With a and b of the
+    source, (x y, y - A x - q) = l (a, b): for b > 0 they prove convergence for classes up to L*- and copositive-plus
+    matrices. For a strictly feasible start with y0 = A x0 + q the path is feasible throughout.
+
+    Parameters
+    ----------
+    problem : LCP
+    x0 : array_like, shape (n,), optional
+        Positive; ones by default.
+    y0 : array_like, shape (n,), optional
+        Positive; max(A x0 + q, 0) + max(1, |q|) by default, so that b > 0.
+    structure : Structure, optional
+        That of the problem, to be shared.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument.
+    """
+    x0 = np.ones(_order(problem)) if x0 is None else positive_vector("x0", x0, _order(problem))
+    if y0 is None:
+        y0 = np.maximum(problem.w(x0), 0.0) + np.maximum(1.0, np.abs(problem.q))
+    return _made(
+        "Kojima-Megiddo-Mizuno", problem, Blend(sign=1, y=1, A=1), x0, y0, references.KOJIMA_MEGIDDO_MIZUNO, structure
+    )
+
+
+def _order(problem: LCP) -> int:
+    if not isinstance(problem, LCP):
+        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    return problem.n
+
+
+def _feasible(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
+    """A start with y0 = A x0 + q > 0 unless y0 is given."""
+    n = _order(problem)
+    x0 = strictly_feasible_start(problem) if x0 is None else positive_vector("x0", x0, n)
+    if y0 is None:
+        y0 = problem.w(x0)
+        if not (y0 > 0.0).all():
+            i = int(np.argmin(y0))
+            raise ValueError(f"x0: expected A x0 + q > 0 (or give y0 > 0), found (A x0 + q)[{i}] = {y0[i]}")
+    return x0, y0
+
+
+def _made(
+    name: str, problem: LCP, blend: Blend, x0: Any, y0: Any, source: str, structure: Structure | None
+) -> TwoVectorHomotopy:
+    n = _order(problem)
+    x0, y0 = positive_vector("x0", x0, n), positive_vector("y0", y0, n)
+    shared = structure if structure is not None else Structure(problem)
+    return TwoVectorHomotopy(name, problem, blend, x0, y0, (source, references.DUTTA_DAS_JANA), shared)

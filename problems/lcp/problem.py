@@ -1,0 +1,97 @@
+"""The linear complementarity problem: its data, validated, and the error measure used everywhere."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import field, frozen
+
+from continuation.arrays import Array, Matrix
+from problems.options import finite_vector
+
+
+def _q(value: Any) -> Array:
+    return finite_vector("q", value)
+
+
+def _matrix(value: Any) -> Matrix:
+    """A finite square float matrix, dense or CSR."""
+    if sp.issparse(value):
+        matrix = sp.csr_array(value)
+        if matrix.dtype.kind not in "fiub":
+            raise ValueError(f"A: expected real numbers, found dtype {matrix.dtype}")
+        matrix = matrix.astype(float)
+        matrix.sum_duplicates()
+        entries: Array = matrix.data
+    else:
+        if np.iscomplexobj(value):
+            raise ValueError("A: expected real numbers, found complex ones")
+        try:
+            matrix = np.array(value, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"A: expected real numbers, found {type(value).__name__} ({error})") from None
+        entries = matrix
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
+        raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
+    if not np.isfinite(entries).all():
+        raise ValueError(f"A: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
+    return matrix
+
+
+@frozen(eq=False)
+class LCP:
+    """LCP(q, A): find x with x >= 0, w = A x + q >= 0 and x_i w_i = 0 for all i.
+
+    Parameters
+    ----------
+    A : array_like or scipy sparse, shape (n, n)
+        Any real matrix. Integers and float32 are converted; sparse input stays sparse (CSR).
+    q : array_like, shape (n,)
+
+    Raises
+    ------
+    ValueError
+        If an argument is empty, not numeric, not finite, not square, or of a shape that disagrees.
+
+    References
+    ----------
+    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992.
+    """
+
+    A: Matrix = field(converter=_matrix)
+    q: Array = field(converter=_q)
+
+    @q.validator
+    def _same_order(self, attribute: object, q: Array) -> None:
+        if q.size != self.A.shape[0]:
+            raise ValueError(f"q: expected {self.A.shape[0]} numbers, one a row of A, found {q.size}")
+
+    @property
+    def n(self) -> int:
+        """The order of A."""
+        return int(self.q.size)
+
+    @property
+    def sparse(self) -> bool:
+        """Whether A is stored as a sparse array."""
+        return bool(sp.issparse(self.A))
+
+    def w(self, x: Array) -> Array:
+        """A x + q, shape (n,)."""
+        product: Array = self.A @ x + self.q
+        return product
+
+    def natural_residual(self, x: Array) -> float:
+        """max_i |min(x_i, w_i)|, absolute."""
+        return float(np.abs(np.minimum(x, self.w(x))).max())
+
+    def scale(self, x: Array) -> float:
+        """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative."""
+        rows = abs(self.A).sum(axis=1)
+        return 1.0 + max(float(np.abs(self.q).max()), float(np.max(rows)) * float(np.abs(x).max()))
+
+    def relative_residual(self, x: Array) -> float:
+        """The natural residual divided by `scale`."""
+        return self.natural_residual(x) / self.scale(x)

@@ -1,0 +1,202 @@
+"""Exact linear algebra on float data: integer rows, and Dixon's p-adic solution of M z = b in rationals.
+
+A float is a dyadic rational, so a row of floats times a power of two is a row of integers; signs and solutions
+stay what they were. Nothing found here is trusted before M z = b has been checked in integers.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import gcd, isqrt
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array, Matrix
+
+Integers = NDArray[Any]
+"""An object array of Python integers."""
+
+PRIMES = (2_147_483_647, 2_147_483_629, 2_147_483_587)
+"""Below 2^31, so that a product of residues fits an int64; more than one, should one divide a determinant."""
+
+
+@frozen
+class IntegerRow:
+    """One row of [matrix, vector] times 2^shift: the nonzero columns, their integers, the vector's integer."""
+
+    columns: NDArray[Any]
+    values: list[int]
+    constant: int
+    shift: int
+
+    def times(self, numerators: list[int], denominator: int) -> int:
+        """The sign-true value of (row . z + constant) for z = numerators / denominator, times that denominator."""
+        total = self.constant * denominator
+        for column, value in zip(self.columns, self.values):
+            total += value * numerators[column]
+        return total
+
+
+def integers(values: Array) -> tuple[list[int], int]:
+    """The integers m and the shift k with values = m / 2^k, k >= 0, exactly."""
+    mantissas, exponents = np.frexp(values)
+    whole = np.ldexp(mantissas, 53).astype(np.int64).tolist()
+    powers = np.where(mantissas == 0.0, 0, exponents - 53)
+    shift = max(0, -int(powers.min(initial=0)))
+    return [m << (int(p) + shift) if m else 0 for m, p in zip(whole, powers)], shift
+
+
+def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
+    """The rows of [matrix, vector] as integers, each scaled by its own power of two."""
+    rows = []
+    stored = sp.csr_array(matrix) if sp.issparse(matrix) else None
+    for i, constant in enumerate(vector):
+        if stored is None:
+            columns = np.flatnonzero(matrix[i])
+            entries = matrix[i][columns]
+        else:
+            span = slice(stored.indptr[i], stored.indptr[i + 1])
+            columns, entries = stored.indices[span], stored.data[span]
+        whole, shift = integers(np.append(entries, constant))
+        rows.append(IntegerRow(columns, whole[:-1], whole[-1], shift))
+    return rows
+
+
+def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[list[int], int] | None:
+    """A rational solution of an integer system of any shape and rank, columns without a pivot staying at the guess.
+
+    Parameters
+    ----------
+    matrix : object array of shape (m, k)
+        Python integers.
+    right : list of m integers
+    guess : Array of shape (k,)
+        Floats: large entries get pivots first, and the dependent columns keep these values exactly.
+
+    Returns
+    -------
+    (numerators, denominator) or None
+        Checked in integers on every row; None if the system is inconsistent at the guess.
+
+    References
+    ----------
+    Dixon, Exact solution of linear equations using p-adic expansions, Numer. Math. 40, 1982.
+    """
+    kept, shift = integers(guess)
+    for prime in PRIMES:
+        rows, columns, inverse = _invert(matrix, np.argsort(-np.abs(guess), kind="stable"), prime)
+        free = np.setdiff1d(np.arange(guess.size), columns)
+        numerators, denominator = list(kept), 1 << shift
+        if columns.size:
+            moved = np.array(right, dtype=object)[rows] << shift
+            if free.size:
+                moved = moved - matrix[np.ix_(rows, free)] @ np.array(kept, dtype=object)[free]
+            lifted = _dixon(matrix[np.ix_(rows, columns)], moved, inverse, prime)
+            if lifted is None:
+                continue
+            solved, scale = lifted
+            numerators = [value * scale for value in numerators]
+            denominator *= scale
+            for column, value in zip(columns, solved):
+                numerators[column] = value
+        product = matrix @ np.array(numerators, dtype=object) if guess.size else np.zeros(len(right), dtype=object)
+        if all(left == value * denominator for left, value in zip(product, right)):
+            common = gcd(denominator, *numerators)
+            return [value // common for value in numerators], denominator // common
+    return None
+
+
+def fractions(numerators: list[int], denominator: int) -> tuple[Fraction, ...]:
+    """Numerators over a common denominator, as reduced fractions."""
+    return tuple(Fraction(value, denominator) for value in numerators)
+
+
+def _invert(matrix: Integers, order: NDArray[Any], prime: int) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Rows and columns of a largest block that is nonsingular modulo the prime, and that block's inverse there."""
+    m = matrix.shape[0]
+    work = np.hstack([(matrix % prime).astype(np.int64), np.eye(m, dtype=np.int64)])
+    unused = np.ones(m, dtype=bool)
+    rows, columns = [], []
+    for column in order:
+        nonzero = np.flatnonzero(unused & (work[:, column] != 0))
+        if nonzero.size == 0:
+            continue
+        row = int(nonzero[0])
+        work[row] = work[row] * pow(int(work[row, column]), -1, prime) % prime
+        others = np.flatnonzero(work[:, column])
+        others = others[others != row]
+        work[others] = (work[others] - work[others, column][:, None] * work[row]) % prime
+        unused[row] = False
+        rows.append(row)
+        columns.append(int(column))
+    k = matrix.shape[1]
+    chosen = np.array(rows, dtype=np.intp)
+    # Pivot rows are combinations of pivot rows alone, so this block of the accumulated operations is the inverse.
+    return chosen, np.array(columns, dtype=np.intp), work[np.ix_(chosen, k + chosen)]
+
+
+def _dixon(block: Integers, right: Integers, inverse: NDArray[Any], prime: int) -> tuple[list[int], int] | None:
+    """Solve block z = right, lifting modulo powers of the prime until a rational vector passes the exact check."""
+    residual = right
+    expansion = np.zeros(right.size, dtype=object)
+    power, steps, attempt = 1, 0, 4
+    longest = _hadamard_steps(block, right, prime)
+    while True:
+        reduced = (residual % prime).astype(np.int64)
+        digit = ((inverse * reduced) % prime).sum(axis=1) % prime
+        digits = digit.astype(object)
+        residual = (residual - block @ digits) // prime
+        expansion = expansion + digits * power
+        power *= prime
+        steps += 1
+        if steps >= attempt or steps >= longest:
+            found = _reconstruct(expansion, power)
+            if found is not None and (block @ np.array(found[0], dtype=object) == right * found[1]).all():
+                return found
+            if steps >= longest:
+                return None
+            attempt = min(longest, attempt + attempt // 2)
+
+
+def _hadamard_steps(block: Integers, right: Integers, prime: int) -> int:
+    """Lifting steps after which Hadamard's and Cramer's bounds leave no other rational vector."""
+    bits = sum(int(sum(int(v) ** 2 for v in row)).bit_length() / 2 + 1 for row in block)
+    bits += max(int(abs(value)).bit_length() for value in right)
+    return int(2 * bits / (prime.bit_length() - 1)) + 2
+
+
+def _reconstruct(expansion: Integers, modulus: int) -> tuple[list[int], int] | None:
+    """Numerators and one common denominator, all below sqrt(modulus / 2), congruent to the expansion; else None."""
+    bound = isqrt(modulus // 2)
+    denominator = 1
+    numerators: list[int] = []
+    for value in expansion:
+        scaled = int(value) * denominator % modulus
+        if scaled > modulus // 2:
+            scaled -= modulus
+        if abs(scaled) > bound:
+            factor = _denominator(scaled % modulus, modulus, bound)
+            denominator *= factor
+            if denominator > bound:
+                return None
+            numerators = [numerator * factor for numerator in numerators]
+            scaled = scaled * factor % modulus
+            if scaled > modulus // 2:
+                scaled -= modulus
+        numerators.append(scaled)
+    return numerators, denominator
+
+
+def _denominator(value: int, modulus: int, bound: int) -> int:
+    """The denominator of the fraction congruent to value with numerator at most bound (Euclid's algorithm, halfway)."""
+    before, now = modulus, value
+    factor_before, factor = 0, 1
+    while now > bound:
+        quotient = before // now
+        before, now = now, before - quotient * now
+        factor_before, factor = factor, factor_before - quotient * factor
+    return abs(factor)

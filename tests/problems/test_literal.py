@@ -1,0 +1,88 @@
+"""The paper's algorithm, read literally: the counts measured with an independent program, and what they hide."""
+
+import numpy as np
+import pytest
+
+from problems.lcp import LCP
+from problems.lcp.homotopies import KKTHomotopy
+from problems.literal import LiteralSettings, run_literally
+from problems.paper import EXAMPLES
+
+# Iterations of an independent implementation with l0 = 0.5, eps1 = 1e-9, eps2 = 1e-3, eps3 = 1e-6.
+COUNTS = {1: 18, 2: 21, 3: 15, 4: 24, 5: 17, 6: 24, 7: 18, 8: 3289, 9: 27, 10: 1955}
+
+
+@pytest.fixture(scope="module", params=EXAMPLES, ids=lambda example: f"{example.number}-{example.label}")
+def run(request):
+    example = request.param
+    return example, run_literally(example.problem, example.x0, example.z1, example.z2)
+
+
+def test_the_measured_iterations_come_out(run):
+    example, result = run
+    assert result.iterations == COUNTS[example.number]
+    assert result.claims_solution
+    assert result.ended_by.startswith("Step 5")
+    assert 0 < result.lam[-1] <= 1e-9
+
+
+def test_every_point_passes_the_tests_of_step_3_but_one(run):
+    """Step 4 lets a point pass that fails them, if lambda has moved by eps2: so x_2 < 0 on example 1, and it jumps."""
+    example, result = run
+    homotopy = KKTHomotopy(example.problem, example.x0, example.z1, example.z2)
+    passed = [
+        0 < u[-1] < 1 and (u[:-1] > 0).all() and np.linalg.norm(homotopy.residual(u[:-1], u[-1])) <= 1
+        for u in result.u[1:]
+    ]
+    failed = [i for i, good in enumerate(passed, start=1) if not good]
+    assert failed == ([3] if example.number == 1 else [])
+    if failed:
+        assert result.u[3, 1] == pytest.approx(-0.01745, abs=1e-5)
+
+
+def test_the_claim_is_true_on_all_examples_but_the_first(run):
+    example, result = run
+    if example.number == 1:
+        assert result.residual == pytest.approx(1 / 6, abs=1e-6)
+        np.testing.assert_allclose(result.x, [1 / 6, 0], atol=1e-6)
+    else:
+        # Example 7 ends with an error like sqrt(lambda) = 3e-5, since its solution is not strictly complementary.
+        assert result.residual <= (1e-4 if example.number == 7 else 2e-7)
+        np.testing.assert_allclose(result.x, example.printed_solution, atol=1e-4)
+
+
+def test_the_step_never_exceeds_one(run):
+    _, result = run
+    # A prediction of length at most 1 and a correction; where the steps are long the correction is short.
+    lengths = np.linalg.norm(np.diff(result.u, axis=0), axis=1)
+    assert np.median(lengths) <= 1 + 1e-6
+
+
+def test_a_larger_a0_ends_by_step_4_outside_the_interval():
+    example = EXAMPLES[1]
+    result = run_literally(example.problem, example.x0, settings=LiteralSettings(a0=1e-3))
+    assert result.ended_by.startswith("Step 4")
+    assert result.claims_solution
+    assert result.lam[-1] < 0
+
+
+def test_a_limit_is_reported_and_claims_nothing():
+    example = EXAMPLES[7]
+    result = run_literally(example.problem, example.x0, settings=LiteralSettings(max_iterations=5))
+    assert result.iterations == 5
+    assert not result.claims_solution
+    assert "5 iterations" in result.ended_by
+
+
+def test_a_start_that_is_not_strictly_feasible_is_refused():
+    with pytest.raises(ValueError, match=r"x0: expected a strictly feasible point.*found -1 at 1"):
+        run_literally(LCP([[1, 0], [0, 1]], [0, -2]), [1, 1])
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [("l0", 1.0), ("l0", 0.0), ("eps1", 0.0), ("eps2", -1.0), ("eps3", 0.0), ("a0", 0.0), ("max_iterations", 0)],
+)
+def test_settings_are_checked(setting, value):
+    with pytest.raises(ValueError, match=setting):
+        LiteralSettings(**{setting: value})
