@@ -1,0 +1,172 @@
+"""The stepper's state as one block of bytes: what a resumed trace starts from."""
+
+from __future__ import annotations
+
+import json
+import struct
+import zlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.archive.codec import UnknownError, UnstorableError, decode, encode, order
+from continuation.state import State
+from continuation.tracer import Tracer
+
+_HEAD = struct.Struct("<QQI")
+OPTIONS = ("predictor", "corrector", "controller", "metric", "events", "tolerance", "budget", "target", "direction")
+"""The arguments of `continuation.Tracer` that determine a path, and are kept."""
+
+_INLINE_BYTES = 1 << 16
+
+
+@frozen(eq=False)
+class Checkpoint:
+    """A point from which a path continues exactly.
+
+    Attributes
+    ----------
+    sequence : int
+        Grows with each checkpoint written.
+    path, rows : int
+        The path's number, and how many of its rows come before the state.
+    state : State
+    counts : mapping
+        The counters at that point.
+    seconds : float
+        Wall-clock time spent so far.
+    run : mapping
+        Options, homotopy and index in a sweep, described.
+    """
+
+    sequence: int
+    path: int
+    rows: int
+    state: State
+    counts: Mapping[str, int]
+    seconds: float
+    run: Mapping[str, Any]
+
+
+class _Block:
+    """Arrays in a row; an array that occurs twice is stored once."""
+
+    def __init__(self) -> None:
+        self.arrays: list[np.ndarray[Any, Any]] = []
+        self._known: dict[int, int] = {}
+
+    def place(self, name: str, array: Any) -> Any:
+        number = self._known.setdefault(id(array), len(self.arrays))
+        if number == len(self.arrays):
+            self.arrays.append(array)
+        return {"number": number, "dtype": array.dtype.str, "shape": list(array.shape)}
+
+
+class _Arrays:
+    """The reverse of `_Block`: one array object for each number, so that what was identical is so again."""
+
+    def __init__(self, raw: bytes) -> None:
+        self._raw = raw
+        self._offset = 0
+        self._made: list[np.ndarray[Any, Any]] = []
+
+    def fetch(self, place: Any) -> Any:
+        # Arrays were numbered in the order in which the description names them first.
+        if place["number"] == len(self._made):
+            dtype, count = np.dtype(place["dtype"]), int(np.prod(place["shape"], dtype=int))
+            array = np.frombuffer(self._raw, dtype, count, self._offset).reshape(place["shape"]).copy()
+            self._offset += array.nbytes
+            self._made.append(array)
+        return self._made[place["number"]]
+
+
+def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Options and homotopy of a tracer as JSON; what cannot be stored is said in its place, under "unstorable".
+
+    Parameters
+    ----------
+    tracer : Tracer
+    member : int or None
+        Index of the homotopy in its sweep.
+    homotopy : mapping, optional
+        The homotopy's description, where its arrays are in the file's own problem group.
+    """
+    options = {name: _described(value) for name, value in _options(tracer).items()}
+    return {"options": options, "homotopy": homotopy or _described(tracer.homotopy), "member": member}
+
+
+def _options(tracer: Tracer) -> dict[str, Any]:
+    values = {name: getattr(tracer.settings, name) for name in OPTIONS}
+    return {**values, "events": _asked_for(tracer)}
+
+
+def _asked_for(tracer: Tracer) -> tuple[Any, ...]:
+    """The tracer's events without the homotopy's own, which a new tracer adds again in the same order."""
+    own, watched = tuple(getattr(tracer.homotopy, "events", ())), tracer.settings.events
+    if not own:
+        return watched
+    first = 0 if watched[0] is own[0] or watched[0] == own[0] else 1
+    return watched[first + len(own) :]
+
+
+def _described(value: Any) -> Any:
+    """Arrays in the JSON itself: options are small, and a homotopy with large ones belongs to the problem group."""
+    try:
+        return encode(value, _whole)
+    except UnstorableError as error:
+        return {"unstorable": str(error)}
+
+
+def _whole(name: str, array: Any) -> Any:
+    if array.nbytes > _INLINE_BYTES:
+        raise UnstorableError(f"{name} is an array of {array.nbytes} bytes in a homotopy that is not the file's first")
+    lying = order(array)
+    raw = array.tobytes(lying).hex()
+    return {"dtype": array.dtype.str, "shape": list(array.shape), "order": lying, "hex": raw}
+
+
+def whole(place: Any) -> Any:
+    """The array again."""
+    flat = np.frombuffer(bytes.fromhex(place["hex"]), np.dtype(place["dtype"]))
+    return flat.reshape(place["shape"], order=place["order"]).copy("K")
+
+
+def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
+    """Head (sequence, length, CRC-32), JSON, a line end, the description of the run, a line end, the arrays.
+
+    `run` is the JSON of ``checkpoint.run``, if it is at hand: it does not change along a path.
+    """
+    block = _Block()
+    tree = {
+        "path": checkpoint.path,
+        "rows": checkpoint.rows,
+        "counts": dict(checkpoint.counts),
+        "seconds": checkpoint.seconds,
+        "state": encode(checkpoint.state, block.place),
+    }
+    run = json.dumps(dict(checkpoint.run)).encode() if run is None else run
+    parts = [json.dumps(tree).encode(), run, b"".join(np.ascontiguousarray(a).tobytes() for a in block.arrays)]
+    body = b"\n".join(parts)
+    return _HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
+
+
+def unpack(raw: bytes) -> Checkpoint | None:
+    """The checkpoint, or None where the bytes are not a whole one (never written, or torn by a kill)."""
+    if len(raw) < _HEAD.size:
+        return None
+    sequence, length, crc = _HEAD.unpack_from(raw)
+    body = raw[_HEAD.size : _HEAD.size + length]
+    if not length or len(body) < length or zlib.crc32(body) != crc:
+        return None
+    head, run, arrays = body.split(b"\n", 2)
+    tree = json.loads(head)
+    try:
+        state = decode(tree["state"], _Arrays(arrays).fetch)
+    except UnknownError:
+        # The state of another version of the library: the points are as good as ever, only resuming is over.
+        return None
+    return Checkpoint(
+        sequence, tree["path"], tree["rows"], state, tree["counts"], tree["seconds"], json.loads(run)
+    )

@@ -1,0 +1,215 @@
+"""The page that `continuation inspect` shows: what ran, when, with what, how it ended, its events and its work."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from continuation.archive.reader import Archive
+from continuation.archive.resume import RESUMABLE
+from continuation.archive.schema import COUNT_NAMES
+from continuation.path import Kind, Path
+from continuation.status import Status
+
+_DETAILED = 3
+_LISTED = 12
+_SHOWN = 4
+
+
+def describe(archive: Archive) -> str:
+    """The page, about 80 columns wide: one section a path where there are few, an overview where there are many."""
+    parts = [_head(archive)]
+    if not len(archive):
+        parts.append("No path was begun.")
+    elif len(archive) <= _DETAILED:
+        parts += [_one_path(archive, number) for number in range(len(archive))]
+    else:
+        parts.append(_many_paths(archive))
+    hint = _hint(archive)
+    return "\n\n".join([*parts, hint] if hint else parts) + "\n"
+
+
+# -- what ran -------------------------------------------------------------------------------------------------
+
+
+def _head(archive: Archive) -> str:
+    about = archive.attributes
+    title = str(about.get("title", ""))
+    homotopy = " ".join(filter(None, (about.get("homotopy", ""), _within(about.get("homotopy_distribution", "")))))
+    versions = ", ".join(
+        f"{name} {about.get(f'{key}_version', '?')}"
+        for name, key in (("continuation", "library"), ("Python", "python"), ("numpy", "numpy"), ("scipy", "scipy"),
+                          ("h5py", "h5py"), ("HDF5", "hdf5"))
+    )
+    lines = [
+        ("file", f"{archive.file}, {_bytes(archive.file.stat().st_size)}, {about.get('schema', '')}"),
+        ("holds", f"{_plural(len(archive), 'path')}, {_plural(archive.points.size, 'point')} of "
+                  f"{_plural(archive.layout.unknowns, 'unknown')}"),
+        ("when", f"{about.get('created', '')} on {about.get('host', '')}"),
+        ("homotopy", homotopy),
+        ("parameters", _fields(json.loads(about.get("parameters", "{}") or "{}"))),
+        *_settings(json.loads(about.get("settings", "{}"))),
+        ("software", versions),
+        ("BLAS", f"{about.get('blas', '')}, threads {about.get('blas_threads', '')}"),
+        ("parent", str(about.get("parent", ""))),
+        *(("history" if i == 0 else "", line) for i, line in enumerate(str(about.get("history", "")).splitlines())),
+    ]
+    body = "\n".join(f"  {name:<11}{text}" for name, text in lines if text)
+    return f"{title}\n{'=' * len(title)}\n{body}"
+
+
+def _settings(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
+    names = ("predictor", "corrector", "controller", "metric", "tolerance", "budget", "target", "events")
+    return [(name, _shown(settings[name])) for name in names if name in settings]
+
+
+def _shown(tree: Any) -> str:
+    """A stored description as Python would print it."""
+    if not isinstance(tree, dict):
+        return f"{tree:g}" if isinstance(tree, float) else str(tree)
+    if "class" in tree:
+        name = tree["class"].rpartition(":")[2].rpartition(".")[2]
+        return f"{name}({_fields(tree.get('fields') or tree.get('data', {}))})"
+    for kind in ("tuple", "list"):
+        if kind in tree:
+            return ", ".join(_shown(item) for item in tree[kind])
+    if "array" in tree:
+        place = tree["array"]
+        return str(place.get("values", f"array of shape {tuple(place.get('shape', ()))}"))
+    if "dict" in tree:
+        return _fields(tree)
+    return str(tree.get("function", f"sparse matrix of shape {tuple(tree.get('shape', ()))}"))
+
+
+def _fields(tree: Any) -> str:
+    fields = tree.get("dict", tree) if isinstance(tree, dict) else {}
+    return ", ".join(f"{name}={_shown(value)}" for name, value in fields.items())
+
+
+# -- how it went ----------------------------------------------------------------------------------------------
+
+
+def _one_path(archive: Archive, number: int) -> str:
+    path = archive.path(number)
+    row = {name: column[0] for name, column in archive.paths.block(slice(number, number + 1)).items()}
+    head = f"Path {number}: {path.status.name}"
+    lines = [head, "-" * len(head), f"  {path.message}"]
+    own = ", ".join(f"{name}={row[f'homotopy_{name}']:g}" for name in archive.layout.scalars)
+    lines += [f"  with {own}"] if own and len(archive) > 1 else []
+    if path.steps:
+        lines += _course(path)
+        lines += _events(path)
+    lines += ["", f"  work: {_work({name: int(row[name]) for name in COUNT_NAMES.values()})}; {row['wall_time']:.3g} s"]
+    return "\n".join(lines)
+
+
+def _course(path: Path) -> list[str]:
+    start, end = path.steps[0], path.steps[-1]
+    lengths = np.array([step.step_length for step in path.steps[1:]])
+    lines = [
+        "",
+        f"  {'':<8}{'lambda':>14}{'arclength':>14}  y",
+        f"  {'start':<8}{start.lam:>14.8g}{start.arclength:>14.8g}  {_vector(start.y)}",
+        f"  {'end':<8}{end.lam:>14.8g}{end.arclength:>14.8g}  {_vector(end.y)}",
+        "",
+    ]
+    if lengths.size:
+        residual, angle = max(s.residual_norm for s in path.steps), max(s.angle for s in path.steps)
+        lines.append(
+            f"  {_plural(lengths.size, 'step')} of length {lengths.min():.3g} to {lengths.max():.3g}, median "
+            f"{np.median(lengths):.3g}; largest residual {residual:.1e}; largest angle {angle:.2g} rad"
+        )
+    if path.end_error is not None:
+        lines.append(f"  end point known to {path.end_error:.1e}")
+    return lines
+
+
+def _events(path: Path) -> list[str]:
+    if not path.events:
+        return ["  no events"]
+    lines = ["", f"  {'event':<24}{'lambda':>16}{'arclength':>14}{'residual':>10}  y"]
+    lines += [
+        f"  {e.name[:23]:<24}{e.lam:>16.10g}{e.arclength:>14.8g}{e.residual_norm:>10.1e}  {_vector(e.y)}"
+        for e in path.events[:_LISTED]
+    ]
+    more = len(path.events) - _LISTED
+    return [*lines, f"  ... and {more} more"] if more > 0 else lines
+
+
+def _many_paths(archive: Archive) -> str:
+    statuses, kinds = archive.paths["status"], archive.points["kind"]
+    steps, times = archive.paths[COUNT_NAMES["accepted"]], archive.paths["wall_time"]
+    lines = ["How they ended", "--------------"]
+    for value, count in zip(*np.unique(statuses, return_counts=True)):
+        lines.append(f"  {count:>8}  {Status(int(value)).name}")
+    lines += ["", "Events", "------"]
+    for number, name in enumerate(archive.event_names):
+        rows = archive.points["event_index"] == number
+        if rows.any():
+            involved = np.unique(archive.points["path_index"][rows]).size
+            lines.append(f"  {int(rows.sum()):>8}  {name}, on {_plural(involved, 'path')}")
+    if not (kinds > Kind.TARGET).any():
+        lines.append("  none")
+    totals = {name: int(archive.paths[name].sum()) for name in COUNT_NAMES.values()}
+    lines += ["", "Work", "----", f"  {_work(totals)}; {times.sum():.3g} s"]
+    lines.append(f"  steps a path: {_spread(steps)}; seconds a path: {_spread(times)}")
+    return "\n".join([*lines, *_failures(archive)])
+
+
+def _failures(archive: Archive) -> list[str]:
+    """Paths that ended by an error, with its text."""
+    rows = np.flatnonzero(np.isin(archive.paths["status"], [int(Status.INTERRUPTED), int(Status.TRACING)]))
+    lines = ["", "Not finished", "------------"] if rows.size else []
+    for row in rows[:_LISTED]:
+        message = archive.paths["message"][row].decode() or "still being traced, or its writer was killed"
+        lines.append(f"  path {row} (member {archive.paths['member'][row]}): {message}")
+    return [*lines, f"  ... and {rows.size - _LISTED} more"] if rows.size > _LISTED else lines
+
+
+def _hint(archive: Archive) -> str:
+    """The next move, where there is one."""
+    if not archive.closed_by_writer:
+        return "Its writer is still at work, or was killed: then `continuation recover` makes the file whole."
+    last, checkpoint = len(archive) - 1, archive.checkpoint()
+    if checkpoint is None or checkpoint.path != last:
+        return ""
+    status = Status(int(archive.paths["status"][last]))
+    if status is Status.BUDGET_EXHAUSTED:
+        return f"Path {last} can be resumed with more steps: `continuation resume {archive.file} --steps N`."
+    return f"Path {last} can be resumed: `continuation resume {archive.file}`." if status in RESUMABLE else ""
+
+
+# -- words ----------------------------------------------------------------------------------------------------
+
+
+def _work(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{value} {name}" for name, value in counts.items())
+
+
+def _spread(values: Any) -> str:
+    low, middle, high = np.min(values), np.median(values), np.max(values)
+    return f"{low:.3g} to {high:.3g}, median {middle:.3g}"
+
+
+def _vector(y: Sequence[float] | Any) -> str:
+    shown = ", ".join(f"{value:.6g}" for value in y[:_SHOWN])
+    return f"({shown}{', ...' if len(y) > _SHOWN else ''})"
+
+
+def _plural(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _within(text: str) -> str:
+    return f"({text})" if text else ""
+
+
+def _bytes(size: float) -> str:
+    for unit in ("bytes", "KiB", "MiB"):
+        if size < 1024:
+            return f"{size:.0f} {unit}" if unit == "bytes" else f"{size:.1f} {unit}"
+        size /= 1024
+    return f"{size:.2f} GiB"

@@ -1,0 +1,142 @@
+"""Where an archive comes from: the root attributes that say what ran, with what, and when."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import socket
+import sys
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from functools import lru_cache
+from importlib import metadata
+from typing import Any
+
+import attrs
+import h5py
+import numpy as np
+import scipy
+
+from continuation.archive.checkpoint import OPTIONS
+from continuation.archive.codec import UnstorableError, encode, inline
+from continuation.archive.schema import SCHEMA
+from continuation.tracer import Tracer
+
+ENTRY_POINTS = "continuation.homotopies"
+_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+
+
+def now() -> str:
+    """The time in UTC, ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def history(attributes: Mapping[str, Any], what: str) -> dict[str, str]:
+    """The attribute `history` of CF, one line longer."""
+    import continuation
+
+    line = f"{now()} {what} (continuation {continuation.__version__})"
+    return {"history": "\n".join(filter(None, (attributes.get("history", ""), line)))}
+
+
+@lru_cache
+def software() -> dict[str, str]:
+    """Versions of everything below us. BLAS decides the last bits, so it is named with its threads."""
+    import continuation
+
+    blas = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
+    given = [f"{os.environ[name]} ({name})" for name in _THREADS if name in os.environ]
+    return {
+        "library": "continuation",
+        "library_version": continuation.__version__,
+        "python_version": platform.python_version(),
+        "numpy_version": np.__version__,
+        "scipy_version": scipy.__version__,
+        "h5py_version": h5py.__version__,
+        "hdf5_version": h5py.version.hdf5_version,
+        "blas": f"{blas.get('name', 'unknown')} {blas.get('version', '')}".strip(),
+        "blas_threads": given[0] if given else f"{os.cpu_count()} (cores)",
+        "machine": f"{platform.machine()} {platform.system()}",
+        "host": socket.gethostname(),
+    }
+
+
+@lru_cache
+def _distribution(path: str) -> str:
+    """Distribution and version that a class belongs to; empty for a script."""
+    point = _entry_point(path)
+    if point is not None and point.dist is not None:
+        return f"{point.dist.name} {point.dist.version}"
+    top = path.partition(":")[0].partition(".")[0]
+    for name in (top, *metadata.packages_distributions().get(top, ())):
+        try:
+            return f"{name} {metadata.version(name)}"
+        except metadata.PackageNotFoundError:
+            continue
+    return ""
+
+
+@lru_cache
+def _entry_point(path: str) -> metadata.EntryPoint | None:
+    """The entry point that registers a class as a homotopy; None where it is not."""
+    return next((point for point in metadata.entry_points(group=ENTRY_POINTS) if point.value == path), None)
+
+
+def process() -> dict[str, Any]:
+    """The process that writes: time, number, host and software."""
+    return {"created": now(), "process": np.int64(os.getpid()), **software()}
+
+
+def class_path(thing: Any) -> str:
+    """``module:class`` of an object, for people."""
+    return f"{type(thing).__module__}:{type(thing).__qualname__}"
+
+
+def scalars(homotopy: Any) -> dict[str, float]:
+    """The homotopy's numeric parameters: its public attrs fields that are numbers (None reads NaN)."""
+    if not attrs.has(type(homotopy)):
+        return {}
+    found = {}
+    for a in attrs.fields(type(homotopy)):
+        value = getattr(homotopy, a.name)
+        if not a.name.startswith("_") and (value is None or isinstance(value, (bool, int, float, np.number))):
+            found[a.name] = np.nan if value is None else float(value)
+    return found
+
+
+def readable(value: Any) -> Any:
+    """A description for people: what cannot be stored is shown as text."""
+    try:
+        return encode(value, inline)
+    except UnstorableError:
+        return repr(value)
+
+
+def root_attributes(tracer: Tracer | None, title: str) -> dict[str, Any]:
+    """The attributes of a new archive; without a tracer (no path ever began) those of the library alone."""
+    attributes: dict[str, Any] = {
+        "Conventions": "CF-1.11",
+        "featureType": "trajectory",
+        "schema": SCHEMA,
+        "title": title,
+        **process(),
+        "command": " ".join(sys.argv)[:1000],
+        **history({}, "created"),
+    }
+    if tracer is None:
+        return attributes
+    homotopy = tracer.homotopy
+    path = class_path(homotopy)
+    point = _entry_point(path)
+    described = readable(homotopy)
+    attributes |= {
+        "title": title or f"Paths of {type(homotopy).__name__}",
+        "homotopy": path,
+        "homotopy_entry_point": point.name if point is not None else "",
+        "homotopy_distribution": _distribution(path),
+        "parameters": json.dumps(described.get("fields", described.get("data")) if isinstance(described, dict) else {}),
+        "settings": json.dumps({name: readable(getattr(tracer.settings, name)) for name in OPTIONS}),
+        "references": "\n\n".join(getattr(homotopy, "references", ())),
+    }
+    return attributes

@@ -1,0 +1,316 @@
+"""`open_archive`: an archive as tables and as paths, read when asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from os import PathLike
+from pathlib import Path as File
+from types import TracebackType
+from typing import Any, overload
+
+import numpy as np
+
+from continuation.archive import frames, record
+from continuation.archive.checkpoint import Checkpoint, unpack
+from continuation.archive.errors import ArchiveError
+from continuation.archive.files import open_for_reading
+from continuation.archive.problem import read_problem
+from continuation.archive.rows import from_columns
+from continuation.archive.schema import COUNT_NAMES, EVENT_NAME, TANGENT_COLUMNS, Layout
+from continuation.archive.store import RESUME
+from continuation.archive.tables import Table
+from continuation.evaluation import Counts
+from continuation.path import Path
+from continuation.status import Status
+
+_AT_ONCE = 1 << 24
+"""Numbers (of 8 bytes) that are read in one go when all paths are asked for."""
+
+
+class Archive(Sequence[Path]):
+    """An archive open for reading: a sequence of paths, and two tables. Use it in a ``with`` statement.
+
+    Only what was committed is seen, so a file may be read while it grows. A path without an end (still growing, or
+    left by a kill) comes last, with the status TRACING.
+
+    Attributes
+    ----------
+    file : pathlib.Path
+    attributes : dict
+        Where the file comes from.
+    points, paths : Table
+        Columns by name: ``archive.points["arclength"]``.
+    event_names : tuple of str
+        What ``event_index`` counts.
+    closed_by_writer : bool
+        False for a file that is growing, or was left by a kill: `recover` makes it whole.
+    """
+
+    def __init__(self, file: str | PathLike[str]) -> None:
+        self.file = File(file)
+        self._h5, self.closed_by_writer = open_for_reading(self.file)
+        try:
+            self._read_structure()
+        except (OSError, RuntimeError, KeyError, ValueError) as error:
+            self._h5.close()
+            raise self._damaged(error) from error
+
+    def _read_structure(self) -> None:
+        file = self._h5
+        self.attributes: dict[str, Any] = dict(file.attrs)
+        # Paths first: their rows are counted after the points they need, so this order sees no path without its points.
+        self._committed_paths = int(file["committed_paths"][()])
+        self._committed_points = int(file["committed_points"][()])
+        self.layout = _layout(file)
+        # Raw bytes: h5netcdf, netCDF4 and h5py each decode text in their own way, HDF5 only stores it.
+        names = file["event_name"].astype(EVENT_NAME.storage)[:]
+        self.event_names = tuple(name.decode() for name in names)
+        lengths = self._fetch_path("n_points", slice(0, self._committed_paths))
+        self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
+        rest = self._committed_points - int(self._first_rows[-1])
+        if rest < 0:
+            raise ValueError(f"{-rest} points of its paths are missing")
+        self._unended: record.Record | None = None
+        if rest:
+            self._first_rows = np.append(self._first_rows, self._committed_points)
+            self._unended = self._record_of_unended(rest)
+        self.points = Table(self.layout.point_columns, self._committed_points, self._fetch_point)
+        self.paths = Table(self.layout.path_columns, len(self), self._fetch_path)
+
+    # -- the sequence -----------------------------------------------------------------------------------------
+
+    def __len__(self) -> int:
+        return self._committed_paths + (self._unended is not None)
+
+    @overload
+    def __getitem__(self, index: int) -> Path: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Path]: ...
+
+    def __getitem__(self, index: int | slice) -> Path | list[Path]:
+        if isinstance(index, slice):
+            return [self.path(i) for i in range(*index.indices(len(self)))]
+        return self.path(index)
+
+    def path(self, index: int) -> Path:
+        """One path, as it was traced: status, message, steps, events, counts.
+
+        Tangents are NaN where the file holds none; then `Path.__call__` interpolates linearly between points.
+
+        Raises
+        ------
+        IndexError
+            If there is no such path.
+        """
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
+        index %= len(self)
+        block = self.points.block(self.rows(index))
+        steps, events = from_columns(block, self.event_names, self.layout.observed)
+        row = {name: column[0] for name, column in self.paths.block(slice(index, index + 1)).items()}
+        end_error, winding = float(row["end_error"]), int(row["winding_number"])
+        return Path(
+            steps,
+            events,
+            Status(int(row["status"])),
+            row["message"].decode(),
+            Counts(**{name: int(row[column]) for name, column in COUNT_NAMES.items()}),
+            float(row["wall_time"]),
+            end_error=None if math.isnan(end_error) else end_error,
+            winding_number=winding or None,
+        )
+
+    def __iter__(self) -> Iterator[Path]:
+        # Many short reads cost much more than a long one, as long as that fits.
+        if self.points.size * (self.layout.unknowns + len(self.points)) <= _AT_ONCE:
+            self.points.load()
+            self.paths.load()
+        return (self.path(i) for i in range(len(self)))
+
+    def __repr__(self) -> str:
+        state = "" if self.closed_by_writer else ", not closed by its writer"
+        size = f"{len(self)} paths, {self.points.size} points of {self.layout.unknowns} unknowns"
+        return f"<Archive {self.file}: {size}{state}>"
+
+    def rows(self, index: int) -> slice:
+        """Where the path's rows are in the point table."""
+        return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
+
+    # -- views ------------------------------------------------------------------------------------------------
+
+    def select(
+        self,
+        *,
+        status: Status | Sequence[Status] | None = None,
+        kind: int | None = None,
+        event: str | None = None,
+        parameter: tuple[float, float] | None = None,
+    ) -> Selection:
+        """Points that satisfy all that is asked, and the paths that have such points.
+
+        Parameters
+        ----------
+        status : Status or sequence of Status
+            Points of paths that ended so. With nothing else asked, paths without points are among the selected.
+        kind : int
+            Points of this `continuation.Kind`, as ``Kind.TURNING_POINT``.
+        event : str
+            Points at which this event was located.
+        parameter : tuple of two floats
+            Points whose parameter lies within, ends included.
+
+        Raises
+        ------
+        ValueError
+            If the event does not occur in the file at all.
+        """
+        paths = np.ones(len(self), dtype=bool)
+        if status is not None:
+            wanted = [status] if isinstance(status, Status) else list(status)
+            paths = np.isin(self.paths["status"], [int(s) for s in wanted])
+        points = paths[self.points["path_index"]]
+        if kind is not None:
+            points &= self.points["kind"] == kind
+        if event is not None:
+            if event not in self.event_names:
+                raise ValueError(f"event: expected one of {', '.join(self.event_names)}, found {event!r}")
+            points &= self.points["event_index"] == self.event_names.index(event)
+        if parameter is not None:
+            low, high = parameter
+            points &= (self.points["parameter"] >= low) & (self.points["parameter"] <= high)
+        if kind is not None or event is not None or parameter is not None:
+            paths = np.zeros(len(self), dtype=bool)
+            paths[self.points["path_index"][points]] = True
+        return Selection(self, np.flatnonzero(points), np.flatnonzero(paths))
+
+    def to_xarray(self) -> Any:
+        """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
+        return frames.dataset(self, self.points, self.paths)
+
+    def to_dataframe(self) -> Any:
+        """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
+        return frames.dataframe(self.points)
+
+    # -- for resuming and copying -----------------------------------------------------------------------------
+
+    def checkpoint(self) -> Checkpoint | None:
+        """The latest point from which the last path can be resumed; None where there is none."""
+        if RESUME not in self._h5:
+            return None
+        found = [unpack(raw.tobytes()) for raw in self._h5[RESUME]["slots"][:]]
+        valid = [c for c in found if c is not None and self._covers(c)]
+        return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
+
+    def _covers(self, checkpoint: Checkpoint) -> bool:
+        """Whether the rows before the checkpoint are all committed: it is written before the counters are."""
+        if checkpoint.path >= len(self):
+            return False
+        rows = self.rows(checkpoint.path)
+        return bool(rows.start + checkpoint.rows <= rows.stop)
+
+    def problem(self) -> tuple[str, dict[str, Any]]:
+        """The first homotopy's description (JSON), and its arrays."""
+        return read_problem(self._h5)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._h5.close()
+
+    def __enter__(self) -> Archive:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # -- within -----------------------------------------------------------------------------------------------
+
+    def _fetch_point(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
+        try:
+            values: np.ndarray[Any, Any] = self._h5[name][rows]
+        except (OSError, RuntimeError, KeyError) as error:
+            raise self._damaged(error) from error
+        if len(values) < rows.stop - rows.start:
+            raise self._damaged(ValueError(f"{name} has fewer rows than were committed"))
+        return values
+
+    def _fetch_path(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
+        column = {column.name: column for column in self.layout.path_columns}[name]
+        dataset = self._h5[name].astype(column.storage) if column.length else self._h5[name]
+        try:
+            values: np.ndarray[Any, Any] = dataset[rows.start : min(rows.stop, self._committed_paths)]
+        except (OSError, RuntimeError, KeyError) as error:
+            raise self._damaged(error) from error
+        if rows.stop > self._committed_paths and self._unended is not None:
+            values = np.concatenate((values, record.to_columns(self._unended, self.layout)[name]))
+        return values
+
+    def _record_of_unended(self, rows: int) -> record.Record:
+        number = self._committed_paths
+        member = int(self._fetch_path("member", slice(number - 1, number))[0]) + 1 if number else 0
+        row = {**record.of_path(Path(), None, ()), "path": number, "member": member, "n_points": rows}
+        self._unended = row
+        checkpoint = self.checkpoint()
+        if checkpoint is not None and checkpoint.path == number:
+            row["member"] = number if checkpoint.run["member"] is None else checkpoint.run["member"]
+            row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
+            row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
+        return row
+
+    def _damaged(self, error: BaseException) -> ArchiveError:
+        reason = str(error).splitlines()[0][:160]
+        return ArchiveError(f"{self.file}: truncated or damaged ({reason})")
+
+
+class Selection:
+    """Some points of an archive, and the paths they belong to."""
+
+    def __init__(self, archive: Archive, points: Any, paths: Any) -> None:
+        self.archive = archive
+        self.numbers: list[int] = paths.tolist()
+        self.points = archive.points.choose(points)
+        self.paths = archive.paths.choose(paths)
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    def __iter__(self) -> Iterator[Path]:
+        return (self.archive.path(number) for number in self.numbers)
+
+    def __repr__(self) -> str:
+        return f"<Selection of {self.archive.file}: {len(self)} paths, {self.points.size} points>"
+
+    def to_xarray(self) -> Any:
+        """The selected points and paths as an `xarray.Dataset`; ``path_index`` keeps the numbers of the file."""
+        return frames.dataset(self.archive, self.points, self.paths)
+
+    def to_dataframe(self) -> Any:
+        """The selected points as a `pandas.DataFrame`."""
+        return frames.dataframe(self.points)
+
+
+def _layout(file: Any) -> Layout:
+    def named(prefix: str) -> tuple[str, ...]:
+        return tuple(sorted(name.removeprefix(prefix) for name in file if name.startswith(prefix)))
+
+    return Layout(
+        unknowns=int(file["y"].shape[1]),
+        controller=int(file["controller_state"].shape[1]),
+        observed=named("observed_"),
+        scalars=named("homotopy_"),
+        tangents=all(column.name in file for column in TANGENT_COLUMNS),
+    )
+
+
+def open_archive(file: str | PathLike[str]) -> Archive:
+    """Open an archive for reading; also one that is still growing, or was left by a kill.
+
+    Raises
+    ------
+    ArchiveError
+        One line for a file that is missing, unreadable, not HDF5, foreign, truncated, or of a newer schema.
+    """
+    return Archive(file)

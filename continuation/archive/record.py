@@ -1,0 +1,70 @@
+"""A finished path as a row of the path table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from continuation.archive.provenance import scalars
+from continuation.archive.schema import COUNT_NAMES, TEXT, Layout, text
+from continuation.path import Path
+from continuation.status import Status
+
+counted = attrgetter(*COUNT_NAMES)
+"""The counters of `Counts` as a tuple, in the order of `COUNT_NAMES`."""
+
+Record = dict[str, Any]
+"""The cells of a row by column name; the homotopy's scalars are one mapping under "scalars"."""
+
+
+def of_path(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Record:
+    """What the path itself says."""
+    return {
+        **{COUNT_NAMES[name]: value for name, value in zip(COUNT_NAMES, counted(path.counts))},
+        "status": int(path.status),
+        "message": path.message,
+        "seed": _seed(homotopy),
+        "wall_time": path.seconds,
+        "end_error": math.nan if path.end_error is None else path.end_error,
+        "winding_number": path.winding_number or 0,
+        "controller_state": controller,
+        "scalars": scalars(homotopy),
+    }
+
+
+def of_failure(homotopy: Any, error: BaseException) -> Record:
+    """A path that could not begin."""
+    path = Path(status=Status.INTERRUPTED, message=sentence(error))
+    return {**of_path(path, homotopy, ()), "n_points": 0}
+
+
+def sentence(error: BaseException) -> str:
+    """An exception in one line."""
+    return f"{type(error).__name__}: {error}".replace("\n", " ")
+
+
+def to_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
+    """The row as a block: each column an array of length 1."""
+    block: dict[str, Any] = {}
+    for column in layout.path_columns:
+        if column.name == "controller_state":
+            state = np.full((1, layout.controller), math.nan)
+            kept = record[column.name][: layout.controller]
+            state[0, : len(kept)] = kept
+            block[column.name] = state
+        elif column.name.startswith("homotopy_"):
+            value = record["scalars"].get(column.name.removeprefix("homotopy_"), math.nan)
+            block[column.name] = np.array([value])
+        else:
+            value = record[column.name]
+            block[column.name] = np.array([text(value, TEXT) if column.length else value], dtype=column.storage)
+    return block
+
+
+def _seed(homotopy: Any) -> int:
+    seed = getattr(homotopy, "seed", None)
+    return int(seed) if isinstance(seed, (int, np.integer)) and abs(int(seed)) < 2**63 else -1

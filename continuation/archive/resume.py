@@ -1,0 +1,181 @@
+"""`resume`: go on with a path that was interrupted, as if it never had been."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from os import PathLike
+from pathlib import Path as File
+from typing import Any
+
+import numpy as np
+
+from continuation.archive.checkpoint import Checkpoint, whole
+from continuation.archive.codec import UnknownError, decode
+from continuation.archive.copies import Share, put, write_copy
+from continuation.archive.errors import ArchiveError
+from continuation.archive.files import check_writable
+from continuation.archive.provenance import history, process
+from continuation.archive.reader import Archive, open_archive
+from continuation.archive.recover import check_dead, kept
+from continuation.archive.store import Store, check_new
+from continuation.archive.writer import PathLog
+from continuation.path import Path
+from continuation.status import Status
+from continuation.tracer import Observer, Tracer
+
+RESUMABLE = (
+    Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,
+)
+
+
+def resume(
+    file: str | PathLike[str],
+    homotopy: Any = None,
+    *,
+    archive: str | PathLike[str] | None = None,
+    observers: tuple[Observer, ...] = (),
+    **options: Any,
+) -> Path:
+    """Go on with the last path of an archive; the points that follow are bit for bit those of an uninterrupted trace.
+
+    The file is first copied up to the point to resume from, and the copy put in its place, so a kill at any moment
+    leaves a file to resume. The last stored point is computed again. Seconds of a budget count from now on.
+
+    Parameters
+    ----------
+    file : path
+        Interrupted, killed, recovered, or out of budget.
+    homotopy : Homotopy, optional
+        Needed where the file cannot say how to make it.
+    archive : path, optional
+        A new file to write to; else `file` itself goes on.
+    observers : tuple of Observer
+    **options
+        Of `continuation.Tracer`, in place of the stored ones: ``budget`` for a path whose budget is used up.
+
+    Returns
+    -------
+    Path
+        All of it. Tangents of the points before are NaN unless the archive holds tangents.
+
+    Raises
+    ------
+    ArchiveError
+        If the file cannot be read or replaced, its last path has ended or cannot be resumed, or a part is needed as
+        an argument.
+    ValueError
+        If the homotopy given is not the one of the file.
+    """
+    name = File(file)
+    target = name if archive is None else File(archive)
+    if archive is not None:
+        check_new(target)
+    with open_archive(name) as source:
+        checkpoint = _checkpoint(source, options)
+        tracer = Tracer(
+            _homotopy(source, checkpoint, homotopy), state=checkpoint.state, **_options(source, checkpoint, options)
+        )
+        rows = source.rows(checkpoint.path).start + checkpoint.rows
+        _check_homotopy(tracer.homotopy, checkpoint, float(source.points["residual_norm"][rows - 1]))
+        before = source.path(checkpoint.path)
+        store = _beginning(source, checkpoint, rows, target)
+    tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
+    tracer.path.events[:] = [event for event in before.events if event.step <= checkpoint.state.index]
+    log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer)
+    tracer.observers = (log, *observers)
+    try:
+        _run(tracer, checkpoint)
+    finally:
+        log.close()
+    tracer.path.seconds += checkpoint.seconds
+    return tracer.path
+
+
+def _run(tracer: Tracer, checkpoint: Checkpoint) -> None:
+    steps = iter(tracer)
+    # The first thing a resumed tracer does is to factor again; an uninterrupted one did not pay for that.
+    next(steps)
+    for name, count in checkpoint.counts.items():
+        setattr(tracer.counts, name, count)
+    for _ in steps:
+        pass
+
+
+def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
+    if not source.closed_by_writer:
+        check_dead(source)
+    if not len(source):
+        raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
+    last = len(source) - 1
+    status = Status(int(source.paths["status"][last]))
+    if status not in RESUMABLE:
+        raise ArchiveError(f"{source.file}: path {last} has ended ({status.name}), there is nothing to resume")
+    if status is Status.BUDGET_EXHAUSTED and "budget" not in options:
+        raise ArchiveError(f"{source.file}: the budget of path {last} is used up; pass budget=, a larger one")
+    checkpoint = source.checkpoint()
+    if checkpoint is None or checkpoint.path != last:
+        raise ArchiveError(f"{source.file}: path {last} has no state to resume from; trace it again")
+    return checkpoint
+
+
+def _homotopy(source: Archive, checkpoint: Checkpoint, given: Any) -> Any:
+    if given is not None:
+        return given
+    tree: Any = checkpoint.run["homotopy"]
+    fetch: Callable[[Any], Any] = whole
+    if tree.get("problem"):
+        text, arrays = source.problem()
+        tree, fetch = json.loads(text), arrays.__getitem__
+    try:
+        if "unstorable" in tree:
+            raise UnknownError(tree["unstorable"])
+        return decode(tree, fetch)
+    except UnknownError as error:
+        reason = f"the homotopy cannot be made from the file ({error}); pass homotopy="
+        raise ArchiveError(f"{source.file}: {reason}") from None
+
+
+def _options(source: Archive, checkpoint: Checkpoint, given: Mapping[str, Any]) -> dict[str, Any]:
+    stored = {}
+    for name, tree in checkpoint.run["options"].items():
+        if name in given:
+            continue
+        try:
+            if isinstance(tree, dict) and "unstorable" in tree:
+                raise UnknownError(tree["unstorable"])
+            stored[name] = decode(tree, whole)
+        except UnknownError as error:
+            raise ArchiveError(f"{source.file}: {name} cannot be made from the file ({error}); pass {name}=") from None
+    return {**stored, **given}
+
+
+def _check_homotopy(homotopy: Any, checkpoint: Checkpoint, stored: float) -> None:
+    """Whether the homotopy has the residual that the file says at the point to go on from."""
+    u = checkpoint.state.here.u
+    unknowns = np.size(homotopy.start()[0])
+    if unknowns != u.size - 1:
+        raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")
+    found = float(np.abs(homotopy.residual(u[:-1].copy(), float(u[-1]))).max())
+    if not found <= 100.0 * stored + 1e-12 * (1.0 + float(np.abs(u).max())):
+        raise ValueError(f"homotopy: expected the archive's residual {stored:.2g} at its last point, found {found:.2g}")
+
+
+def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File) -> Store:
+    """The file up to the checkpoint, ready to grow.
+
+    It is never closed on the way: a file opened again is, for a moment, neither closed nor safe from a kill.
+    """
+    if target == source.file:
+        check_writable(target)
+    parent = f"{source.file.name} ({source.attributes.get('created', '')})"
+    what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
+    attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
+    share = Share(source, checkpoint.path, rows)
+
+    def write(part: File) -> Store:
+        store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
+        store.share()
+        return store
+
+    return put(target, write)

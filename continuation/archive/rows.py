@@ -1,0 +1,131 @@
+"""Steps and events as columns of the point table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation.archive.schema import ACCEPTED, LOCATED, NO_EVENT, Layout
+from continuation.path import LocatedEvent, Step
+from continuation.segment import hermite
+
+_FLOATS = (
+    "arclength", "step_length", "residual_norm", "event_monitor", "contraction", "distance", "angle", "parameter_share",
+)
+_INTEGERS = {
+    "orientation": "i1", "kind": "i1", "role": "i1",
+    "event_index": "i2", "corrector_iterations": "i2", "rejections": "i2",
+}
+_NAN = math.nan
+
+
+@frozen
+class Row:
+    """A row to be: an accepted step, the event that it ends on if it does, or an event between two steps."""
+
+    step: Step | None
+    event: LocatedEvent | None = None
+
+    @property
+    def point(self) -> Step | LocatedEvent:
+        """The step, or else the event."""
+        point = self.step if self.step is not None else self.event
+        assert point is not None
+        return point
+
+
+def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
+    """The block of columns for some rows of one path; `number` numbers an event's name."""
+    m = len(rows)
+    floats, integers = np.empty((len(_FLOATS), m)), np.empty((len(_INTEGERS), m), dtype="i2")
+    values = [_values(row, number) for row in rows]
+    floats[:] = np.array([pair[0] for pair in values]).T
+    integers[:] = np.array([pair[1] for pair in values]).T
+    y, parameter = np.empty((m, layout.unknowns)), np.empty(m)
+    for i, row in enumerate(rows):
+        u = row.point.u
+        y[i] = u[:-1]
+        parameter[i] = u[-1]
+    block: dict[str, Any] = {"path_index": np.full(m, path, dtype="i4"), "parameter": parameter, "y": y}
+    block |= dict(zip(_FLOATS, floats))
+    block |= {name: column.astype(dtype) for (name, dtype), column in zip(_INTEGERS.items(), integers)}
+    if layout.tangents:
+        tangents = np.array([row.point.tangent for row in rows])
+        block["tangent_y"] = np.ascontiguousarray(tangents[:, :-1])
+        block["tangent_parameter"] = np.ascontiguousarray(tangents[:, -1])
+    for name in layout.observed:
+        block[f"observed_{name}"] = np.array([_observed(row, name) for row in rows])
+    return block
+
+
+def _values(row: Row, number: Callable[[str], int]) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    step, event = row.step, row.event
+    index, monitor = (NO_EVENT, _NAN) if event is None else (number(event.name), event.monitor)
+    if step is None:
+        assert event is not None
+        return (
+            (event.arclength, _NAN, event.residual_norm, monitor, _NAN, _NAN, _NAN, _NAN),
+            (event.orientation, event.kind, LOCATED, index, -1, -1),
+        )
+    return (
+        (step.arclength, step.step_length, step.residual_norm, monitor, step.contraction, step.distance, step.angle,
+         step.share),
+        (step.orientation, step.kind, ACCEPTED, index, step.corrector_iterations, step.rejections),
+    )
+
+
+def _observed(row: Row, name: str) -> float:
+    return float(row.step.observed.get(name, _NAN)) if row.step is not None else _NAN
+
+
+def from_columns(
+    block: Mapping[str, Any], names: Sequence[str], observed: Sequence[str]
+) -> tuple[list[Step], list[LocatedEvent]]:
+    """Steps and events of one path again. Tangents are NaN where the archive does not hold them."""
+    points = np.column_stack((block["y"], block["parameter"]))
+    tangents = np.full_like(points, _NAN)
+    if "tangent_y" in block:
+        tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"]))
+    cells = {name: block[name].tolist() for name in (*_FLOATS, *_INTEGERS)}
+    extras = {name: block[f"observed_{name}"].tolist() for name in observed}
+    steps: list[Step] = []
+    events: list[LocatedEvent] = []
+    for i in range(len(points)):
+        if cells["event_index"][i] != NO_EVENT:
+            events.append(_event(cells, i, points[i], tangents[i], names, len(steps)))
+        if cells["role"][i] == ACCEPTED:
+            seen = {name: column[i] for name, column in extras.items()}
+            steps.append(_step(cells, i, points[i], tangents[i], seen, len(steps)))
+    return (_joined(steps) if "tangent_y" in block else steps), events
+
+
+def _joined(steps: Sequence[Step]) -> list[Step]:
+    """The steps joined by cubics through points and tangents, for dense output."""
+    joined = list(steps[:1])
+    for before, after in pairwise(steps):
+        segment = hermite(before.u, before.tangent, after.u, after.tangent, before.tangent)
+        joined.append(evolve(after, segment=segment))
+    return joined
+
+
+def _event(cells: Mapping[str, Any], i: int, u: Any, v: Any, names: Sequence[str], step: int) -> LocatedEvent:
+    return LocatedEvent(
+        name=names[cells["event_index"][i]], kind=cells["kind"][i], arclength=cells["arclength"][i], u=u, tangent=v,
+        residual_norm=cells["residual_norm"][i], monitor=cells["event_monitor"][i], orientation=cells["orientation"][i],
+        step=step,
+    )
+
+
+def _step(cells: Mapping[str, Any], i: int, u: Any, v: Any, observed: Mapping[str, float], index: int) -> Step:
+    return Step(
+        index=index, u=u, tangent=v, arclength=cells["arclength"][i], step_length=cells["step_length"][i],
+        residual_norm=cells["residual_norm"][i], orientation=cells["orientation"][i], kind=cells["kind"][i],
+        corrector_iterations=cells["corrector_iterations"][i], rejections=cells["rejections"][i],
+        contraction=cells["contraction"][i], distance=cells["distance"][i], angle=cells["angle"][i],
+        share=cells["parameter_share"][i], observed=observed,
+    )

@@ -1,0 +1,177 @@
+"""The schema `continuation-path-1`: names, types, units and meanings of everything in the two tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import attrs
+import numpy as np
+from attrs import field, frozen
+
+from continuation.evaluation import Counts
+from continuation.path import Kind
+from continuation.status import Status
+
+SCHEMA = "continuation-path-1"
+"""Additions keep the name; a change of meaning would be `continuation-path-2`, which this reader refuses."""
+
+TEXT = 240
+"""Bytes (UTF-8) of a path's message."""
+
+NAME = 64
+"""Bytes (UTF-8) of an event's name."""
+
+ACCEPTED, LOCATED = 0, 1
+"""Roles of a row: an accepted step, or an event located between two of them."""
+
+NO_EVENT = -1
+CONTROLLER_STATE = 4
+"""Numbers kept of a controller's state at the end of a path, at least."""
+
+
+@frozen
+class Column:
+    """A variable of the archive.
+
+    `dtype` is numpy's; ``utf8:n`` is text of at most n bytes.
+    """
+
+    name: str
+    dtype: str
+    units: str
+    long_name: str
+    dimensions: tuple[str, ...] = ("point",)
+    more: Mapping[str, Any] = field(factory=dict)
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Units, long name and the rest, as the file has them."""
+        return {"units": self.units, "long_name": self.long_name, **self.more}
+
+    @property
+    def length(self) -> int:
+        """Bytes of a text; 0 for numbers."""
+        return int(self.dtype.removeprefix("utf8:")) if self.dtype.startswith("utf8:") else 0
+
+    @property
+    def storage(self) -> np.dtype[Any]:
+        """The type of an array that holds the column."""
+        return np.dtype(f"S{self.length}" if self.length else self.dtype)
+
+    @property
+    def missing(self) -> Any:
+        """What stands for a value that is not there: NaN, the empty text, -1."""
+        if self.length:
+            return b""
+        return np.nan if self.storage.kind == "f" else -1
+
+
+def _flags(names: tuple[str, ...], values: tuple[int, ...] | None = None) -> dict[str, Any]:
+    numbers = range(len(names)) if values is None else values
+    return {"flag_values": np.array(tuple(numbers), dtype="i1"), "flag_meanings": " ".join(names)}
+
+
+COUNT_NAMES = {name: {"residuals": "evaluations"}.get(name, name) for name in attrs.fields_dict(Counts)}
+"""Counter of `Counts` -> column of the path table."""
+
+_COUNT_MEANINGS = {
+    "residuals": "evaluations of the residual",
+    "jacobians": "evaluations of the derivative",
+    "factorizations": "factorisations of a bordered matrix",
+    "solves": "solves with a factorisation",
+    "accepted": "accepted steps",
+    "rejected": "rejected attempts at a step",
+}
+
+POINT_COLUMNS = (
+    Column("path_index", "i4", "1", "number of the path of this point", more={"instance_dimension": "path"}),
+    Column("arclength", "f8", "1", "arclength from the start, in the metric of the trace"),
+    Column("parameter", "f8", "1", "continuation parameter lambda"),
+    Column("y", "f8", "1", "unknowns", ("point", "component")),
+    Column("step_length", "f8", "1", "step length of the predictor; NaN at located events"),
+    Column("residual_norm", "f8", "1", "largest component of the residual"),
+    Column("orientation", "i1", "1", "sign of the determinant of [H'; tangent']; 0 where it is unknown"),
+    Column("kind", "i1", "1", "what the point is", more=_flags(Kind.NAMES)),
+    Column("role", "i1", "1", "accepted step, or event located between two steps",
+           more=_flags(("accepted_step", "located_event"), (ACCEPTED, LOCATED))),
+    Column("event_index", "i2", "1", "number of the event in event_name; -1 where there is none"),
+    Column("event_monitor", "f8", "1", "value of the event's monitor at the located point; NaN where there is none"),
+    Column("corrector_iterations", "i2", "1", "iterations of the corrector; -1 at located events"),
+    Column("rejections", "i2", "1", "rejected attempts before the accepted one; -1 at located events"),
+    Column("contraction", "f8", "1", "ratio of the corrector's increments; NaN at located events"),
+    Column("distance", "f8", "1", "length of the correction; NaN at located events"),
+    Column("angle", "f8", "radian", "angle between this tangent and the one before; NaN at located events"),
+    Column("parameter_share", "f8", "1", "the parameter's share of the tangent; NaN at located events"),
+)
+
+TANGENT_COLUMNS = (
+    Column("tangent_y", "f8", "1", "unit tangent, components of the unknowns", ("point", "component")),
+    Column("tangent_parameter", "f8", "1", "unit tangent, component of the parameter"),
+)
+
+PATH_COLUMNS = (
+    Column("path", "i8", "1", "number of the path", ("path",), {"cf_role": "trajectory_id"}),
+    Column("status", "i1", "1", "how the path ended", ("path",),
+           _flags(tuple(s.flag for s in Status), tuple(int(s) for s in Status))),
+    Column("message", f"utf8:{TEXT}", "1", "how the path ended, in words", ("path",)),
+    Column("member", "i8", "1", "index of the homotopy in its sweep; the number of the path outside of one", ("path",)),
+    Column("seed", "i8", "1", "seed of the homotopy's random numbers; -1 where there are none", ("path",)),
+    Column("n_points", "i8", "1", "rows of this path in the point table", ("path",)),
+    Column("wall_time", "f8", "s", "wall-clock time", ("path",)),
+    *(Column(COUNT_NAMES[name], "i8", "1", _COUNT_MEANINGS.get(name, name), ("path",)) for name in COUNT_NAMES),
+    Column("end_error", "f8", "1", "error estimate of the end point; NaN where there is none", ("path",)),
+    Column("winding_number", "i4", "1", "winding number of a singular end; 0 where there is none", ("path",)),
+    Column("controller_state", "f8", "1", "state of the step controller at the end", ("path", "controller")),
+)
+
+EVENT_NAME = Column("event_name", f"utf8:{NAME}", "1", "name of the event", ("event",))
+COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component",))
+
+
+@frozen
+class Layout:
+    """What one file holds besides the fixed columns.
+
+    Attributes
+    ----------
+    unknowns : int
+        N, one number a file.
+    controller : int
+        Numbers in `controller_state`.
+    observed : tuple of str
+        The homotopy's own scalars at each point: columns ``observed_<name>``.
+    scalars : tuple of str
+        The homotopy's numeric parameters: columns ``homotopy_<name>``, one value a path.
+    tangents : bool
+    """
+
+    unknowns: int
+    controller: int = CONTROLLER_STATE
+    observed: tuple[str, ...] = ()
+    scalars: tuple[str, ...] = ()
+    tangents: bool = False
+
+    @property
+    def point_columns(self) -> tuple[Column, ...]:
+        """The columns of the point table."""
+        tangents = TANGENT_COLUMNS if self.tangents else ()
+        own = (Column(f"observed_{name}", "f8", "1", f"{name}, observed by the homotopy") for name in self.observed)
+        return (*POINT_COLUMNS, *tangents, *own)
+
+    @property
+    def path_columns(self) -> tuple[Column, ...]:
+        """The columns of the path table."""
+        own = (Column(f"homotopy_{s}", "f8", "1", f"parameter {s} of the homotopy", ("path",)) for s in self.scalars)
+        return (*PATH_COLUMNS, *own)
+
+    def width(self, column: Column) -> tuple[int, ...]:
+        """The lengths of the column's dimensions beyond the first."""
+        lengths = {"component": self.unknowns, "controller": self.controller}
+        return tuple(lengths[name] for name in column.dimensions[1:])
+
+
+def text(value: str, length: int) -> bytes:
+    """UTF-8 of at most `length` bytes, cut between characters."""
+    raw = value.encode()
+    return raw if len(raw) <= length else raw[:length].decode(errors="ignore").encode()

@@ -1,0 +1,60 @@
+"""The two tables of an archive, read column by column when asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from continuation.archive.schema import Column
+
+Fetch = Callable[[str, slice], np.ndarray[Any, Any]]
+
+
+class Table(Mapping[str, "np.ndarray[Any, Any]"]):
+    """Columns by name; each is read when asked for, and remembered.
+
+    Attributes
+    ----------
+    columns : dict of str to Column
+        Names, units, long names, flags.
+    size : int
+        Rows.
+    """
+
+    def __init__(self, columns: tuple[Column, ...], rows: int, fetch: Fetch, chosen: Any = None) -> None:
+        self.columns = {column.name: column for column in columns}
+        self.size = rows if chosen is None else len(chosen)
+        self._rows, self._fetch, self._chosen = rows, fetch, chosen
+        self._read: dict[str, np.ndarray[Any, Any]] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
+        if name not in self.columns:
+            raise KeyError(f"no column {name!r}; there are {', '.join(self.columns)}")
+        if name not in self._read:
+            values = self._fetch(name, slice(0, self._rows))
+            self._read[name] = values if self._chosen is None else values[self._chosen]
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def __repr__(self) -> str:
+        return f"<Table of {self.size} rows: {', '.join(self.columns)}>"
+
+    def block(self, rows: slice) -> dict[str, np.ndarray[Any, Any]]:
+        """All columns of some rows: from memory where they are remembered, and not remembered where they are not."""
+        return {n: self._read[n][rows] if n in self._read else self._fetch(n, rows) for n in self.columns}
+
+    def load(self) -> None:
+        """Read everything."""
+        for name in self.columns:
+            self[name]
+
+    def choose(self, rows: Any) -> Table:
+        """The table of these rows only (numbers of all rows, in order)."""
+        return Table(tuple(self.columns.values()), self._rows, self._fetch, rows)

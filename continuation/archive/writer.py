@@ -1,0 +1,293 @@
+"""`PathLog`: the observer that writes paths to a file while they are traced."""
+
+from __future__ import annotations
+
+import json
+import time
+from os import PathLike
+from pathlib import Path as File
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from attrs import define, field, frozen
+
+from continuation.archive import record
+from continuation.archive.checkpoint import Checkpoint, describe_run, pack
+from continuation.archive.errors import ArchiveError
+from continuation.archive.problem import problem_data
+from continuation.archive.provenance import root_attributes, scalars
+from continuation.archive.record import Record, counted
+from continuation.archive.rows import Row, to_columns
+from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout
+from continuation.archive.store import SLOTS, Store, check_new
+from continuation.path import LocatedEvent, Step
+from continuation.state import State
+from continuation.status import Status
+from continuation.tracer import Tracer
+
+
+@frozen
+class Limits:
+    """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
+
+    rows: int = 256
+    nbytes: int = 4 << 20
+    seconds: float = 1.0
+
+
+@frozen(eq=False)
+class _Mark:
+    """A point to resume from: the state, the counters there, and how many rows of the path come before it."""
+
+    state: State
+    counts: tuple[int, ...]
+    rows: int
+
+
+@define(eq=False)
+class _Buffer:
+    """Rows not yet committed, and the number of the first: one object, so that a commit is one assignment."""
+
+    start: int
+    rows: list[Row] = field(factory=list)
+    nbytes: int = 0
+
+
+@define(eq=False)
+class _Open:
+    """The path being written."""
+
+    tracer: Tracer
+    number: int
+    rows: int = 0
+    seconds: float = 0.0
+    run: bytes | None = None
+    last: _Mark | None = None
+    resume: _Mark | None = None
+
+
+class PathLog:
+    """An observer that writes what it sees to an HDF5 file.
+
+    Rows are buffered, and committed at 256 rows, 4 MiB or one second, and at the end of a path; a kill loses at most
+    what was not committed. As a context manager one log holds many paths, traced one after another; else the file is
+    closed at the end of the first.
+
+    Parameters
+    ----------
+    file : path
+        Must not exist. The file is made at the first point, so a trace that is refused leaves none.
+    durable : bool
+        Wait for the disk at each commit: survives a power cut, not only a kill.
+    tangents : bool
+        Store the unit tangents as well.
+    title : str
+    limits : Limits
+        When to commit.
+
+    Attributes
+    ----------
+    member : int or None
+        Index in a sweep of the path to come.
+
+    Raises
+    ------
+    ArchiveError
+        If the file exists, or its directory cannot be written; later, if the disk is full.
+    ValueError
+        Later, if a path has another number of unknowns than the first one.
+    """
+
+    def __init__(
+        self,
+        file: str | PathLike[str],
+        *,
+        durable: bool = False,
+        tangents: bool = False,
+        title: str = "",
+        limits: Limits | None = None,
+    ) -> None:
+        check_new(File(file))
+        self._begin(File(file), durable, tangents, title, limits or Limits())
+
+    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits) -> None:
+        self.file = file
+        self.member: int | None = None
+        self._durable, self._tangents, self._title, self._limits = durable, tangents, title, limits
+        self._many = self._closed = False
+        self._store: Store | None = None
+        self._open: _Open | None = None
+        self._buffer = _Buffer(0)
+        self._paths = self._sequence = 0
+        self._known: tuple[Any, Any] = (None, None)
+        self._early: list[Record] = []
+        self._witness: Tracer | None = None
+        self._commit_at = 0.0
+
+    @classmethod
+    def continued(cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer) -> PathLog:
+        """A log that goes on with a path of which the file holds the beginning; for `resume`."""
+        log = cls.__new__(cls)
+        log._begin(store.file, store.durable, store.layout.tangents, "", Limits())
+        log._store, log._buffer, log._paths, log._sequence = store, _Buffer(points), paths, checkpoint.sequence
+        log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
+        mark = _Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
+        log._open = _Open(tracer, paths, checkpoint.rows, checkpoint.seconds, None, mark, mark)
+        log._commit_at = time.monotonic() + log._limits.seconds
+        return log
+
+    # -- the observer -----------------------------------------------------------------------------------------
+
+    def step(self, tracer: Tracer, step: Step) -> None:
+        """See `continuation.Observer`."""
+        path = self._path(tracer)
+        if self._store is None:
+            self._make(tracer, step.u.size - 1, tuple(step.observed))
+        self._add_step(path, step, tracer.path.events)
+        state = tracer.state
+        if state is not None and state.index == step.index:
+            # Whether the path ends at this point is decided after it is written. So a resumed trace begins one point
+            # earlier; only at the start there is nothing left to be decided.
+            mark = _Mark(state, counted(tracer.counts), path.rows)
+            path.resume = path.last if path.last is not None else mark
+            path.last = mark
+        buffer, limits = self._buffer, self._limits
+        if len(buffer.rows) >= limits.rows or buffer.nbytes >= limits.nbytes or time.monotonic() >= self._commit_at:
+            self._commit()
+
+    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
+        """See `continuation.Observer`."""
+        self._add(self._path(tracer), Row(None, event))
+
+    def end(self, tracer: Tracer) -> None:
+        """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
+        path, found, state = self._path(tracer), tracer.path, tracer.state
+        row = record.of_path(found, tracer.homotopy, state.controller if state is not None else ())
+        row["wall_time"] += path.seconds
+        refused = self._store is None and found.status is Status.INTERRUPTED
+        if self._many or not refused:
+            self._finish(row, path.number, path.rows)
+        self._open = None
+        if not self._many:
+            self.close()
+
+    def failure(self, homotopy: Any, error: BaseException) -> None:
+        """A path that could not even begin, as a row with the exception's text."""
+        self._check_open()
+        self._finish(record.of_failure(homotopy, error), self._paths, 0)
+
+    def close(self) -> None:
+        """Commit what is there and close the file; a second call does nothing."""
+        if self._closed:
+            return
+        if self._store is None and self._early:
+            self._make(self._witness, _unknowns(self._witness), ())
+        if self._store is not None:
+            if self._buffer.rows:
+                self._commit()
+            self._store.close()
+        self._closed = True
+
+    def __enter__(self) -> PathLog:
+        self._many = True
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # -- within -----------------------------------------------------------------------------------------------
+
+    def _path(self, tracer: Tracer) -> _Open:
+        path = self._open
+        if path is not None:
+            if path.tracer is tracer:
+                return path
+            raise ArchiveError(f"{self.file}: a path is being written already; a log writes one path after another")
+        self._check_open()
+        self._witness = self._witness or tracer
+        self._open = path = _Open(tracer, self._paths)
+        self._commit_at = time.monotonic() + self._limits.seconds
+        return path
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
+
+    def _add_step(self, path: _Open, step: Step, events: list[LocatedEvent]) -> None:
+        """The step, with the event on which the path ends; other events at the very same point get rows before it."""
+        here: list[LocatedEvent] = []
+        while len(here) < len(events) and events[-1 - len(here)].u is step.u:
+            here.insert(0, events[-1 - len(here)])
+        last = here.pop() if here and here[-1].kind == step.kind else None
+        for event in here:
+            self._add(path, Row(None, event))
+        self._add(path, Row(step, last))
+
+    def _add(self, path: _Open, row: Row) -> None:
+        u = row.point.u
+        if self._store is not None and u.size - 1 != self._store.layout.unknowns:
+            held = self._store.layout.unknowns
+            raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {u.size - 1}")
+        self._buffer.rows.append(row)
+        self._buffer.nbytes += u.nbytes
+        path.rows += 1
+
+    def _finish(self, row: Record, number: int, rows: int) -> None:
+        """Write the path's own row; where there is no file yet, with the file."""
+        row |= {"path": number, "member": number if self.member is None else self.member, "n_points": rows}
+        self._paths = number + 1
+        if self._store is None:
+            self._early.append(row)
+        else:
+            self._commit(row)
+
+    def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> None:
+        """Make the file, and write the rows of paths that ended before there was one."""
+        homotopy = tracer.homotopy if tracer is not None else None
+        state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
+        names = {name for row in self._early for name in row["scalars"]} | set(scalars(homotopy))
+        layout = Layout(unknowns, max(len(state), CONTROLLER_STATE), observed, tuple(sorted(names)), self._tangents)
+        problem = problem_data(homotopy)
+        self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
+        attributes = root_attributes(tracer, self._title)
+        self._store = Store(self.file, layout, attributes, problem, durable=self._durable)
+        for event in tracer.settings.events if tracer is not None else ():
+            self._store.name_event(event.name)
+        self._store.commit()
+        for row in self._early:
+            self._commit(row)
+        self._early = []
+
+    def _commit(self, row: Record | None = None) -> None:
+        store, buffer, path = self._store, self._buffer, self._open
+        assert store is not None
+        points, checkpoints = None, {}
+        if path is not None and buffer.rows:
+            points = to_columns(buffer.rows, path.number, store.layout, store.name_event)
+        if path is not None and path.resume is not None:
+            checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
+        paths = record.to_columns(row, store.layout) if row is not None else None
+        store.commit(points, buffer.start, paths, row["path"] if row is not None else 0, checkpoints)
+        self._buffer = _Buffer(buffer.start + len(buffer.rows))
+        self._sequence += 1
+        self._commit_at = time.monotonic() + self._limits.seconds
+
+    def _checkpoint(self, path: _Open, mark: _Mark) -> bytes:
+        if path.run is None:
+            homotopy, described = self._known
+            known = described if homotopy is path.tracer.homotopy else None
+            path.run = json.dumps(describe_run(path.tracer, self.member, known)).encode()
+        counts = dict(zip(COUNT_NAMES, mark.counts))
+        seconds = path.seconds + path.tracer.seconds
+        return pack(Checkpoint(self._sequence + 1, path.number, mark.rows, mark.state, counts, seconds, {}), path.run)
+
+
+def _unknowns(tracer: Tracer | None) -> int:
+    """N, asked of the homotopy itself; 1 where it does not even have a start, since then nothing depends on it."""
+    try:
+        return 1 if tracer is None else int(np.size(tracer.homotopy.start()[0]))
+    except Exception:
+        return 1

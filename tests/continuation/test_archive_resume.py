@@ -1,0 +1,352 @@
+"""A resumed path is bit for bit the uninterrupted one, for every part, interrupted at every step in turn."""
+
+import json
+from itertools import pairwise
+
+import attrs
+import numpy as np
+import pytest
+
+from continuation import (
+    Budget,
+    Monitor,
+    Status,
+    TargetValue,
+    Tracer,
+    controllers,
+    correctors,
+    from_functions,
+    predictors,
+    trace,
+)
+from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
+from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpack
+from continuation.archive.resume import _homotopy
+from continuation.metric import Relative
+from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth
+
+PROBLEMS = {"circle": Circle(), "freudenstein-roth": FreudensteinRoth(), "exponential cosine": ExponentialCosine(3)}
+
+
+def parts(module, method):
+    """An instance of each concrete part that a package exports, so that new ones are tested without a word here."""
+    found = [getattr(module, name) for name in module.__all__]
+    return [part() for part in found if callable(getattr(part, method, None)) and attrs.has(part)]
+
+
+WITH = {"SeriesRange": {"predictor": predictors.Taylor()}}
+"""A controller that is made for one predictor is tested with it."""
+
+OPTIONS = [
+    *({"predictor": part} for part in parts(predictors, "prepare")),
+    *({"corrector": part} for part in parts(correctors, "correct")),
+    *({"controller": part, **WITH.get(type(part).__name__, {})} for part in parts(controllers, "update")),
+    {"metric": Relative()},
+]
+
+
+def name(options):
+    return type(next(iter(options.values()))).__name__
+
+
+def leaves(value):
+    """All numbers and arrays of a state, in order."""
+    if attrs.has(type(value)):
+        value = tuple(getattr(value, a.name) for a in attrs.fields(type(value)))
+    if isinstance(value, tuple):
+        return [leaf for item in value for leaf in leaves(item)]
+    return [np.asarray(value)]
+
+
+def identical(a, b):
+    a, b = leaves(a), leaves(b)
+    return len(a) == len(b) and all(np.array_equal(x, y, equal_nan=True) for x, y in zip(a, b))
+
+
+class Snapshots:
+    """The states along a path, as an archive would hold them."""
+
+    def __init__(self):
+        self.states, self.checkpoints = [], []
+
+    def step(self, tracer, step):
+        if step.index == tracer.state.index:
+            self.states.append(tracer.state)
+            run = describe_run(tracer, None)
+            checkpoint = Checkpoint(1, 0, 1, tracer.state, tracer.counts.as_dict(), 0.0, run)
+            self.checkpoints.append(unpack(pack(checkpoint)))
+
+    def event(self, tracer, event):
+        pass
+
+    def end(self, tracer):
+        pass
+
+
+@pytest.mark.parametrize("problem", PROBLEMS)
+@pytest.mark.parametrize("options", OPTIONS, ids=name)
+def test_each_state_leads_to_the_next_exactly(problem, options):
+    """By induction from here on: the state that an archive holds gives the next state, bit for bit, at every step."""
+    homotopy, seen = PROBLEMS[problem], Snapshots()
+    options = {"budget": Budget(steps=40), **options}
+    tracer = Tracer(homotopy, observers=(seen,), **options)
+    for _ in tracer:
+        pass
+    if tracer.path.status is Status.REACHED_TARGET:
+        assert len(seen.states) > 3
+    for (before, after), checkpoint in zip(pairwise(seen.states), seen.checkpoints):
+        assert identical(before, checkpoint.state)
+        again = Snapshots()
+        steps = iter(Tracer(homotopy, state=checkpoint.state, observers=(again,), **options))
+        next(steps, None)
+        steps.close()
+        assert identical(again.states[0], after)
+
+
+def interrupt(file, homotopy, index, **options):
+    log = PathLog(file, limits=Limits(rows=5))
+    steps = iter(Tracer(homotopy, observers=(log,), **options))
+    next(step for step in steps if step.index == index)
+    steps.close()
+
+
+def assert_same_path(found, path):
+    assert np.array_equal(found.u, path.u)
+    assert np.array_equal(found.arclength, path.arclength)
+    assert [step.kind for step in found.steps] == [step.kind for step in path.steps]
+    assert (found.status, found.message, found.counts) == (path.status, path.message, path.counts)
+    assert [(e.name, e.step, e.monitor, *e.u) for e in found.events] == [
+        (e.name, e.step, e.monitor, *e.u) for e in path.events
+    ]
+
+
+EVERY_STEP = [(p, k) for p in ("circle", "freudenstein-roth") for k in range(len(trace(PROBLEMS[p])) - 1)]
+
+
+@pytest.mark.parametrize(("problem", "k"), EVERY_STEP)
+def test_interrupted_at_every_step_through_a_file(tmp_path, problem, k):
+    path = trace(PROBLEMS[problem])
+    interrupt(tmp_path / "run.h5", PROBLEMS[problem], k)
+    assert_same_path(resume(tmp_path / "run.h5"), path)
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive) == 1
+        assert archive.closed_by_writer
+        assert "resumed" in archive.attributes["history"]
+        assert_same_path(archive.path(0), path)
+
+
+def test_resumed_again_and_again(tmp_path):
+    """One more step at a time: many links, and still the same path."""
+    path = trace(FreudensteinRoth(), archive=tmp_path / "whole.h5")
+    trace(FreudensteinRoth(), archive=tmp_path / "run.h5", budget=Budget(steps=1))
+    for steps in range(2, len(path)):
+        found = resume(tmp_path / "run.h5", budget=Budget(steps=steps))
+    with pytest.raises(ArchiveError, match="has ended"):
+        resume(tmp_path / "run.h5", budget=Budget())
+    assert_same_path(found, path)
+    with open_archive(tmp_path / "run.h5") as archive, open_archive(tmp_path / "whole.h5") as whole:
+        for column in whole.points:
+            assert np.array_equal(archive.points[column], whole.points[column], equal_nan=True), column
+
+
+def test_events_and_options_come_from_the_file(tmp_path):
+    options = {
+        "events": [TargetValue(0.25, terminal=0), TargetValue(-0.5, terminal=2)],
+        "predictor": predictors.Secant(), "tolerance": 1e-10, "direction": 1, "target": 3.0,
+    }
+    path = trace(FreudensteinRoth(), **options)
+    assert path.status is Status.STOPPED_AT_EVENT
+    interrupt(tmp_path / "run.h5", FreudensteinRoth(), len(path) - 3, **options)
+    assert_same_path(resume(tmp_path / "run.h5"), path)
+
+
+def test_resume_into_another_file_leaves_the_first(tmp_path):
+    interrupt(tmp_path / "run.h5", FreudensteinRoth(), 7)
+    before = (tmp_path / "run.h5").read_bytes()
+    resume(tmp_path / "run.h5", archive=tmp_path / "more.h5")
+    assert (tmp_path / "run.h5").read_bytes() == before
+    with open_archive(tmp_path / "more.h5") as archive:
+        assert_same_path(archive.path(0), trace(FreudensteinRoth()))
+        assert archive.attributes["parent"].startswith("run.h5 (")
+
+
+def test_the_last_of_many_paths(tmp_path):
+    with PathLog(tmp_path / "run.h5") as log:
+        first = trace(ExponentialCosine(3), archive=log)
+        log.member = 17
+        trace(ExponentialCosine(3, target=0.5), archive=log, budget=Budget(steps=2))
+    found = resume(tmp_path / "run.h5", budget=Budget())
+    assert_same_path(found, trace(ExponentialCosine(3, target=0.5)))
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert_same_path(archive.path(0), first)
+        assert_same_path(archive.path(1), found)
+        assert archive.paths["member"].tolist() == [0, 17]
+
+
+def test_observed_scalars_and_a_banded_problem(tmp_path):
+    options = {"budget": Budget(steps=14)}
+    path = trace(Bratu1D(30), **options)
+    interrupt(tmp_path / "run.h5", Bratu1D(30), 6, **options)
+    found = resume(tmp_path / "run.h5")
+    assert_same_path(found, path)
+    assert [step.observed for step in found.steps] == [step.observed for step in path.steps]
+
+
+def _line(y, lam):
+    return y - 3.0 * lam
+
+
+def test_a_homotopy_of_functions_is_stored_by_name_and_arrays(tmp_path):
+    homotopy = from_functions(_line, start=(np.array([0.3, 0.6]), 0.1), target=1.0)
+    interrupt(tmp_path / "run.h5", homotopy, 1)
+    assert_same_path(resume(tmp_path / "run.h5"), trace(homotopy))
+
+
+class Stateful:
+    """The smallest plug-in with a constructor: nothing tells an archive how to make it again."""
+
+    target = 1.0
+
+    def __init__(self, slope):
+        self.slope = slope
+
+    def start(self):
+        return np.zeros(1), 0.0
+
+    def residual(self, y, lam):
+        return y - self.slope * lam**2
+
+
+class Telling(Stateful):
+    """The same, with the capability."""
+
+    def archive_data(self):
+        return {"slope": np.array(self.slope), "note": "a parabola"}
+
+    @classmethod
+    def from_archive(cls, data):
+        return cls(float(data["slope"]))
+
+
+def test_a_homotopy_that_cannot_be_stored_is_asked_for(tmp_path):
+    interrupt(tmp_path / "run.h5", Stateful(2.0), 2)
+    with pytest.raises(ArchiveError, match=r"Stateful has neither archive_data nor attrs fields\); pass homotopy="):
+        resume(tmp_path / "run.h5")
+    with pytest.raises(ValueError, match="homotopy: expected the archive's residual"):
+        resume(tmp_path / "run.h5", Stateful(5.0))
+    with pytest.raises(ValueError, match="homotopy: expected 1 unknowns"):
+        resume(tmp_path / "run.h5", FreudensteinRoth())
+    assert_same_path(resume(tmp_path / "run.h5", Stateful(2.0)), trace(Stateful(2.0)))
+
+
+def test_a_homotopy_that_says_what_to_store(tmp_path):
+    interrupt(tmp_path / "run.h5", Telling(2.0), 2)
+    assert_same_path(resume(tmp_path / "run.h5"), trace(Telling(2.0)))
+
+
+@attrs.frozen(eq=False)
+class Quadric:
+    """A matrix, twice, of either layout."""
+
+    matrix: np.ndarray
+    scaled: tuple[np.ndarray, float]
+    target = 1.0
+
+    def start(self):
+        return np.zeros(len(self.matrix)), 0.0
+
+    def residual(self, y, lam):
+        return y + 0.3 * np.tanh(self.matrix @ y) - lam * self.scaled[1] * (self.scaled[0] @ np.ones(len(y)))
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("first", [True, False])
+def test_matrices_come_back_as_they_lay_in_memory(tmp_path, order, first):
+    """BLAS adds up in another order for the one layout than for the other."""
+    matrix = np.asarray(np.random.default_rng(4).standard_normal((9, 9)), order=order)
+    homotopy = Quadric(matrix, (matrix, 0.5))
+    with PathLog(tmp_path / "run.h5") as log:
+        if not first:
+            trace(Quadric(np.eye(9), (np.eye(9), 2.0)), archive=log)
+        steps = iter(Tracer(homotopy, observers=(log,)))
+        assert any(step.index == 2 for step in steps)
+        steps.close()
+    with open_archive(tmp_path / "run.h5") as archive:
+        made = _homotopy(archive, archive.checkpoint(), None)
+    assert made.matrix.flags == matrix.flags
+    assert np.array_equal(made.matrix, matrix)
+    assert_same_path(resume(tmp_path / "run.h5"), trace(homotopy))
+
+
+def test_a_monitor_that_cannot_be_stored_is_asked_for(tmp_path):
+    events = [Monitor(lambda u, v: u[0] - 20.0)]
+    interrupt(tmp_path / "run.h5", FreudensteinRoth(), 5, events=events)
+    with pytest.raises(ArchiveError, match=r"events cannot be made from the file.*lambda.*pass events="):
+        resume(tmp_path / "run.h5")
+    assert_same_path(resume(tmp_path / "run.h5", events=events), trace(FreudensteinRoth(), events=events))
+
+
+class Winding(Telling):
+    """Events of its own, and an exception in the middle of the path."""
+
+    events = (TargetValue(0.7, component=0, terminal=0),)
+    broken = False
+
+    def residual(self, y, lam):
+        if self.broken and lam > 0.5:
+            raise RuntimeError("the licence server is down")
+        return super().residual(y, lam)
+
+
+def test_an_exception_of_the_homotopy_is_an_interruption(tmp_path):
+    homotopy = Winding(2.0)
+    homotopy.broken = True
+    with pytest.raises(RuntimeError, match="licence"):
+        trace(homotopy, archive=tmp_path / "run.h5", events=[TargetValue(0.2, terminal=0)])
+    path = trace(Winding(2.0), events=[TargetValue(0.2, terminal=0)])
+    assert len(path.events) == 2
+    assert_same_path(resume(tmp_path / "run.h5"), path)
+
+
+def test_what_has_ended_or_spent_its_budget_says_so(tmp_path):
+    trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
+    with pytest.raises(ArchiveError, match=r"path 0 has ended \(REACHED_TARGET\)"):
+        resume(tmp_path / "run.h5")
+    trace(FreudensteinRoth(), archive=tmp_path / "short.h5", budget=Budget(steps=3))
+    with pytest.raises(ArchiveError, match="the budget of path 0 is used up; pass budget="):
+        resume(tmp_path / "short.h5")
+    with pytest.raises(FileExistsError, match="exists already"):
+        resume(tmp_path / "short.h5", archive=tmp_path / "run.h5", budget=Budget())
+
+
+def test_the_end_itself_is_decided_again(tmp_path):
+    """A writer killed between the last point and the decision that it is the last."""
+    path = trace(Circle())
+    log = PathLog(tmp_path / "run.h5")
+    log.end = lambda tracer: log.close()
+    for _ in Tracer(Circle(), observers=(log,)):
+        pass
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert archive.path(0).status is Status.TRACING
+        assert len(archive.path(0)) == len(path)
+    recover(tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert archive.path(0).status is Status.INTERRUPTED
+    assert_same_path(resume(tmp_path / "run.h5"), path)
+
+
+def test_a_checkpoint_survives_as_json_and_bytes():
+    tracer = Tracer(FreudensteinRoth())
+    steps = iter(tracer)
+    for _ in range(6):
+        next(steps)
+    checkpoint = Checkpoint(3, 1, 9, tracer.state, {"solves": 5}, 0.25, {"options": {}, "homotopy": {}, "member": 2})
+    raw = pack(checkpoint)
+    found = unpack(raw + b"\0" * 50)
+    assert identical(found.state, checkpoint.state)
+    for item in ("sequence", "path", "rows", "counts", "seconds", "run"):
+        assert getattr(found, item) == getattr(checkpoint, item)
+    assert unpack(raw[:-1]) is None
+    assert unpack(raw[:40] + bytes([raw[40] ^ 1]) + raw[41:]) is None
+    assert unpack(b"\0" * 100) is None
+    assert json.dumps(found.run)

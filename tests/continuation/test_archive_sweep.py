@@ -1,0 +1,216 @@
+"""Many paths: sweeps, merging, export, and the page."""
+
+import csv
+import gzip
+import os
+import signal
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import xarray
+
+from continuation import Budget, Status, from_functions, trace
+from continuation.archive import ArchiveError, PathLog, describe, export, merge, open_archive, trace_many
+from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth, Pitchfork
+
+HOMOTOPIES = [Pitchfork(epsilon) for epsilon in np.linspace(0.01, 0.4, 11)]
+
+
+class Broken:
+    """Cannot even begin."""
+
+    def start(self):
+        raise RuntimeError("no start")
+
+    def residual(self, y, lam):
+        return y
+
+
+class Breaking(Pitchfork):
+    """Goes wrong on the way."""
+
+    def residual(self, y, lam):
+        if lam > 0.0:
+            raise RuntimeError("gone")
+        return super().residual(y, lam)
+
+
+class Deadly:
+    """Takes its process with it."""
+
+    def start(self):
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    def residual(self, y, lam):
+        return y
+
+
+def check(paths, expected):
+    assert len(paths) == len(expected)
+    for found, path in zip(paths, expected):
+        assert np.array_equal(found.u, path.u)
+        assert (found.status, found.counts) == (path.status, path.counts)
+
+
+@pytest.fixture(scope="module")
+def expected():
+    return [trace(homotopy) for homotopy in HOMOTOPIES]
+
+
+def executors():
+    return [lambda: None, lambda: ThreadPoolExecutor(1), lambda: ProcessPoolExecutor(2)]
+
+
+@pytest.mark.parametrize("make", executors(), ids=["serial", "thread", "processes"])
+@pytest.mark.parametrize("archived", [False, True])
+def test_order_is_that_of_the_homotopies(tmp_path, expected, make, archived):
+    executor, calls = make(), []
+    file = tmp_path / "run.h5" if archived else None
+    paths = trace_many(HOMOTOPIES, executor, file, progress=lambda done, total: calls.append((done, total)))
+    check(paths, expected)
+    assert calls == sorted(calls)
+    assert calls[-1] == (11, 11)
+    if archived:
+        assert [entry.name for entry in tmp_path.iterdir()] == ["run.h5"]
+        assert paths.paths["member"].tolist() == list(range(11))
+        assert np.array_equal(paths.paths["homotopy_imperfection"], [h.imperfection for h in HOMOTOPIES])
+        paths.close()
+    if executor is not None:
+        executor.shutdown()
+
+
+@pytest.mark.parametrize("archived", [False, True])
+def test_failures_are_kept(tmp_path, expected, archived):
+    homotopies = [Broken(), *HOMOTOPIES[:3], Breaking(0.3), *HOMOTOPIES[3:5], Broken()]
+    paths = trace_many(homotopies, archive=tmp_path / "run.h5" if archived else None)
+    check([paths[i] for i in (1, 2, 3, 5, 6)], expected[:5])
+    for i, text in ((0, "RuntimeError: no start"), (4, "RuntimeError: gone"), (7, "RuntimeError: no start")):
+        assert (paths[i].status, paths[i].message) == (Status.INTERRUPTED, text)
+    assert len(paths[4]) > 1
+    if archived:
+        page = describe(paths)
+        assert "path 4 (member 4): RuntimeError: gone" in page
+        assert "can be resumed" not in page
+        paths.close()
+
+
+def test_nothing_but_failures(tmp_path):
+    with trace_many([Broken(), Broken()], archive=tmp_path / "run.h5") as paths:
+        assert [path.message for path in paths] == ["RuntimeError: no start"] * 2
+
+
+def test_a_worker_that_dies_costs_its_own_paths_only(tmp_path):
+    with ProcessPoolExecutor(1) as executor:
+        paths = trace_many([*HOMOTOPIES[:3], Deadly()], executor, tmp_path / "run.h5")
+    with paths:
+        assert paths.paths["member"].tolist() == [0, 1, 2, 3]
+        assert paths[3].message.startswith("BrokenProcessPool")
+        check([paths[0]], [trace(HOMOTOPIES[0])])
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.h5"]
+
+
+def test_ctrl_c_keeps_what_is_finished(tmp_path, expected):
+    def stop(done, total):
+        if done == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        trace_many(HOMOTOPIES, archive=tmp_path / "serial.h5", progress=stop)
+    with open_archive(tmp_path / "serial.h5") as archive:
+        check(archive, expected[:4])
+    with ThreadPoolExecutor(1) as executor, pytest.raises(KeyboardInterrupt):
+        trace_many(HOMOTOPIES, executor, tmp_path / "pool.h5", progress=lambda *_: os.kill(os.getpid(), signal.SIGINT))
+    with open_archive(tmp_path / "pool.h5") as archive:
+        members = archive.paths["member"].tolist()
+        assert 0 < len(members) <= 11
+        assert members == sorted(members)
+        check(archive, [expected[member] for member in members])
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["pool.h5", "serial.h5"]
+
+
+def test_ctrl_c_within_a_path(tmp_path):
+    def residual(y, lam):
+        if lam > 0.5:
+            raise KeyboardInterrupt
+        return y - lam
+
+    stopping = from_functions(residual, start=(np.zeros(1), 0.0), target=1.0)
+    with pytest.raises(KeyboardInterrupt):
+        trace_many([stopping, stopping], archive=tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive) == 1
+        assert archive[0].status is Status.INTERRUPTED
+
+
+def test_misspelt_options_are_refused_at_the_door(tmp_path):
+    with pytest.raises(TypeError, match=r"options: expected some of budget, .*, found predicter"):
+        trace_many(HOMOTOPIES, archive=tmp_path / "run.h5", predicter=None)
+    assert not list(tmp_path.iterdir())
+
+
+def test_merge(tmp_path):
+    files = [tmp_path / f"{i}.h5" for i in range(3)]
+    paths = [
+        trace(FreudensteinRoth(), archive=files[0]),
+        trace(FreudensteinRoth(), archive=PathLog(files[1], tangents=True), budget=Budget(steps=7)),
+        trace(ExponentialCosine(2), archive=files[2]),
+    ]
+    with open_archive(merge(files, tmp_path / "all.h5", title="all of them", compression=5)) as archive:
+        check(archive, paths)
+        assert archive.attributes["title"] == "all of them"
+        assert "merged from 3 files: 0.h5, 1.h5, 2.h5" in archive.attributes["history"]
+        assert np.array_equal(archive.paths["homotopy_n"], [np.nan, np.nan, 2.0], equal_nan=True)
+        assert np.array_equal(archive[1].tangents, paths[1].tangents)
+        assert archive[0].events[1].name == "turning point"
+    trace(Circle(), archive=tmp_path / "circle.h5")
+    with pytest.raises(ArchiveError, match=r"circle.h5: holds paths of 1 unknowns, .*0.h5 of 2; one file holds one"):
+        merge([files[0], tmp_path / "circle.h5"], tmp_path / "bad.h5")
+    with pytest.raises(ValueError, match="files: expected at least one"):
+        merge([], tmp_path / "none.h5")
+
+
+@pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
+def test_export_to_netcdf(tmp_path, engine):
+    trace(Bratu1D(40), archive=tmp_path / "run.h5", budget=Budget(steps=20))
+    (target,) = export(tmp_path / "run.h5", tmp_path / "run.nc", compression=9)
+    with (
+        xarray.open_dataset(tmp_path / "run.h5", engine=engine) as first,
+        xarray.open_dataset(target, engine=engine) as second,
+    ):
+        assert first.drop_attrs(deep=False).identical(second.drop_attrs(deep=False))
+        assert second.y.encoding.get("complevel", second.y.encoding.get("compression_opts")) == 9
+        assert "exported from run.h5" in second.attrs["history"]
+    with pytest.raises(ValueError, match="compression: expected a level from 0 to 9, found 11"):
+        export(tmp_path / "run.h5", tmp_path / "more.nc", compression=11)
+    with pytest.raises(ValueError, match="target: expected a suffix"):
+        export(tmp_path / "run.h5", tmp_path / "run.xlsx")
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".csv.gz"])
+def test_export_to_text(tmp_path, suffix):
+    path = trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
+    points, paths = export(tmp_path / "run.h5", tmp_path / f"run{suffix}")
+    assert paths.name == f"run.paths{suffix}"
+    read = gzip.open if suffix.endswith("gz") else open
+    with read(points, "rt", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["role"] == "0"]
+    assert [float(row["y_1"]) for row in rows] == path.y[:, 1].tolist()
+    assert [float(row["arclength"]) for row in rows] == path.arclength.tolist()
+    with read(paths, "rt", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert (row["message"], int(row["solves"])) == (path.message, path.counts.solves)
+
+
+def test_the_page(tmp_path):
+    path = trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", title="A classic"))
+    with open_archive(tmp_path / "run.h5") as archive:
+        page = describe(archive)
+    for text in (
+        "A classic", "FreudensteinRoth", "Hermite()", "AllgowerGeorg(", "REACHED_TARGET", path.message,
+        "0.5875873254", "-0.6863527575", f"{path.counts.solves} solves", "Python 3.",
+    ):
+        assert text in page
+    trace(FreudensteinRoth(), archive=tmp_path / "short.h5", budget=Budget(steps=3))
+    with open_archive(tmp_path / "short.h5") as archive:
+        assert "can be resumed with more steps: `continuation resume" in describe(archive)
