@@ -1,0 +1,59 @@
+"""The command line, ``continuation COMMAND ...``: one file a group of commands; `problems` adds its own."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+
+from continuation.cli.commands import register
+from continuation.cli.parser import BAD_INPUT, FAILURE, SUCCESS, Parser, Run, Subparsers, UsageError
+
+__all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError", "main"]
+
+INTERRUPTED = 130
+"""The shell's status for a process that Ctrl-C ended."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The arguments without the program's name; those of the process by default.
+
+    Returns
+    -------
+    int
+        0 done (solved), 1 not solved, 2 bad input, after one line on stderr that names the argument.
+    """
+    parser = Parser(prog="continuation", description="Follow paths of solutions, and look at what was followed.")
+    parser.add_argument("--version", action="version", version=f"continuation {_version()}")
+    register(parser.add_subparsers(title="commands", metavar="COMMAND", required=True))
+    try:
+        arguments = parser.parse_args(argv)
+    except SystemExit as end:
+        return int(end.code or 0)
+    run: Run = arguments.run
+    try:
+        status = run(arguments)
+        sys.stdout.flush()
+    except UsageError as error:
+        print(f"continuation: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:
+        # The reader (head, a pager) has enough; without this, Python complains once more while it shuts down.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return SUCCESS
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return status
+
+
+def _version() -> str:
+    try:
+        return version("continuation")
+    except PackageNotFoundError:
+        return "(not installed)"

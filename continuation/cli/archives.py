@@ -1,0 +1,113 @@
+"""``continuation inspect``, ``resume``, ``recover``, ``export`` and ``merge``: what is done with archives."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
+from continuation.status import Status
+
+ARRIVED = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
+"""Ends of a resumed path that count as success."""
+
+
+def register(subparsers: Subparsers) -> None:
+    """Add the commands."""
+    parser = subparsers.add_parser("inspect", help="what an archive holds: what ran, how it ended, at what cost")
+    parser.add_argument("file", metavar="FILE", help="an archive; may still be growing")
+    parser.set_defaults(run=_inspect)
+
+    parser = subparsers.add_parser("resume", help="go on with a path that was interrupted")
+    parser.add_argument("file", metavar="FILE", help="an archive whose last path has not reached its end")
+    parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
+    parser.add_argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps")
+    parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
+    parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
+    parser.set_defaults(run=_resume)
+
+    parser = subparsers.add_parser("recover", help="make whole what a killed writer left")
+    parser.add_argument("file", metavar="FILE", help="replaced by a copy of all that was committed")
+    parser.add_argument("--force", action="store_true", help="even if its writer seems to be alive")
+    parser.set_defaults(run=_recover)
+
+    parser = subparsers.add_parser("export", help="write an archive as netCDF-4 or as tables of text")
+    parser.add_argument("file", metavar="FILE", help="an archive")
+    parser.add_argument("target", metavar="TARGET", help="a new .nc file, or .csv or .csv.gz for two tables")
+    parser.add_argument("--compression", type=int, default=4, metavar="LEVEL", help="of gzip, 0 to 9 (default: 4)")
+    parser.set_defaults(run=_export)
+
+    parser = subparsers.add_parser("merge", help="many archives as one")
+    parser.add_argument("target", metavar="OUT", help="a new archive")
+    parser.add_argument("files", metavar="FILE", nargs="+", help="archives with the same number of unknowns")
+    parser.set_defaults(run=_merge)
+
+
+def _inspect(arguments: argparse.Namespace) -> int:
+    from continuation.archive import describe, open_archive
+
+    with _complaints("FILE"), open_archive(arguments.file) as archive:
+        print(describe(archive), end="")
+    return SUCCESS
+
+
+def _resume(arguments: argparse.Namespace) -> int:
+    from continuation.archive import resume
+    from continuation.budget import Budget
+    from continuation.progress import Progress
+
+    limits = {name: getattr(arguments, name) for name in ("steps", "factorizations") if getattr(arguments, name)}
+    options = {"budget": Budget(**limits)} if limits else {}
+    observers = (Progress(),) if arguments.progress else ()
+    with _complaints("FILE", new="--archive"):
+        path = resume(arguments.file, archive=arguments.archive, observers=observers, **options)
+    print(f"{path.status.name}: {path.message}")
+    print(f"{len(path)} points, lam = {path.endpoint.lam:.6g}")
+    return SUCCESS if path.status in ARRIVED else FAILURE
+
+
+def _recover(arguments: argparse.Namespace) -> int:
+    from continuation.archive import open_archive, recover
+
+    with _complaints("FILE"):
+        file = recover(arguments.file, force=arguments.force)
+        with open_archive(file) as archive:
+            print(f"{file}: {len(archive)} paths, {archive.points.size} points")
+    return SUCCESS
+
+
+def _export(arguments: argparse.Namespace) -> int:
+    from continuation.archive import export
+
+    with _complaints("FILE", new="TARGET"):
+        for file in export(arguments.file, arguments.target, compression=arguments.compression):
+            print(file)
+    return SUCCESS
+
+
+def _merge(arguments: argparse.Namespace) -> int:
+    from continuation.archive import merge
+
+    with _complaints("FILE", new="OUT"):
+        print(merge(arguments.files, arguments.target))
+    return SUCCESS
+
+
+@contextmanager
+def _complaints(argument: str, new: str = "FILE") -> Iterator[None]:
+    """An archive that cannot be used as one line about `argument`, or about `new` if a new file is there already."""
+    from continuation.archive import ArchiveError, ArchiveExistsError
+
+    try:
+        yield
+    except ArchiveExistsError as error:
+        raise UsageError(new, error) from error
+    except ArchiveError as error:
+        raise UsageError(argument, error) from error
+    except ValueError as error:
+        named, _, complaint = str(error).partition(": ")
+        option = {"target": "TARGET", "compression": "--compression", "homotopy": argument}.get(named)
+        if option is None:
+            raise
+        raise UsageError(option, complaint) from error

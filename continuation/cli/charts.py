@@ -1,0 +1,87 @@
+"""``continuation chart``: ready studies of speed against accuracy, as tables, files and figures."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from continuation.cli.parser import SUCCESS, Subparsers, UsageError
+
+if TYPE_CHECKING:
+    from continuation.chart import Row, Study
+    from continuation.chart.run import Watch
+
+DEFAULT_OUTPUT = "continuation-chart"
+EVERY = "all"
+
+
+def register(subparsers: Subparsers) -> None:
+    """Add the command."""
+    parser = subparsers.add_parser(
+        "chart",
+        help="speed against accuracy: run a ready study",
+        description="Run a study, print its table, and write results (HDF5, CSV, Markdown) and figures. Without a "
+        "name, list the studies.",
+    )
+    parser.add_argument("name", metavar="NAME", nargs="?", help=f"a study, or {EVERY}")
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--smoke", dest="size", action="store_const", const="smoke", help="tiny sizes, in seconds")
+    size.add_argument("--full", dest="size", action="store_const", const="full", help="full sizes, in many minutes")
+    parser.add_argument("--compare", action="store_true", help="outside solvers too, where they are installed")
+    parser.add_argument(
+        "--output", metavar="DIR", default=DEFAULT_OUTPUT, help=f"where the files go (default: {DEFAULT_OUTPUT})"
+    )
+    parser.set_defaults(run=run, size="moderate")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run, print, write."""
+    from continuation.chart.catalogue import catalogue, studies
+
+    try:
+        names = list(catalogue())
+        if arguments.name is None:
+            print("\n".join(names))
+            return SUCCESS
+        chosen = names if arguments.name == EVERY else [arguments.name]
+        found = [study for name in chosen for study in studies(name, arguments.size, arguments.compare)]
+    except ValueError as error:
+        raise UsageError("NAME", str(error).removeprefix("NAME: ")) from error
+    folder = _folder(arguments.output)
+    for study in found:
+        _one(study, folder)
+    return SUCCESS
+
+
+def _one(study: Study, folder: Path) -> None:
+    from continuation.chart import run as run_study
+    from continuation.chart.report import report, tables
+
+    results = run_study(study, _watch(study.name))
+    for title, table in tables(study, results).items():
+        print(f"\n{results.title}: {title}\n{table.text()}")
+    print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}")
+
+
+def _watch(name: str) -> Watch | None:
+    """On a terminal, a line that tells how far the study is; nothing elsewhere."""
+    if not sys.stderr.isatty():
+        return None
+
+    def show(done: int, whole: int, row: Row) -> None:
+        end = "\n" if done == whole else ""
+        print(f"\r{name}: {done} of {whole}  {row.problem}, {row.method}"[:100].ljust(100), end=end, file=sys.stderr)
+
+    return show
+
+
+def _folder(output: str) -> Path:
+    folder = Path(output)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        complaint = f"expected a directory, or a new one, found {output!r} ({error.strerror})"
+        raise UsageError("--output", complaint) from error
+    return folder

@@ -1,0 +1,104 @@
+"""``continuation plot``: a path of an archive as a picture; and what every command does that writes pictures."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from continuation.cli.parser import SUCCESS, Subparsers, UsageError
+
+SUFFIXES = (".png", ".pdf", ".svg")
+
+DOTS_PER_INCH = 150
+
+
+def register(subparsers: Subparsers) -> None:
+    """Add the command."""
+    parser = subparsers.add_parser(
+        "plot",
+        help="draw a path of an archive",
+        description="Components of y, or the bifurcation diagram, with turning points marked, above the step sizes.",
+    )
+    parser.add_argument("file", metavar="FILE", help="an archive")
+    parser.add_argument("--output", metavar="FILE", help="the picture (.png, .pdf, .svg); default: as FILE, .png")
+    parser.add_argument("--path", type=int, default=0, metavar="N", help="which path, counted from 0 (default: 0)")
+    parser.add_argument(
+        "--against", choices=("lam", "arclength"), default="lam", help="the horizontal axis (default: lam)"
+    )
+    parser.add_argument(
+        "--components", type=_numbers, metavar="I,J,...", help="components of y, from 0; default: at most twelve"
+    )
+    parser.add_argument(
+        "--diagram", action="store_true", help="draw the maximum norm of y (or the one component) against lambda"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read, draw, say where."""
+    from continuation.archive import ArchiveError, open_archive
+
+    output = arguments.output if arguments.output is not None else str(Path(arguments.file).with_suffix(".png"))
+    check_picture("--output", output)
+    try:
+        with open_archive(arguments.file) as archive:
+            if not 0 <= arguments.path < len(archive):
+                raise UsageError("--path", f"expected a number below {len(archive)}, found {arguments.path}")
+            path = archive.path(arguments.path)
+    except ArchiveError as error:
+        raise UsageError("FILE", error) from error
+    try:
+        save(output, lambda figure: _draw(figure, path, arguments))
+    except ValueError as error:
+        complaint = str(error).removeprefix("components: ")
+        raise UsageError("FILE" if arguments.components is None else "--components", complaint) from error
+    print(output)
+    return SUCCESS
+
+
+def check_picture(option: str, file: str) -> None:
+    """Complain before any work is done if a picture cannot be written to `file`, an argument called `option`."""
+    from continuation.plot import require_matplotlib
+
+    path = Path(file)
+    if path.suffix.lower() not in SUFFIXES:
+        raise UsageError(option, f"expected a name in {', '.join(SUFFIXES)}, found {file!r}")
+    if not path.parent.is_dir():
+        raise UsageError(option, f"expected a file in an existing directory, found {file!r}")
+    try:
+        require_matplotlib()
+    except ImportError as error:
+        raise UsageError(option, f"{error}, found none") from error
+
+
+def save(file: str, draw: Callable[[Any], None], size: tuple[float, float] = (7.0, 6.0)) -> None:
+    """Make a figure, have it drawn into, and write it; no window, whatever matplotlib's backend."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    draw(figure)
+    figure.savefig(file, dpi=DOTS_PER_INCH)
+
+
+def _draw(figure: Any, path: Any, arguments: argparse.Namespace) -> None:
+    from continuation.plot import plot_bifurcation, plot_components, plot_steps
+
+    above, below = figure.subplots(2, 1, height_ratios=(3, 1))
+    chosen = arguments.components
+    if not arguments.diagram:
+        plot_components(path, above, arguments.against, components=chosen)
+    else:
+        if chosen is not None and len(chosen) != 1:
+            raise ValueError(f"expected one component for --diagram, found {len(chosen)}")
+        plot_bifurcation(path, above, None if chosen is None else chosen[0])
+    above.set_title(f"{Path(arguments.file).name}, path {arguments.path}: {path.status.name}", fontsize="medium")
+    plot_steps(path, below)
+
+
+def _numbers(text: str) -> list[int]:
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected numbers like 0,2,3, found {text!r}") from None

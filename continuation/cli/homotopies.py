@@ -1,0 +1,295 @@
+"""``continuation plugins``, ``trace`` and ``check``: homotopies by name, from whatever package they come."""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import math
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from continuation import plugins
+from continuation.cli.archives import ARRIVED
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
+
+if TYPE_CHECKING:
+    from continuation.path import Path
+    from continuation.testing import Result
+
+PRESETS = ("fast", "default", "conservative", "series")
+
+MOST_COMPONENTS = 10
+"""Unknowns printed; --json prints all."""
+
+
+def register(subparsers: Subparsers) -> None:
+    """Add the commands."""
+    parser = subparsers.add_parser("plugins", help="the homotopies that are installed, with their options")
+    parser.add_argument("name", metavar="NAME", nargs="?", help="one of them, with its references in full")
+    parser.set_defaults(run=_list)
+
+    parser = subparsers.add_parser(
+        "trace",
+        help="follow the path of a homotopy by its name",
+        description="Exit status: 0 if the path ended at its target, at an event or closed, 1 if not, 2 bad input.",
+    )
+    _add_homotopy(parser)
+    parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
+    parser.add_argument("--plot", metavar="FILE", help="draw it (.png, .pdf, .svg); needs matplotlib")
+    parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
+    parser.add_argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller")
+    parser.add_argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none")
+    parser.add_argument("--direction", type=int, choices=(-1, 1), help="of the parameter's first movement")
+    parser.add_argument("--tolerance", metavar="EPS", type=_above_zero, default=1e-8, help="default: 1e-8")
+    parser.add_argument("--turning-points", metavar="N", type=positive, help="end at the N-th turning point")
+    parser.add_argument("--budget-steps", metavar="N", type=positive, help="accepted steps; default: 10000")
+    parser.add_argument("--budget-seconds", metavar="S", type=_above_zero, help="wall-clock time; default: no limit")
+    parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
+    parser.add_argument("--cite", action="store_true", help="print BibTeX for what the run used as well")
+    parser.set_defaults(run=_trace)
+
+    parser = subparsers.add_parser(
+        "check",
+        help="run the conformance suite on a homotopy",
+        description="Every check that its capabilities call for. Exit status: 0 if all pass, 1 if not, 2 bad input.",
+    )
+    _add_homotopy(parser)
+    parser.add_argument("--steps", metavar="N", type=positive, help="of the path looked at; default: 60, 12 no target")
+    parser.set_defaults(run=_check)
+
+
+def _add_homotopy(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="as listed by `continuation plugins`, or module:object")
+    parser.add_argument("options", metavar="KEY=VALUE", nargs="*", help="options of the homotopy")
+
+
+# -- plugins --------------------------------------------------------------------------------------------------
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    known = plugins.available()
+    if arguments.name is not None:
+        with _unknown(arguments.name):
+            factory = plugins.find(arguments.name)
+        described = plugins.describe(factory)
+        origin = known[arguments.name].origin if arguments.name in known else arguments.name
+        print("\n".join([*_entry(arguments.name, described, origin), *_full(described)]))
+        return SUCCESS
+    broken = []
+    for name, plugin in known.items():
+        try:
+            print("\n".join(_entry(name, plugins.describe(plugin.load()), plugin.origin)))
+        except plugins.PluginError as error:
+            broken.append(str(error))
+    for complaint in broken:
+        print(f"cannot be used: {complaint}", file=sys.stderr)
+    return SUCCESS
+
+
+def _entry(name: str, described: plugins.Description, origin: str) -> list[str]:
+    options = ", ".join(map(str, described.options)) or "none"
+    lines = [f"{name}", f"    {described.summary}", f"    options: {options}"]
+    if described.problem_class:
+        lines.append(f"    for: {described.problem_class}")
+    if described.references:
+        from continuation.citation import short
+
+        lines.append(f"    reference: {'; '.join(map(short, described.references))}")
+    return [*lines, f"    from: {origin}"]
+
+
+def _full(described: plugins.Description) -> Iterator[str]:
+    for entry in described.references:
+        yield f"\n{entry}"
+
+
+# -- trace ----------------------------------------------------------------------------------------------------
+
+
+def _trace(arguments: argparse.Namespace) -> int:
+    from continuation import presets
+    from continuation.archive import ArchiveError, PathLog
+    from continuation.budget import Budget
+    from continuation.events import TurningPoint
+    from continuation.trace import trace
+
+    homotopy, values = _homotopy(arguments)
+    if arguments.plot is not None:
+        from continuation.cli.figures import check_picture
+
+        check_picture("--plot", arguments.plot)
+    try:
+        log = None if arguments.archive is None else PathLog(arguments.archive)
+    except ArchiveError as error:
+        raise UsageError("--archive", error) from error
+    given: dict[str, Any] = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
+    options: dict[str, Any] = {
+        "preset": getattr(presets, arguments.preset.upper()),
+        "tolerance": arguments.tolerance,
+        "budget": Budget(**{name: value for name, value in given.items() if value is not None}),
+        "direction": arguments.direction or 0,
+    }
+    if arguments.target is not None:
+        options["target"] = None if math.isnan(arguments.target) else arguments.target
+    if arguments.turning_points is not None:
+        options["events"] = [TurningPoint(terminal=arguments.turning_points)]
+    with _refused(arguments.name):
+        path = trace(homotopy, archive=log, progress=arguments.progress, **options)
+    title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
+    print(json.dumps(_as_json(title, path)) if arguments.json else "\n".join(_as_text(title, path)))
+    if arguments.cite:
+        from continuation.citation import cite
+
+        print(f"\n{cite(path)}", file=sys.stderr if arguments.json else sys.stdout)
+    if arguments.plot is not None:
+        _draw(path, title, arguments.plot)
+    return SUCCESS if path.status in ARRIVED else FAILURE
+
+
+def _as_text(title: str, path: Path) -> Iterator[str]:
+    yield f"homotopy   {title}"
+    yield f"status     {path.status.name}"
+    yield f"           {path.message}"
+    for event in path.events:
+        yield f"event      {event.name}: lam = {event.lam:.12g}, arclength {event.arclength:.6g}"
+    counts = ", ".join(f"{value} {name}" for name, value in path.counts.as_dict().items())
+    yield f"work       {counts}; {path.seconds:.2g} s"
+    if path.steps:
+        y = path.endpoint.y
+        shown = ", ".join(f"{value:.12g}" for value in y[:MOST_COMPONENTS])
+        more = f", ... ({y.size - MOST_COMPONENTS} more; --json prints all)" if y.size > MOST_COMPONENTS else ""
+        yield f"end        lam = {path.endpoint.lam:.12g}"
+        yield f"           y = {shown}{more}"
+
+
+def _as_json(title: str, path: Path) -> dict[str, Any]:
+    end = path.endpoint if path.steps else None
+    return {
+        "homotopy": title,
+        "status": path.status.name,
+        "message": path.message,
+        "points": len(path),
+        "lam": None if end is None else end.lam,
+        "y": None if end is None else end.y.tolist(),
+        "events": [{"name": e.name, "lam": e.lam, "arclength": e.arclength, "y": e.y.tolist()} for e in path.events],
+        "counts": path.counts.as_dict(),
+        "seconds": path.seconds,
+    }
+
+
+def _draw(path: Path, title: str, file: str) -> None:
+    from continuation.cli.figures import save
+    from continuation.plot import plot_components, plot_steps
+
+    def draw(figure: Any) -> None:
+        above, below = figure.subplots(2, 1, height_ratios=(3, 1))
+        plot_components(path, above)
+        above.set_title(f"{title}: {path.status.name}", fontsize="medium")
+        plot_steps(path, below)
+
+    save(file, draw)
+
+
+# -- check ----------------------------------------------------------------------------------------------------
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from continuation.testing import run_checks
+
+    homotopy, _ = _homotopy(arguments)
+    results = run_checks(homotopy, steps=arguments.steps)
+    for result in results:
+        print(_line(result))
+    failed = sum(result.outcome != "passed" for result in results)
+    print(f"\n{len(results) - failed} of {len(results)} checks passed.")
+    return FAILURE if failed else SUCCESS
+
+
+def _line(result: Result) -> str:
+    return f"{result.outcome:8} {result.name}" + (f"\n         {result.message}" if result.message else "")
+
+
+# -- a homotopy out of its name and options -------------------------------------------------------------------
+
+
+def _homotopy(arguments: argparse.Namespace) -> tuple[Any, Mapping[str, Any]]:
+    """The homotopy that NAME KEY=VALUE ... stand for, and the options read."""
+    # A program started by its script does not see modules in the directory that it is called from.
+    if ":" in arguments.name and os.getcwd() not in sys.path:
+        sys.path.insert(0, os.getcwd())
+    with _unknown(arguments.name):
+        factory = plugins.find(arguments.name)
+    written = {option.name: option.annotation for option in plugins.options(factory)}
+    values = _values(arguments.options, written)
+    try:
+        return plugins.make(arguments.name, values), values
+    except (TypeError, ValueError) as error:
+        key, _, complaint = str(error).partition(": ")
+        # Whatever else the plug-in complains of is about the homotopy as a whole.
+        raise UsageError(*((key, complaint) if key in {*values, *written} else (arguments.name, error))) from error
+
+
+def _values(texts: Sequence[str], annotations: Mapping[str, str]) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not key.isidentifier():
+            raise UsageError("KEY=VALUE", f"expected an option like n=10, found {text!r}")
+        if key in values:
+            raise UsageError(key, "expected one value, found two")
+        values[key] = value if annotations.get(key, "").startswith("str") else _literal(value)
+    return values
+
+
+def _literal(text: str) -> Any:
+    """A number, None, True, a list ...; any other text is itself."""
+    try:
+        return ast.literal_eval({"none": "None", "true": "True", "false": "False"}.get(text, text))
+    except (ValueError, SyntaxError):
+        return text
+
+
+@contextmanager
+def _unknown(name: str) -> Iterator[None]:
+    try:
+        yield
+    except plugins.PluginError as error:
+        raise UsageError(name, str(error).removeprefix(f"{name}: ")) from error
+
+
+@contextmanager
+def _refused(name: str) -> Iterator[None]:
+    """What the engine says of the homotopy at its door, as a complaint; an error within the plug-in stays one."""
+    try:
+        yield
+    except (TypeError, ValueError) as error:
+        if str(error).partition(":")[0] not in ("homotopy", "start", "residual", "target"):
+            raise
+        raise UsageError(name, error) from error
+
+
+def _number_or_none(text: str) -> float:
+    """A number; NaN stands for no target, so that it differs from an option not given."""
+    if text.lower() == "none":
+        return math.nan
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a finite number or none, found {text!r}")
+    return value
+
+
+def _above_zero(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"expected a positive number, found {text!r}")
+    return value

@@ -1,0 +1,57 @@
+"""What every command is made of: a parser whose complaints are one line, and the error that becomes such a line."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import Any, NoReturn, Protocol
+
+SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
+"""Exit statuses: done or solved; not solved; an argument could not be used."""
+
+Run = Callable[[argparse.Namespace], int]
+"""A command: its parsed arguments to its exit status. Set with ``parser.set_defaults(run=...)``."""
+
+
+class UsageError(ValueError):
+    """An argument that cannot be used; the command line prints one line and ends with status 2.
+
+    Attributes
+    ----------
+    argument : str
+        As the user typed it: ``FILE``, ``--x0``.
+    complaint : str
+        What was expected and what was found.
+    """
+
+    def __init__(self, argument: str, complaint: object) -> None:
+        self.argument = argument
+        self.complaint = " ".join(str(complaint).split())
+        super().__init__(f"{self.argument}: {self.complaint}")
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that says what is wrong in one line, without the usage before it."""
+
+    def error(self, message: str) -> NoReturn:
+        """Write the message to stderr and exit with status 2."""
+        self.exit(BAD_INPUT, f"{self.prog}: {message.removeprefix('argument ')}\n")
+
+
+class Subparsers(Protocol):
+    """What a command registers itself with: the `add_parser` of argparse."""
+
+    def add_parser(self, name: str, **options: Any) -> argparse.ArgumentParser:
+        """A parser for a new command; `help` is its line in the list of commands."""
+        ...
+
+
+def positive(text: str) -> int:
+    """A positive integer, for the `type` of an argument."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"expected a positive integer, found {text!r}")
+    return value

@@ -1,0 +1,276 @@
+"""Pictures of a path with matplotlib, which is imported only when one is drawn.
+
+Colours are Okabe and Ito's, which colour-blind readers tell apart; line styles repeat the distinction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any, Protocol
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+STYLES = ("-", "--", "-.", ":")
+TURN = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
+"""How a turning point is marked, above every line."""
+
+SMOOTHNESS = 12
+"""Points of the curve for every step, where the path has dense output."""
+
+MOST_COMPONENTS = 12
+"""More curves than this cannot be told apart in one picture."""
+
+Axes = Any
+
+
+class Event(Protocol):
+    """A located event, as a Path or an archive has it."""
+
+    @property
+    def y(self) -> Array:
+        """The unknowns."""
+        ...
+
+    @property
+    def lam(self) -> float:
+        """The parameter."""
+        ...
+
+    @property
+    def arclength(self) -> float:
+        """Where on the path."""
+        ...
+
+
+class Curve(Protocol):
+    """What can be drawn: a `continuation.Path`, or a path read from an archive."""
+
+    @property
+    def y(self) -> Array:
+        """The unknowns, shape (m, N)."""
+        ...
+
+    @property
+    def lam(self) -> Array:
+        """The parameter, shape (m,)."""
+        ...
+
+    @property
+    def arclength(self) -> Array:
+        """Arclength, shape (m,)."""
+        ...
+
+    @property
+    def turning_points(self) -> Sequence[Event]:
+        """The turning points of the parameter."""
+        ...
+
+
+@frozen(eq=False)
+class Drawing:
+    """A curve as lines to draw: dense output where there is some, else the stored points."""
+
+    s: Array
+    u: Array
+
+    @classmethod
+    def of(cls, curve: Curve) -> Drawing:
+        """Sample the curve, between its points too if it can be called."""
+        knots = np.asarray(curve.arclength, dtype=float)
+        if not callable(curve) or len(knots) < 2:
+            return cls(knots, np.column_stack([curve.y, curve.lam]))
+        pieces = [np.linspace(a, b, SMOOTHNESS, endpoint=False) for a, b in pairwise(knots)]
+        s = np.append(np.concatenate(pieces), knots[-1])
+        return cls(s, np.asarray(curve(s)))
+
+
+def plot_components(
+    path: Curve,
+    axes: Axes | None = None,
+    against: str = "lam",
+    names: Sequence[str] | None = None,
+    components: Iterable[int] | None = None,
+    legend: bool = True,
+) -> Axes:
+    """Draw components of y against the parameter or the arclength, turning points marked.
+
+    Parameters
+    ----------
+    path : Path
+        Or a path of an archive.
+    axes : matplotlib Axes, optional
+        Drawn into; a new figure otherwise.
+    against : {"lam", "arclength"}
+    names : sequence of str, optional
+        One a component drawn; ``y_1``, ... by default.
+    components : iterable of int, optional
+        Which components; all of them by default, but at most the first twelve.
+    legend : bool
+        Whether to name the curves.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If `against` is neither, a component does not exist, the names are too few, or the path is empty.
+    """
+    drawing = _drawing(path)
+    chosen = _components(components, drawing.u[:, :-1])
+    labels = [f"$y_{{{i + 1}}}$" for i in chosen] if names is None else list(names)
+    if len(labels) != len(chosen):
+        raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
+    axes = _axes(axes)
+    across = _across(against, drawing)
+    for k, (i, label) in enumerate(zip(chosen, labels)):
+        axes.plot(across, drawing.u[:, i], label=label, marker="." if len(across) == 1 else "", **_line(k))
+    for event in path.turning_points:
+        where = event.lam if against == "lam" else event.arclength
+        axes.plot([where] * len(chosen), event.y[chosen], zorder=3, **TURN)
+    axes.set_xlabel(_LABELS[against])
+    if len(chosen) == 1:
+        axes.set_ylabel(labels[0])
+    elif legend:
+        axes.legend(fontsize="small", frameon=False, ncols=1 + len(chosen) // 5)
+    return _tidy(axes)
+
+
+def plot_bifurcation(path: Curve, axes: Axes | None = None, component: int | None = None) -> Axes:
+    """Draw one number of y (a component, or its largest absolute value) against the parameter: the usual diagram.
+
+    Parameters
+    ----------
+    path : Path
+    axes : matplotlib Axes, optional
+    component : int, optional
+        Of y; the maximum norm by default.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If the component does not exist or the path is empty.
+    """
+    drawing = _drawing(path)
+    if component is None:
+        height, at_turns = _height(drawing.u[:, :-1]), [float(_height(event.y)) for event in path.turning_points]
+        label = r"$\max_i |y_i|$"
+    else:
+        i = _components([component], drawing.u[:, :-1])[0]
+        height, at_turns = drawing.u[:, i], [float(event.y[i]) for event in path.turning_points]
+        label = f"$y_{{{i + 1}}}$"
+    axes = _axes(axes)
+    axes.plot(drawing.u[:, -1], height, **_line(0))
+    for event, value in zip(path.turning_points, at_turns):
+        axes.plot([event.lam], [value], zorder=3, **TURN)
+    axes.set_xlabel(_LABELS["lam"])
+    axes.set_ylabel(label)
+    return _tidy(axes)
+
+
+def plot_steps(path: Curve, axes: Axes | None = None) -> Axes:
+    """Draw how far apart the points are, on a logarithmic scale, against arclength: where the controller was careful.
+
+    Parameters
+    ----------
+    path : Path
+    axes : matplotlib Axes, optional
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If the path is empty.
+    """
+    s = np.asarray(_drawing(path).s if not callable(path) else path.arclength, dtype=float)
+    axes = _axes(axes)
+    lengths = np.diff(s)
+    # An event stored with the points may lie on one of them; a length of zero has no logarithm.
+    axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
+    # Within one decade the labels of minor ticks would lie on top of each other.
+    axes.yaxis.set_minor_formatter("")
+    for event in path.turning_points:
+        axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)
+    axes.set_xlabel(_LABELS["arclength"])
+    axes.set_ylabel("step in $s$")
+    return _tidy(axes)
+
+
+def require_matplotlib() -> None:
+    """Raise ImportError, with what to install, unless matplotlib can be imported."""
+    try:
+        import matplotlib.pyplot  # noqa: F401
+    except ImportError as error:
+        raise ImportError("pictures need matplotlib: pip install 'continuation[plot]'") from error
+
+
+_LABELS = {"lam": r"$\lambda$", "arclength": "arclength $s$"}
+
+
+def _drawing(path: Curve) -> Drawing:
+    if len(path.arclength) == 0:
+        raise ValueError("path: expected at least one point, found none")
+    return Drawing.of(path)
+
+
+def _across(against: str, drawing: Drawing) -> Array:
+    if against not in _LABELS:
+        raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
+    across: Array = drawing.u[:, -1] if against == "lam" else drawing.s
+    return across
+
+
+def _components(components: Iterable[int] | None, y: Array) -> list[int]:
+    n = y.shape[1]
+    if components is None:
+        # An archive of paths with different numbers of unknowns fills the shorter ones up with NaN.
+        return [i for i in range(n) if np.isfinite(y[:, i]).any()][:MOST_COMPONENTS]
+    chosen = list(components)
+    outside = [i for i in chosen if not 0 <= i < n]
+    if outside:
+        raise ValueError(f"components: expected numbers from 0 to {n - 1}, found {outside[0]}")
+    return chosen
+
+
+def _height(y: Array) -> Array:
+    """The largest absolute value along the last axis, NaN apart."""
+    height: Array = np.fmax.reduce(np.abs(y), axis=-1)
+    return height
+
+
+def _axes(axes: Axes | None) -> Axes:
+    if axes is not None:
+        return axes
+    require_matplotlib()
+    from matplotlib import pyplot
+
+    return pyplot.subplots(layout="constrained")[1]
+
+
+def _line(k: int) -> dict[str, Any]:
+    return {"color": COLOURS[k % len(COLOURS)], "linestyle": STYLES[k % len(STYLES)], "linewidth": 1.6}
+
+
+def _tidy(axes: Axes) -> Axes:
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.margins(x=0.03)
+    return axes

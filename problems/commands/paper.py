@@ -1,0 +1,92 @@
+"""``continuation paper``: the ten examples of the paper, as a table, an archive and figures."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
+
+if TYPE_CHECKING:
+    from problems.paper_report import Row
+
+DEFAULT_OUTPUT = "continuation-paper"
+
+
+def register(subparsers: Subparsers) -> None:
+    """Add the command."""
+    parser = subparsers.add_parser(
+        "paper",
+        help="the ten examples of Dutta, Das and Jana: a table, an archive, figures",
+        description="Trace the KKT path of each example from the paper's start, with the paper's own algorithm beside "
+        "it. Exit status: 0 if all ten end at a solution.",
+    )
+    parser.add_argument(
+        "--output", metavar="DIR", default=DEFAULT_OUTPUT, help=f"where the files go (default: {DEFAULT_OUTPUT})"
+    )
+    parser.add_argument("--methods", metavar="all|NAME,...", help="compare other methods too, in a second table")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Trace, print, write."""
+    from problems.paper import EXAMPLES
+    from problems.paper_report import remarks, run_examples, table
+
+    methods = _methods(arguments.methods)
+    folder = _folder(arguments.output)
+    archive = folder / "paths.h5"
+    # The folder is this command's own: a second run replaces what the first one wrote.
+    archive.unlink(missing_ok=True)
+    rows = run_examples(EXAMPLES, archive)
+    text = "\n".join([table(rows), *remarks(rows)])
+    print(text)
+    (folder / "table.txt").write_text(f"{text}\n", encoding="utf-8")
+    written = [archive, folder / "table.txt"]
+    if methods:
+        from problems.paper_methods import LEGEND, compare, matrix, write_csv
+
+        results = compare(EXAMPLES, methods)
+        print(f"\n{matrix(results)}\n{LEGEND}")
+        written.append(folder / "methods.csv")
+        write_csv(results, written[-1])
+    figure = _figure(folder, rows)
+    print(f"\nWritten: {', '.join(map(str, written))}{figure}")
+    return SUCCESS if all(row.solved for row in rows) else FAILURE
+
+
+def _methods(value: str | None) -> list[str]:
+    if value is None:
+        return []
+    from problems.paper_methods import METHODS
+
+    names = list(METHODS) if value == "all" else value.split(",")
+    unknown = [name for name in names if name not in METHODS]
+    if unknown:
+        raise UsageError("--methods", f"expected all or some of {', '.join(METHODS)}, found {unknown[0]!r}")
+    return names
+
+
+def _folder(output: str) -> Path:
+    folder = Path(output)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        complaint = f"expected a directory, or a new one, found {output!r} ({error.strerror})"
+        raise UsageError("--output", complaint) from error
+    return folder
+
+
+def _figure(folder: Path, rows: Sequence[Row]) -> str:
+    """Draw where matplotlib is installed; the end of the sentence that lists the files."""
+    from problems.paper_figures import draw_examples
+
+    try:
+        figure = draw_examples([row.example for row in rows], [row.path for row in rows])
+    except ImportError as error:
+        return f". No figures: {error}."
+    file = folder / "paths.png"
+    figure.savefig(file, dpi=150)
+    return f", {file}"

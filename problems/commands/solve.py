@@ -1,0 +1,136 @@
+"""``continuation solve FILE``: an LCP from a file, its solution and certificate on stdout."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from continuation.arrays import Array
+from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
+from problems.commands.arguments import PROBLEM_FORMATS, named
+
+HOMOTOPIES = ("auto", "kkt", "yu", "zhao", "xu", "wang")
+
+MOST_ROWS = 60
+"""Components printed; --json prints all."""
+
+_ARGUMENTS = {"path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy"}
+
+
+def register(subparsers: Subparsers) -> None:
+    """Add the command."""
+    parser = subparsers.add_parser(
+        "solve",
+        help="solve a linear complementarity problem",
+        description="Find x >= 0 with w = A x + q >= 0 and x_i w_i = 0. Exit status: 0 solved, 1 not, 2 bad input.",
+    )
+    parser.add_argument("file", metavar="FILE", help=f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group")
+    parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
+    parser.add_argument("--homotopy", choices=HOMOTOPIES, default="auto", help="default: auto")
+    parser.add_argument("--x0", metavar="FILE", help="the start, n positive numbers; need not be feasible")
+    parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
+    parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); needs matplotlib")
+    parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
+    parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read, solve, print."""
+    from problems import lcp
+    from problems.lcp.files import read_problem, read_vector
+
+    _check_outputs(arguments)
+    with named(_ARGUMENTS):
+        problem = read_problem(arguments.file, arguments.q)
+        x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
+        solution = lcp.solve(
+            problem,
+            homotopy=arguments.homotopy,
+            x0=x0,
+            archive=arguments.archive,
+            progress=arguments.progress,
+        )
+    print(json.dumps(_as_json(arguments, solution)) if arguments.json else _as_text(arguments, problem, solution))
+    if arguments.plot is not None:
+        # Where no path was needed there is nothing to draw yet.
+        drawn = solution if solution.paths else lcp.solve(problem, arguments.homotopy, x0=x0, finish=False)
+        _draw(drawn, problem.n, arguments.plot)
+    return SUCCESS if solution.outcome is lcp.Outcome.SOLVED else FAILURE
+
+
+def _check_outputs(arguments: argparse.Namespace) -> None:
+    """Complain before the work is done rather than after."""
+    for option, file in (("--archive", arguments.archive), ("--plot", arguments.plot)):
+        if file is not None and not Path(file).parent.is_dir():
+            raise UsageError(option, f"expected a file in an existing directory, found {str(file)!r}")
+    if arguments.archive is not None and Path(arguments.archive).exists():
+        raise UsageError("--archive", f"expected a new file, found an existing one, {arguments.archive!r}")
+    if arguments.plot is not None:
+        from continuation.cli.figures import check_picture
+
+        check_picture("--plot", arguments.plot)
+
+
+def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:
+    return {
+        "file": arguments.file,
+        "homotopy": arguments.homotopy,
+        "outcome": solution.outcome.name,
+        "message": solution.message,
+        "x": _numbers(solution.x),
+        "w": _numbers(solution.w),
+        "residual": _number(solution.residual),
+        "relative_residual": _number(solution.relative_residual),
+        "paths": len(solution.paths),
+        "counts": solution.counts.as_dict(),
+        "seconds": solution.seconds,
+    }
+
+
+def _numbers(vector: Array | None) -> list[float | None] | None:
+    return None if vector is None else [_number(value) for value in vector]
+
+
+def _number(value: float) -> float | None:
+    """JSON has no NaN and no infinity."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
+    counts = ", ".join(f"{value} {name}" for name, value in solution.counts.as_dict().items())
+    lines = [
+        f"problem    {arguments.file}, n = {problem.n}, {'sparse' if problem.sparse else 'dense'}",
+        f"homotopy   {arguments.homotopy}",
+        f"outcome    {solution.outcome.name}",
+        f"           {solution.message}",
+        f"residual   {solution.residual:.2e}, relative {solution.relative_residual:.2e}",
+        f"work       {len(solution.paths)} paths, {counts}; {solution.seconds:.2g} s",
+    ]
+    if solution.x is not None:
+        lines += ["", f"{'i':>6}  {'x':>22}  {'w':>22}"]
+        lines += [
+            f"{i:>6}  {x:>22.15g}  {w:>22.15g}"
+            for i, (x, w) in enumerate(zip(solution.x[:MOST_ROWS], solution.w[:MOST_ROWS]), start=1)
+        ]
+        if problem.n > MOST_ROWS:
+            lines.append(f"{'...':>6}  {problem.n - MOST_ROWS} more; --json prints all")
+    return "\n".join(lines)
+
+
+def _draw(solution: Any, n: int, file: str) -> None:
+    from continuation.cli.figures import save
+    from continuation.plot import MOST_COMPONENTS, plot_components, plot_steps
+
+    components = range(min(n, MOST_COMPONENTS))
+    names = [f"$x_{{{i + 1}}}$" for i in components]
+
+    def draw(figure: Any) -> None:
+        above, below = figure.subplots(2, 1, height_ratios=(3, 1))
+        plot_components(solution.path, above, names=names, components=components)
+        plot_steps(solution.path, below)
+
+    save(file, draw)

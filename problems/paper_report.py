@@ -1,0 +1,148 @@
+"""The ten examples traced accurately from the paper's starts, beside its own algorithm: rows, table, archive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from os import PathLike
+
+import h5py
+import numpy as np
+from attrs import frozen
+
+import continuation
+from continuation.archive import PathLog
+from continuation.arrays import Array
+from continuation.path import Path
+from continuation.tracer import Observer
+from problems.lcp.certificate import certify
+from problems.lcp.homotopies import KKTHomotopy
+from problems.lcp.padded import Padded
+from problems.literal import LiteralRun, run_literally
+from problems.paper import Example
+
+SOLVED_TO = 1e-6
+"""Example 7 ends like the square root of lambda, so its pure path is good to about this; the others do far better."""
+
+TITLE = "The ten examples of Dutta, Das and Jana: y = (x, z1, z2), then NaN"
+
+
+@frozen(eq=False)
+class Row:
+    """One example: its accurate path, and what the literal algorithm made of it."""
+
+    example: Example
+    path: Path
+    literal: LiteralRun
+
+    @property
+    def x(self) -> Array:
+        """X at the end of the path, shape (n,)."""
+        return self.path.endpoint.y[: self.example.q.size]
+
+    @property
+    def residual(self) -> float:
+        """The natural residual there."""
+        return certify(self.example.problem, self.x).residual
+
+    @property
+    def solved(self) -> bool:
+        """Whether x solves the LCP, to `SOLVED_TO`."""
+        return certify(self.example.problem, self.x).solves(SOLVED_TO)
+
+
+def trace_example(example: Example, observers: tuple[Observer, ...] = ()) -> Path:
+    """The KKT path from the paper's start, by the engine's default parts."""
+    return continuation.trace(KKTHomotopy(example.problem, example.x0, example.z1, example.z2), observers=observers)
+
+
+def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> list[Row]:
+    """Trace the examples, write all paths to one new archive, and run the literal algorithm.
+
+    Parameters
+    ----------
+    examples : sequence of Example
+    archive : path
+        Must not exist. Besides the paths it holds a group `examples` with A, q and x0 of each.
+
+    Raises
+    ------
+    ArchiveError
+        If it exists or cannot be written.
+    """
+    unknowns = 3 * max(example.q.size for example in examples)
+    with PathLog(archive, title=TITLE) as log:
+        paths = [trace_example(example, (Padded(log, unknowns),)) for example in examples]
+    _write_data(archive, examples)
+    return [
+        Row(example, path, run_literally(example.problem, example.x0, example.z1, example.z2))
+        for example, path in zip(examples, paths)
+    ]
+
+
+def _write_data(archive: str | PathLike[str], examples: Iterable[Example]) -> None:
+    """A, q and x0 of each example, so that each end can be certified again from the file alone."""
+    with h5py.File(archive, "r+") as file:
+        for example in examples:
+            group = file.create_group(f"examples/{example.number}")
+            group.attrs["label"] = example.label
+            for name in ("A", "q", "x0"):
+                group[name] = getattr(example, name)
+
+
+def table(rows: Sequence[Row]) -> str:
+    """The rows as text: example, class, end, work, and the two iteration counts."""
+    head = ("#", "class", "x at the end", "residual", "steps", "factor.", "turns", "paper", "literal", "status")
+    cells = [head, *(_cells(row) for row in rows)]
+    widths = [max(len(line[k]) for line in cells) for k in range(len(head))]
+    right = {0, 3, 4, 5, 6, 7, 8}
+    aligned = [
+        [cell.rjust(width) if k in right else cell.ljust(width) for k, (cell, width) in enumerate(zip(line, widths))]
+        for line in cells
+    ]
+    lines = ["  ".join(line).rstrip() for line in aligned]
+    return "\n".join([lines[0], "-" * max(map(len, lines)), *lines[1:]])
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    path, literal = row.path, row.literal
+    return (
+        str(row.example.number),
+        row.example.stated_class,
+        show(row.x),
+        f"{row.residual:.1e}",
+        str(path.counts.accepted),
+        str(path.counts.factorizations),
+        str(len(path.turning_points)),
+        str(row.example.printed_iterations),
+        f"{literal.iterations}{'' if _true(literal) else '*'}",
+        f"{path.status.name}{'' if row.solved else ', not a solution'}",
+    )
+
+
+def remarks(rows: Sequence[Row]) -> list[str]:
+    """What the table cannot say: false claims of the literal algorithm, paths that end before the target."""
+    found = [
+        f"* Example {row.example.number}: the algorithm as printed claims to solve it at x = {show(row.literal.x)}, "
+        f"where the natural residual is {row.literal.residual:.2g}: it has jumped to another path."
+        for row in rows
+        if not _true(row.literal)
+    ]
+    found += [
+        f"  Example {row.example.number}: {row.path.message} (lambda = {row.path.endpoint.lam:.1e})"
+        for row in rows
+        if row.path.status is not continuation.Status.REACHED_TARGET
+    ]
+    return found
+
+
+def _true(literal: LiteralRun) -> bool:
+    """Whether the literal algorithm's claim holds to the accuracy that its stopping rule allows."""
+    return not literal.claims_solution or literal.residual <= 1e-3
+
+
+def show(x: Array, digits: int = 7) -> str:
+    """A vector as short text; components that are zero to the accuracy of a path as 0."""
+    size = float(np.abs(x).max())
+    return "(" + ", ".join("0" if abs(value) <= SOLVED_TO * size else f"{value:.{digits}g}" for value in x) + ")"
+
+

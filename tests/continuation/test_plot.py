@@ -1,0 +1,152 @@
+"""Pictures: what is drawn where, checked on the artists; matplotlib's Agg renders each once."""
+
+from itertools import pairwise
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from attrs import evolve
+
+import continuation
+from continuation.plot import plot_bifurcation, plot_components, plot_steps
+
+mpl.use("Agg")
+from matplotlib.figure import Figure
+
+
+@pytest.fixture(scope="module")
+def path():
+    """The fold lam = 1 - y_1^2 with y_2 = y_1^3, from y_1 = -1 to y_1 = 1."""
+
+    def residual(y, lam):
+        return np.array([y[0] ** 2 + lam - 1.0, y[1] - y[0] ** 3])
+
+    homotopy = continuation.from_functions(residual, start=([-1.0, -1.0], 0.0), target=None)
+    end = continuation.TargetValue(1.0, component=0)
+    return continuation.trace(homotopy, direction=1, events=[end])
+
+
+@pytest.fixture
+def axes():
+    figure = Figure()
+    yield figure.subplots()
+    figure.canvas.draw()
+
+
+def lines(axes):
+    return [line for line in axes.get_lines() if line.get_linestyle() != "None"]
+
+
+def marks(axes):
+    return [line for line in axes.get_lines() if line.get_linestyle() == "None"]
+
+
+def test_components_lie_on_the_path_between_the_points_too(path, axes):
+    plot_components(path, axes, names=["first", "second"])
+    first, second = lines(axes)
+    lam, y = first.get_data()
+    assert len(lam) > 3 * len(path)
+    np.testing.assert_allclose(lam, 1 - y**2, atol=2e-3)
+    np.testing.assert_allclose(second.get_ydata(), y**3, atol=2e-3)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["first", "second"]
+    assert axes.get_xlabel() == r"$\lambda$"
+
+
+def test_turning_points_are_marked_on_every_curve(path, axes):
+    plot_components(path, axes)
+    (mark,) = marks(axes)
+    np.testing.assert_allclose(mark.get_xdata(), [1, 1], atol=1e-9)
+    np.testing.assert_allclose(mark.get_ydata(), [0, 0], atol=1e-5)
+
+
+def test_against_arclength(path, axes):
+    plot_components(path, axes, against="arclength", components=[1])
+    (line,) = lines(axes)
+    s = line.get_xdata()
+    assert s[0] == 0
+    assert s[-1] == path.arclength[-1]
+    assert (np.diff(s) > 0).all()
+    (mark,) = marks(axes)
+    assert mark.get_xdata()[0] == path.turning_points[0].arclength
+    assert axes.get_ylabel() == "$y_{2}$"
+
+
+def test_colours_and_styles_both_tell_curves_apart(axes):
+    n = 12
+    slopes = np.arange(1.0, n + 1)
+    homotopy = continuation.from_functions(lambda y, lam: y - slopes * lam, start=(slopes, 1.0))
+    plot_components(continuation.trace(homotopy), axes)
+    looks = [(line.get_color(), line.get_linestyle()) for line in lines(axes)]
+    assert len(set(looks)) == n
+    assert all(a[0] != b[0] and a[1] != b[1] for a, b in pairwise(looks))
+
+
+def test_at_most_twelve_components_unless_asked(axes):
+    homotopy = continuation.from_functions(lambda y, lam: y - lam, start=(np.ones(15), 1.0))
+    path = continuation.trace(homotopy)
+    plot_components(path, axes)
+    assert len(lines(axes)) == 12
+
+
+def test_the_bifurcation_diagram_shows_the_norm_or_a_component(path, axes):
+    plot_bifurcation(path, axes)
+    (line,) = lines(axes)
+    lam, height = line.get_data()
+    np.testing.assert_allclose(height**2, 1 - lam, atol=5e-3)
+    plot_bifurcation(path, axes, component=1)
+    assert lines(axes)[1].get_ydata()[0] == -1
+    assert axes.get_ylabel() == "$y_{2}$"
+
+
+def test_steps_are_the_differences_of_arclength(path, axes):
+    plot_steps(path, axes)
+    line = lines(axes)[0]
+    np.testing.assert_array_equal(line.get_ydata(), np.diff(path.arclength))
+    assert axes.get_yscale() == "log"
+
+
+def test_components_that_are_nan_throughout_are_left_out(path, axes):
+    def padded(step):
+        return evolve(step, u=np.array([step.u[0], np.nan, step.u[2]]), segment=None)
+
+    stored = continuation.Path([padded(step) for step in path.steps], [padded_event(e) for e in path.events])
+    plot_components(stored, axes)
+    assert len(lines(axes)) == 1
+    plot_bifurcation(stored, axes)
+    assert np.isfinite(lines(axes)[-1].get_ydata()).all()
+
+
+def padded_event(event):
+    return evolve(event, u=np.array([event.u[0], np.nan, event.u[2]]))
+
+
+def test_a_single_point_can_be_drawn(axes):
+    homotopy = continuation.from_functions(lambda y, lam: y - lam, start=([1.0], 1.0))
+    path = continuation.trace(homotopy, budget=continuation.Budget(steps=1))
+    plot_components(continuation.Path(path.steps[:1]), axes)
+    plot_steps(continuation.Path(path.steps[:1]), axes)
+
+
+def test_without_axes_a_figure_is_made(path):
+    from matplotlib import pyplot
+
+    axes = plot_steps(path)
+    pyplot.close(axes.figure)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"against": "time"}, "against: expected 'lam' or 'arclength', found 'time'"),
+        ({"components": [2]}, "components: expected numbers from 0 to 1, found 2"),
+        ({"names": ["x"]}, "names: expected 2, one a component drawn, found 1"),
+    ],
+)
+def test_bad_options_are_named(path, axes, options, message):
+    with pytest.raises(ValueError, match=message):
+        plot_components(path, axes, **options)
+
+
+def test_an_empty_path_is_refused(axes):
+    with pytest.raises(ValueError, match="path: expected at least one point, found none"):
+        plot_bifurcation(continuation.Path(), axes)

@@ -1,0 +1,174 @@
+"""The ten examples end to end: solutions, archive, table, figure, and who else solves them."""
+
+import csv
+
+import h5py
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import continuation
+from continuation.archive import open_archive
+from problems.lcp.homotopies import KKTHomotopy
+from problems.lcp.padded import Padded
+from problems.paper import EXAMPLES
+from problems.paper_figures import draw_examples
+from problems.paper_methods import METHODS, compare, matrix, write_csv
+from problems.paper_report import remarks, run_examples, table, trace_example
+
+mpl.use("Agg")
+
+CHOSEN = (EXAMPLES[0], EXAMPLES[6], EXAMPLES[9])
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """Rows and archive of examples 1 (the literal algorithm jumps), 7 (degenerate end) and 10 (two turns)."""
+    file = tmp_path_factory.mktemp("report") / "paths.h5"
+    return run_examples(CHOSEN, file), file
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: f"{example.number}-{example.label}")
+def test_the_traced_path_ends_at_the_paper_s_solution(example):
+    path = trace_example(example)
+    x = path.endpoint.y[: example.q.size]
+    assert path.status is continuation.Status.REACHED_TARGET
+    assert path.endpoint.lam == 0
+    exact = np.array([float(value) for value in example.solutions[0]])
+    # Example 7 ends like the square root of lambda.
+    np.testing.assert_allclose(x, exact, atol=1e-6 if example.number == 7 else 1e-8 * (1 + exact.max()))
+    assert example.problem.relative_residual(x) <= (1e-6 if example.number == 7 else 1e-10)
+    assert len(path.turning_points) == (2 if example.number == 10 else 0)
+
+
+def test_the_turns_of_example_10_are_folds(report):
+    """At a fold H_y is singular: its smallest singular value is far below that of the path elsewhere."""
+    rows, _ = report
+    example, path = rows[2].example, rows[2].path
+    homotopy = KKTHomotopy(example.problem, example.x0, example.z1, example.z2)
+    for turn in path.turning_points:
+        values = np.linalg.svd(homotopy.jacobian(turn.y, turn.lam)[0], compute_uv=False)
+        assert values[-1] < 1e-9 * values[-2]
+        assert np.abs(homotopy.residual(turn.y, turn.lam)).max() < 1e-9
+
+
+def test_rows_know_what_is_solved(report):
+    rows, _ = report
+    assert all(row.solved for row in rows)
+    assert [row.literal.iterations for row in rows] == [18, 18, 1955]
+
+
+def test_the_table_has_the_counts_and_marks_the_false_claim(report):
+    rows, _ = report
+    head, _, first, seventh, tenth = table(rows).splitlines()
+    assert head.split()[-4:] == ["turns", "paper", "literal", "status"]
+    assert first.split()[-4:] == ["0", "20", "18*", "REACHED_TARGET"]
+    assert seventh.split()[-4:] == ["0", "17", "18", "REACHED_TARGET"]
+    assert tenth.split()[-4:] == ["2", "1925", "1955", "REACHED_TARGET"]
+    assert "(0.2403846, 0, 1.634615, 3.846154, 0)" in tenth
+    (remark,) = remarks(rows)
+    assert "Example 1" in remark
+    assert "(0.1666667, 0)" in remark
+    assert "0.17" in remark
+
+
+def test_the_archive_holds_all_paths_filled_up_with_nan(report):
+    rows, file = report
+    with open_archive(file) as archive:
+        assert len(archive) == len(CHOSEN)
+        for row, stored in zip(rows, archive):
+            n = 3 * row.example.q.size
+            np.testing.assert_array_equal(stored.y[:, :n], row.path.y)
+            np.testing.assert_array_equal(stored.lam, row.path.lam)
+            assert np.isnan(stored.y[:, n:]).all()
+            assert stored.status is row.path.status
+        turns = archive.path(2).turning_points
+        assert [turn.lam for turn in turns] == [turn.lam for turn in rows[2].path.turning_points]
+
+
+def test_the_archive_alone_is_enough_to_certify_an_end(report):
+    _, file = report
+    with open_archive(file) as archive:
+        ends = [path.endpoint.y for path in archive]
+    with h5py.File(file) as data:
+        for example, end in zip(CHOSEN, ends):
+            group = data[f"examples/{example.number}"]
+            A, q = group["A"][()], group["q"][()]
+            x = end[: q.size]
+            assert np.abs(np.minimum(x, A @ x + q)).max() < 1e-6
+            assert group.attrs["label"] == example.label
+
+
+def test_padding_leaves_the_parameter_last():
+    seen = []
+
+    class Recorder:
+        def step(self, tracer, step):
+            seen.append(step)
+
+        def event(self, tracer, event):
+            seen.append(event)
+
+        def end(self, tracer):
+            pass
+
+    path = trace_example(EXAMPLES[1], (Padded(Recorder(), 15),))
+    assert len(seen) == len(path)
+    for step, shown in zip(path.steps, seen):
+        np.testing.assert_array_equal(shown.y[:6], step.y)
+        assert np.isnan(shown.y[6:]).all()
+        assert shown.lam == step.lam
+
+
+def test_the_figure_has_a_panel_an_example_and_marks_the_turns(report):
+    rows, _ = report
+    figure = draw_examples([row.example for row in rows], [row.path for row in rows], columns=2)
+    figure.canvas.draw()
+    panels = [axes for axes in figure.axes if axes.get_visible()]
+    assert len(panels) == 3
+    assert panels[1].get_title() == r"7: almost $\bar{N}$, Q"
+    marks = [line for line in panels[2].get_lines() if line.get_linestyle() == "None"]
+    assert [mark.get_xdata()[0] for mark in marks] == [turn.lam for turn in rows[2].path.turning_points]
+    (inset,) = panels[2].child_axes
+    assert inset.get_title() == "2 turning points"
+
+
+# Who solves examples 1 to 3, as an independent program found it; literal ends at a KKT point on example 1.
+SOLVERS = {
+    "kkt": "yyy", "literal": ".yy", "yu": ".yy", "zhao": "...", "xu": ".yy", "wang": ".yy", "lemke": ".yy",
+    "modulus": None, "min-newton": ".yy",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def results():
+    return compare(EXAMPLES[:3], list(METHODS))
+
+
+def test_who_solves_what(results):
+    assert set(SOLVERS) == set(METHODS)
+    for name, expected in SOLVERS.items():
+        found = "".join("y" if result.solved else "." for result in results if result.method == name)
+        assert expected is None or found == expected, name
+    by = {(result.method, result.example): result for result in results}
+    assert by["literal", 1].outcome == "STATIONARY"
+    assert by["yu", 1].outcome == "DIVERGED"
+    assert by["wang", 1].outcome == "DIVERGED"
+    assert by["literal", 3].work == 15
+
+
+def test_the_matrix_has_a_line_a_method(results, tmp_path):
+    lines = matrix(results).splitlines()
+    assert [line.split()[0] for line in lines] == ["example", *METHODS]
+    assert lines[2].split() == ["literal", "stat.", "21", "15"]
+    write_csv(results, tmp_path / "methods.csv")
+    with (tmp_path / "methods.csv").open(newline="") as file:
+        stored = list(csv.DictReader(file))
+    assert len(stored) == len(results)
+    assert stored[0]["method"] == "kkt"
+    assert float(stored[0]["residual"]) == results[0].residual
+
+
+def test_an_unknown_method_is_named():
+    with pytest.raises(ValueError, match=r"methods: expected some of kkt, .* found 'gauss'"):
+        compare(EXAMPLES[:1], ["gauss"])

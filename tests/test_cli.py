@@ -1,0 +1,337 @@
+"""The command line: exit statuses, what is printed, and one line for whatever cannot be used."""
+
+import json
+import subprocess
+import sys
+from importlib.metadata import EntryPoint
+
+import h5py
+import numpy as np
+import pytest
+
+import continuation
+from continuation.archive import PathLog, open_archive
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, commands, main
+from problems.paper import COUNTEREXAMPLES, EXAMPLES
+
+
+@pytest.fixture
+def run(capsys):
+    """main(argv) -> (status, stdout, stderr); bad input is always exactly one line on stderr."""
+
+    def call(*argv):
+        status = main([str(argument) for argument in argv])
+        captured = capsys.readouterr()
+        if status == BAD_INPUT:
+            assert captured.out == ""
+            assert captured.err.count("\n") == 1
+        return status, captured.out, captured.err
+
+    return call
+
+
+def save(folder, problem, name="problem.npz"):
+    np.savez(folder / name, A=problem.A, q=problem.q)
+    return folder / name
+
+
+@pytest.fixture
+def second(tmp_path):
+    """The paper's example 2, whose only solution is (1/2, 0)."""
+    return save(tmp_path, EXAMPLES[1].problem)
+
+
+@pytest.fixture(scope="session")
+def archive(tmp_path_factory):
+    """A closed archive with one path through a fold."""
+    file = tmp_path_factory.mktemp("archives") / "fold.h5"
+    trace_fold(file)
+    return file
+
+
+class Fold:
+    """lam = 1 - y^2; a class that an archive can name and make again."""
+
+    target = None
+
+    def start(self):
+        return np.array([-1.0]), 0.0
+
+    def residual(self, y, lam):
+        return y**2 + lam - 1.0
+
+
+def trace_fold(file, **options):
+    end = continuation.TargetValue(0.9, component=0)
+    return continuation.trace(Fold(), archive=file, direction=1, events=[end], **options)
+
+
+# -- solve ----------------------------------------------------------------------------------------------------
+
+
+def test_solve_prints_the_solution(run, second):
+    status, out, err = run("solve", second)
+    assert status == SUCCESS
+    assert err == ""
+    lines = dict(line.split(maxsplit=1) for line in out.splitlines() if line and not line.startswith(" "))
+    assert lines["outcome"] == "SOLVED"
+    assert float(lines["residual"].split(",")[0]) < 1e-10
+    rows = [line.split() for line in out.splitlines() if line.strip()[:1] in "12" and line.startswith("  ")]
+    x = [float(row[1]) for row in rows]
+    np.testing.assert_allclose(x, [0.5, 0], atol=1e-10)
+
+
+def test_solve_as_json(run, second):
+    status, out, _ = run("solve", second, "--json", "--homotopy", "kkt")
+    assert status == SUCCESS
+    answer = json.loads(out)
+    assert answer["outcome"] == "SOLVED"
+    assert answer["homotopy"] == "kkt"
+    np.testing.assert_allclose(answer["x"], [0.5, 0], atol=1e-10)
+    np.testing.assert_allclose(answer["w"], [0, 1.5], atol=1e-10)
+    assert answer["residual"] < 1e-10
+    assert answer["counts"]["factorizations"] >= 0
+
+
+def test_solve_without_a_solution_exits_with_one(run, tmp_path):
+    status, out, _ = run("solve", save(tmp_path, COUNTEREXAMPLES[0].problem), "--json")
+    assert status == FAILURE
+    assert json.loads(out)["outcome"] in ("STATIONARY", "UNSOLVABLE", "NOT_FOUND")
+
+
+def test_solve_with_everything(run, second, tmp_path):
+    np.save(tmp_path / "x0.npy", [2.0, 1.0])
+    archive, picture = tmp_path / "run.h5", tmp_path / "path.png"
+    status, _, err = run(
+        "solve", second, "--homotopy", "kkt", "--x0", tmp_path / "x0.npy", "--archive", archive, "--plot", picture,
+        "--progress",
+    )  # fmt: skip
+    assert status == SUCCESS
+    assert "lam =" in err
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    with open_archive(archive) as stored:
+        assert len(stored) >= 1
+        np.testing.assert_allclose(stored.path(0).steps[0].y[:2], [2, 1])
+
+
+def test_a_matrix_market_file_and_q(run, tmp_path):
+    import scipy.io
+    import scipy.sparse as sp
+
+    example = EXAMPLES[1]
+    scipy.io.mmwrite(tmp_path / "a.mtx", sp.coo_array(example.A))
+    np.savetxt(tmp_path / "q.txt", example.q)
+    status, out, _ = run("solve", tmp_path / "a.mtx", "--q", tmp_path / "q.txt", "--json")
+    assert status == SUCCESS
+    np.testing.assert_allclose(json.loads(out)["x"], [0.5, 0], atol=1e-10)
+
+
+def test_bad_problems_are_one_line_that_names_the_argument(run, tmp_path, second):
+    np.savez(tmp_path / "nan.npz", A=[[np.nan]], q=[1.0])
+    np.savez(tmp_path / "wide.npz", A=np.ones((2, 3)), q=[1.0, 2.0])
+    np.savez(tmp_path / "short.npz", A=np.eye(2), q=[1.0])
+    np.savez(tmp_path / "empty.npz", A=np.zeros((0, 0)), q=np.zeros(0))
+    (tmp_path / "words.npz").write_text("no archive")
+    (tmp_path / "problem.doc").write_text("")
+    np.save(tmp_path / "negative.npy", [1.0, -1.0])
+    np.save(tmp_path / "three.npy", np.ones(3))
+    (tmp_path / "old.h5").write_text("")
+    cases = [
+        ((tmp_path / "gone.npz",), "FILE: expected a file, found nothing"),
+        ((tmp_path / "words.npz",), "FILE: expected a .npz file, found one that cannot be read"),
+        ((tmp_path / "problem.doc",), "FILE: expected one of .npz, .json"),
+        ((tmp_path / "nan.npz",), "FILE: A: expected finite numbers, found nan"),
+        ((tmp_path / "wide.npz",), "FILE: A: expected a square matrix, found shape (2, 3)"),
+        ((tmp_path / "short.npz",), "FILE: q: expected 2 numbers, one a row of A, found 1"),
+        ((tmp_path / "empty.npz",), "FILE: A: expected a square matrix, found shape (0, 0)"),
+        ((second, "--q", tmp_path / "gone.npy"), "--q: expected a file, found nothing"),
+        ((second, "--q", tmp_path / "three.npy"), "--q: expected 2 numbers, one a row of A, found 3"),
+        ((second, "--x0", tmp_path / "three.npy"), "--x0: expected 2 numbers, found 3"),
+        ((second, "--x0", tmp_path / "negative.npy", "--homotopy", "kkt"), "--x0: expected positive finite numbers"),
+        ((second, "--homotopy", "simplex"), "--homotopy: invalid choice: 'simplex' (choose from"),
+        ((second, "--archive", tmp_path / "old.h5"), "--archive: expected a new file, found an existing one"),
+        ((second, "--archive", tmp_path / "no" / "run.h5"), "--archive: expected a file in an existing directory"),
+        ((second, "--plot", tmp_path / "path.doc"), "--plot: expected a name in .png, .pdf, .svg"),
+        ((second, "--plot", tmp_path / "no" / "path.png"), "--plot: expected a file in an existing directory"),
+        ((), "the following arguments are required: FILE"),
+    ]
+    for arguments, message in cases:
+        status, _, err = run("solve", *arguments)
+        assert status == BAD_INPUT, arguments
+        assert message in err
+
+
+# -- classify and paper ---------------------------------------------------------------------------------------
+
+
+def test_classify_prints_every_class_with_its_evidence(run, second):
+    status, out, _ = run("classify", second)
+    assert status == SUCCESS
+    answers = {line[:40].split("  ")[0].strip(): line for line in out.splitlines()}
+    assert " yes " in answers["PSD"]
+    assert " no " in answers["P"]
+
+
+def test_classify_takes_a_matrix_alone(run, tmp_path):
+    np.savetxt(tmp_path / "a.txt", [[1.0, 0.0], [0.0, 1.0]])
+    status, out, _ = run("classify", tmp_path / "a.txt")
+    assert status == SUCCESS
+    assert out.startswith("PSD")
+
+
+def test_classify_names_bad_input(run, tmp_path):
+    np.savetxt(tmp_path / "a.txt", np.ones((2, 3)))
+    assert "FILE: expected a file, found nothing" in run("classify", tmp_path / "gone.npz")[2]
+    status, _, err = run("classify", tmp_path / "a.txt")
+    assert status == BAD_INPUT
+    assert "FILE: " in err
+    assert "(2, 3)" in err
+
+
+def test_paper_names_bad_input(run, tmp_path):
+    (tmp_path / "file").write_text("")
+    status, _, err = run("paper", "--output", tmp_path / "file")
+    assert status == BAD_INPUT
+    assert "--output: expected a directory, or a new one" in err
+    status, _, err = run("paper", "--output", tmp_path, "--methods", "kkt,gauss")
+    assert status == BAD_INPUT
+    assert "--methods: expected all or some of kkt, literal" in err
+    assert "'gauss'" in err
+
+
+# -- archives -------------------------------------------------------------------------------------------------
+
+
+def test_inspect_is_a_page(run, archive):
+    status, out, _ = run("inspect", archive)
+    assert status == SUCCESS
+    assert "fold.h5" in out
+    assert "STOPPED_AT_EVENT" in out
+    assert "turning point" in out
+
+
+@pytest.mark.parametrize(
+    "options", [(), ("--against", "arclength"), ("--diagram",), ("--diagram", "--components", "0")]
+)
+def test_plot_writes_a_picture(run, archive, tmp_path, options):
+    status, out, _ = run("plot", archive, "--output", tmp_path / "p.png", *options)
+    assert status == SUCCESS
+    assert out.strip() == str(tmp_path / "p.png")
+    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_resume_goes_on_to_the_end(run, tmp_path):
+    file = tmp_path / "run.h5"
+    trace_fold(file, budget=continuation.Budget(steps=3))
+    status, out, _ = run("resume", file, "--steps", 100)
+    assert status == SUCCESS
+    assert out.startswith("STOPPED_AT_EVENT")
+    with open_archive(file) as stored:
+        assert stored.path(0).endpoint.y[0] == 0.9
+
+
+def test_resume_that_does_not_arrive_exits_with_one(run, tmp_path):
+    file = tmp_path / "run.h5"
+    trace_fold(file, budget=continuation.Budget(steps=3))
+    status, out, _ = run("resume", file, "--steps", 4)
+    assert status == FAILURE
+    assert out.startswith("BUDGET_EXHAUSTED")
+
+
+def test_recover_leaves_a_whole_file_as_it_is(run, archive):
+    before = archive.read_bytes()
+    status, out, _ = run("recover", archive)
+    assert status == SUCCESS
+    assert "1 paths" in out
+    assert archive.read_bytes() == before
+
+
+def test_export_and_merge(run, archive, tmp_path):
+    status, out, _ = run("export", archive, tmp_path / "run.csv")
+    assert status == SUCCESS
+    assert out.splitlines() == [str(tmp_path / "run.csv"), str(tmp_path / "run.paths.csv")]
+    status, _, _ = run("merge", tmp_path / "both.h5", archive, archive)
+    assert status == SUCCESS
+    with open_archive(tmp_path / "both.h5") as both:
+        assert len(both) == 2
+
+
+def test_bad_archives_are_one_line_that_names_the_argument(run, archive, tmp_path):
+    (tmp_path / "text.h5").write_text("no archive")
+    (tmp_path / "there.h5").write_text("")
+    with h5py.File(tmp_path / "foreign.h5", "w") as file:
+        file["y"] = [1.0]
+    cases = [
+        (("inspect", tmp_path / "gone.h5"), "FILE: "),
+        (("inspect", tmp_path / "text.h5"), "is not an HDF5 file"),
+        (("inspect", tmp_path / "foreign.h5"), "not an archive of paths"),
+        (("plot", tmp_path / "text.h5", "--output", tmp_path / "p.png"), "FILE: "),
+        (("plot", archive, "--output", tmp_path / "p.doc"), "--output: expected a name in .png, .pdf, .svg"),
+        (("plot", archive, "--output", tmp_path / "p.png", "--path", 1), "--path: expected a number below 1, found 1"),
+        (("plot", archive, "--output", tmp_path / "p.png", "--components", "7"), "--components: expected numbers from"),
+        (("plot", archive, "--output", tmp_path / "p.png", "--components", "x"), "--components: expected numbers like"),
+        (("plot", archive, "--against", "time"), "--against: invalid choice: 'time'"),
+        (("resume", archive), "nothing to resume"),
+        (("resume", archive, "--steps", 0), "--steps: expected a positive integer, found '0'"),
+        (("recover", tmp_path / "text.h5"), "FILE: "),
+        (("export", archive, tmp_path / "run.doc"), "TARGET: expected a suffix .nc"),
+        (("export", archive, tmp_path / "there.h5"), "TARGET: "),
+        (("export", archive, tmp_path / "r.nc", "--compression", 11), "--compression: expected a level from 0 to 9"),
+        (("merge", tmp_path / "there.h5", archive), "OUT: "),
+        (("merge", tmp_path / "new.h5"), "the following arguments are required: FILE"),
+        (("sing",), "invalid choice: 'sing'"),
+    ]
+    for arguments, message in cases:
+        status, _, err = run(*arguments)
+        assert status == BAD_INPUT, arguments
+        assert message in err
+
+
+def test_one_log_may_be_inspected_while_it_grows(run, tmp_path):
+    file = tmp_path / "growing.h5"
+    with PathLog(file) as log:
+        continuation.trace(Fold(), observers=(log,), direction=1, events=[continuation.TargetValue(0.9, component=0)])
+        status, out, _ = run("inspect", file)
+    assert status == SUCCESS
+    assert "STOPPED_AT_EVENT" in out
+
+
+# -- the program itself ---------------------------------------------------------------------------------------
+
+
+def points(*pairs):
+    return lambda group: [EntryPoint(name, value, group) for name, value in pairs]
+
+
+def test_a_command_that_cannot_be_loaded_hides_no_other(run, archive, monkeypatch):
+    monkeypatch.setattr(commands, "entry_points", points(("broken", "no.such.module:register")))
+    assert run("inspect", archive)[0] == SUCCESS
+    status, _, err = run("broken", "--anything", "file")
+    assert status == BAD_INPUT
+    assert "broken: no.such.module:register cannot be loaded: ModuleNotFoundError" in err
+
+
+def test_two_packages_with_one_command_are_both_named(run, monkeypatch):
+    monkeypatch.setattr(commands, "entry_points", points(("solve", "here.solve:register"), ("solve", "there:register")))
+    status, _, err = run("solve", "file.npz")
+    assert status == BAD_INPUT
+    assert "found here.solve:register and there:register" in err
+
+
+def test_the_program_as_a_process(second, tmp_path):
+    def program(*arguments):
+        return subprocess.run(
+            [sys.executable, "-m", "continuation", *map(str, arguments)], capture_output=True, text=True, timeout=120
+        )
+
+    solved = program("solve", second, "--json")
+    assert solved.returncode == SUCCESS
+    assert json.loads(solved.stdout)["outcome"] == "SOLVED"
+    assert solved.stderr == ""
+    missing = program("solve", tmp_path / "gone.npz")
+    assert missing.returncode == BAD_INPUT
+    assert missing.stdout == ""
+    assert missing.stderr.count("\n") == 1
+    version = program("--version")
+    assert version.stdout.startswith("continuation ")
+    assert version.returncode == 0
