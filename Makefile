@@ -6,7 +6,7 @@ OUT    ?= build/paper
 # One thread a worker: the suite runs two workers, and small matrices lose by threading.
 TESTENV := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=Agg
 
-.PHONY: demo test lint types suite clean
+.PHONY: demo test lint types suite chart docs clean
 
 demo: $(VENV)/.demo
 	$(BIN)/continuation paper --output $(OUT)
@@ -29,9 +29,24 @@ $(VENV)/.demo: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[plot,progress]"
 	touch $@
 
+$(VENV)/.chart: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[chart,progress]"
+	touch $@
+
+$(VENV)/.docs: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[docs]"
+	touch $@
+
 $(VENV)/.dev: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev]"
 	touch $@ $(VENV)/.demo
+
+# The studies of speed against accuracy, at a moderate size: tables and figures in build/chart.
+chart: $(VENV)/.chart
+	$(BIN)/continuation chart all --output build/chart
+
+docs: $(VENV)/.docs
+	$(BIN)/python -m sphinx -b html -W --keep-going docs build/docs
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

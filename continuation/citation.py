@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from continuation.bibliography import ALLGOWER_GEORG, MORGAN_SOMMESE_WAMPLER, SOFTWARE
-from continuation.path import Path
+from continuation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
+from continuation.path import Kind, Path
 
 _KEY = re.compile(r"@\w+\s*\{\s*([^,\s]+)\s*,")
 _FIELD = re.compile(r"^\s*(author|year|title)\s*=\s*\{(.*)\},?\s*$", re.MULTILINE)
@@ -33,7 +33,8 @@ def cite(source: Any) -> str:
     """
     if isinstance(source, Path):
         ends = (MORGAN_SOMMESE_WAMPLER,) if source.winding_number is not None else ()
-        return "\n\n".join(unique((SOFTWARE, ALLGOWER_GEORG, *source.references, *ends)))
+        crossed = (GOVAERTS,) if any(event.kind == Kind.BRANCH_POINT for event in source.events) else ()
+        return "\n\n".join(unique((SOFTWARE, ALLGOWER_GEORG, *ends, *crossed, *source.references)))
     if not hasattr(source, "references") and not callable(getattr(source, "residual", None)):
         raise TypeError(f"source: expected a path or a homotopy, found {type(source).__name__}")
     return "\n\n".join(unique((SOFTWARE, *references_of(source))))
@@ -44,9 +45,15 @@ def references_of(*parts: Any) -> tuple[str, ...]:
     return unique(tuple(entry for part in parts for entry in getattr(part, "references", ())))
 
 
-def unique(entries: tuple[str, ...]) -> tuple[str, ...]:
+def entries(text: str) -> tuple[str, ...]:
+    """BibTeX entries with empty lines between them, as an archive has them, one by one."""
+    return tuple(entry for entry in re.split(r"\n{2,}(?=@)", text.strip()) if entry)
+
+
+def unique(found: tuple[str, ...]) -> tuple[str, ...]:
     """The entries without those whose key occurred before."""
-    return tuple({key(entry): entry for entry in reversed(entries)}[name] for name in dict.fromkeys(map(key, entries)))
+    by_key = {key(entry): entry for entry in reversed(found)}
+    return tuple(by_key[name] for name in dict.fromkeys(map(key, found)))
 
 
 def key(entry: str) -> str:

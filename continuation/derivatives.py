@@ -10,15 +10,17 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
 
 
 @frozen
 class Derivative:
-    """A way to get (H_y, H_lam), what it costs in residual evaluations, and its name."""
+    """A way to get (H_y, H_lam), what it costs in residual evaluations, its name and where it was published."""
 
     function: Callable[[Array, float], tuple[Matrix, Array]]
     evaluations: int
     source: str
+    references: tuple[str, ...] = ()
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at a point."""
@@ -82,7 +84,11 @@ def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> D
     m = y.size + 1
     with np.errstate(all="ignore"):
         reference = np.column_stack(by_differences(residual)(y, lam))
-    for name, maker, cost in (("jets", by_jets, -(-m // 128)), ("complex step", by_complex_step, m)):
+    ways = (
+        ("jets", by_jets, -(-m // 128), GRIEWANK_WALTHER),
+        ("complex step", by_complex_step, m, SQUIRE_TRAPP),
+    )
+    for name, maker, cost, source in ways:
         try:
             function = maker(residual)
             with warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -92,5 +98,5 @@ def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> D
             continue
         scale = 1.0 + float(np.abs(reference).max())
         if found.shape == reference.shape and np.allclose(found, reference, rtol=1e-4, atol=1e-4 * scale):
-            return Derivative(function, cost, name)
+            return Derivative(function, cost, name, (source,))
     return Derivative(by_differences(residual), 2 * m, "differences")

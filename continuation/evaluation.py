@@ -80,6 +80,11 @@ class Evaluator:
     counts : Counts
         Where evaluations are added up.
 
+    Attributes
+    ----------
+    methods : set of str
+        BibTeX of what served where the homotopy gave no derivative of its own.
+
     Raises
     ------
     TypeError
@@ -97,6 +102,7 @@ class Evaluator:
         self._residual: Callable[[Array, float], Array] = homotopy.residual
         self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
+        self.methods: set[str] = set()
         self._derivative: Derivative | None = None
         if isinstance(homotopy, SupportsJacobian):
             self._derivative = Derivative(homotopy.jacobian, evaluations=0, source="jacobian")
@@ -138,6 +144,7 @@ class Evaluator:
         """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
         if self._derivative is None:
             self._derivative = from_residual(self._residual, self.homotopy.start())
+            self.methods.update(self._derivative.references)
         return self._derivative
 
     def differential(self, u: Array) -> Callable[[Array], Array] | None:

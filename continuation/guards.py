@@ -14,6 +14,9 @@ from continuation.tolerance import Tolerance
 DECADES = 3
 """Decades of growth without progress of the parameter after which a path counts as divergent."""
 
+SLACK = 0.02
+"""How far off the path the middle of an arc may be, in lengths of the arc."""
+
 HORIZON = 1e12
 """Growth of y, relative to its start, at which a path counts as divergent."""
 
@@ -40,6 +43,17 @@ def closes(evaluator: Evaluator, origin: Knot, weights: Array, arc: Arc, toleran
         return False
     same = tolerance.measure(point.u - origin.u, origin.u) <= 1e3
     return same and inner(weights, point.tangent, origin.tangent) > 0.0
+
+
+def connected(evaluator: Evaluator, arc: Arc) -> bool:
+    """Whether the middle of the segment lies near the path: two points of different branches are joined by no arc.
+
+    One residual and one solve with the factorisation at hand estimate how far the middle is off. On an arc that turns
+    by less than a right angle a cubic misses its middle by less than a hundredth of its length.
+    """
+    middle = arc.segment.at(0.5)
+    off = arc.a.solve(-evaluator.residual(middle))
+    return norm(arc.a.weights, off) <= SLACK * norm(arc.a.weights, arc.b.u - arc.a.u)
 
 
 def divergence(

@@ -18,7 +18,7 @@ from continuation.attempt import HIGH_ORDER_FRACTION, LOW_ORDER_FRACTION, Steppe
 from continuation.branch import passed
 from continuation.budget import Budget
 from continuation.checks import check_jacobian
-from continuation.citation import references_of
+from continuation.citation import references_of, unique
 from continuation.controllers import Attempt, Controller
 from continuation.correctors import Corrector
 from continuation.endgame import End
@@ -142,8 +142,6 @@ class Tracer:
             target,
             direction,
         )
-        parts = (self.settings.predictor, self.settings.corrector, self.settings.controller)
-        self.path.references = references_of(homotopy, *parts)
         self.observers = tuple(observers)
         self.state: State | None = state
         max_step = homotopy.max_step if isinstance(homotopy, SupportsMaxStep) else None
@@ -161,6 +159,12 @@ class Tracer:
     def seconds(self) -> float:
         """Since the tracer was made."""
         return time.perf_counter() - self._clock
+
+    @property
+    def references(self) -> tuple[str, ...]:
+        """BibTeX of the homotopy, of the parts, and of what served in the homotopy's stead, as far as used by now."""
+        parts = (self.settings.predictor, self.settings.corrector, self.settings.controller)
+        return unique((*references_of(self.homotopy, *parts), *sorted(self._evaluator.methods)))
 
     def __iter__(self) -> Iterator[Step]:
         """Trace: yields each accepted step, the start first, and ends when the path has a status."""
@@ -244,6 +248,7 @@ class Tracer:
         self.path.status = status
         self.path.message = message or str(status)
         self.path.seconds = self.seconds
+        self.path.references = self.references
         for observer in self.observers:
             observer.end(self)
 
@@ -277,6 +282,9 @@ class Tracer:
             self._append_end(point, end.u, _ending(Status.REACHED_TARGET, end), end)
             return None
         h, rejections, memory = min(state.h, prediction.reach), 0, state.controller
+        if math.isinf(h):
+            # A controller made for series with a predictor that has no range: begin with the size of the point.
+            h = 1.0 + norm(point.weights, point.u)
         landing = self._ends.land(point, prediction, h, state.tried)
         if landing is not None:
             if landing.landed:
@@ -352,6 +360,8 @@ class Tracer:
                 return None
             state = evolve(state, orientation=arrival.orientation)
         try:
+            if not guards.connected(evaluator, arc):
+                return None
             ending = Ending(arc, Kind.TARGET, Status.REACHED_TARGET) if trial.landed else self._ends.on(arc, state)
             found, monitors = occurrences(evaluator, events, state.monitors, ending.arc, tolerance)
         except EvaluationError:

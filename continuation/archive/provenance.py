@@ -137,6 +137,6 @@ def root_attributes(tracer: Tracer | None, title: str) -> dict[str, Any]:
         "homotopy_distribution": _distribution(path),
         "parameters": json.dumps(described.get("fields", described.get("data")) if isinstance(described, dict) else {}),
         "settings": json.dumps({name: readable(getattr(tracer.settings, name)) for name in OPTIONS}),
-        "references": "\n\n".join(getattr(homotopy, "references", ())),
+        "references": "\n\n".join(tracer.references),
     }
     return attributes

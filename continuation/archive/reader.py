@@ -20,6 +20,7 @@ from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES, EVENT_NAME, TANGENT_COLUMNS, Layout
 from continuation.archive.store import RESUME
 from continuation.archive.tables import Table
+from continuation.citation import entries
 from continuation.evaluation import Counts
 from continuation.path import Path
 from continuation.status import Status
@@ -118,6 +119,7 @@ class Archive(Sequence[Path]):
             row["message"].decode(),
             Counts(**{name: int(row[column]) for name, column in COUNT_NAMES.items()}),
             float(row["wall_time"]),
+            references=entries(str(self.attributes.get("references", ""))),
             end_error=None if math.isnan(end_error) else end_error,
             winding_number=winding or None,
         )

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from attrs import field, frozen
 from attrs.validators import and_, gt, lt
 
+from continuation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINBOLDT
 from continuation.controllers.base import Attempt, Bounds, Decision, State
 
 _FRACTION = and_(gt(0.0), lt(1.0))
@@ -91,6 +93,7 @@ class AllgowerGeorg:
     bounds : Bounds
     """
 
+    references: ClassVar[tuple[str, ...]] = (ALLGOWER_GEORG,)
     contraction: float = field(default=0.3, validator=gt(0))
     distance: float = field(default=0.1, validator=gt(0))
     angle: float = field(default=0.3, validator=gt(0))
@@ -132,6 +135,7 @@ class Curvature:
     State: the curvature of the step before, its length, and the liked distance.
     """
 
+    references: ClassVar[tuple[str, ...]] = (DEN_HEIJER_RHEINBOLDT,)
     contraction: float = field(default=0.1, validator=_FRACTION)
     initial_distance: float = field(default=1e-2, validator=gt(0))
     max_angle: float = field(default=0.4, validator=gt(0))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import itertools
+from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
 from attrs.validators import gt
 
 from continuation.arrays import Array
+from continuation.bibliography import KELLEY
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation import EvaluationError, Evaluator
 from continuation.linearization import Linearization
@@ -24,6 +26,7 @@ class Broyden:
     from its archive needs none.
     """
 
+    references: ClassVar[tuple[str, ...]] = (KELLEY,)
     max_iterations: int = field(default=15, validator=gt(0))
     max_contraction: float = field(default=0.7, validator=gt(0))
 

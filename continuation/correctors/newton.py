@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 from attrs import evolve, field, frozen
 from attrs.validators import and_, ge, gt, le
 
 from continuation.arrays import Array
+from continuation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation import Evaluator
 from continuation.linearization import Anchor, Linearization, linearize
@@ -32,6 +35,7 @@ class BorderedNewton:
     simplified Newton method with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1).
     """
 
+    references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD,)
     reuse: float = field(default=0.1, validator=and_(ge(0), le(1)))
     max_iterations: int = field(default=8, validator=gt(0))
     max_contraction: float = field(default=0.6, validator=gt(0))
@@ -90,6 +94,7 @@ class MoorePenrose:
     max_contraction : float
     """
 
+    references: ClassVar[tuple[str, ...]] = (ALLGOWER_GEORG,)
     max_iterations: int = field(default=8, validator=gt(0))
     max_contraction: float = field(default=0.6, validator=gt(0))
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
 from attrs.validators import in_
 
 from continuation.arrays import Array
+from continuation.bibliography import HAIRER_NORSETT_WANNER
 from continuation.evaluation import Evaluator
 from continuation.linearization import Linearization, linearize
 from continuation.predictors.base import Knot, unrolled
@@ -46,6 +48,7 @@ class _Stages:
 class RungeKutta:
     """The explicit midpoint rule (order 2) or the classical method (order 4); one factorisation a further stage."""
 
+    references: ClassVar[tuple[str, ...]] = (HAIRER_NORSETT_WANNER,)
     order: int = field(default=4, validator=in_((2, 4)))
     memory: int = field(default=1, init=False)
 
@@ -79,6 +82,7 @@ class _Slopes:
 class AdamsBashforth:
     """The variable-step Adams-Bashforth method on past tangents: order 2 to 4, no evaluation of the homotopy."""
 
+    references: ClassVar[tuple[str, ...]] = (HAIRER_NORSETT_WANNER,)
     order: int = field(default=3, validator=in_((2, 3, 4)))
 
     @property

@@ -14,6 +14,7 @@ from attrs import field, frozen
 from attrs.validators import and_, ge, gt, lt, optional
 
 from continuation.arrays import Array
+from continuation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
 from continuation.evaluation import EvaluationError, Evaluator
 from continuation.homotopy import SupportsTaylor
 from continuation.linearization import Linearization, linearize, sharpened
@@ -113,6 +114,11 @@ class Taylor:
     memory: int = field(default=1, init=False)
 
     @property
+    def references(self) -> tuple[str, ...]:
+        """The series method and, for rational curves, their theory."""
+        return (COCHELIN, BAKER_GRAVES_MORRIS) if self.rational else (COCHELIN,)
+
+    @property
     def order(self) -> int:
         """The order given, or the lowest that is ever chosen."""
         return self.order_wanted if self.order_wanted is not None else ORDERS[0]
@@ -142,6 +148,7 @@ def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> A
         from continuation import jets
 
         evaluator.counts.residuals += order - 1
+        evaluator.methods.add(GRIEWANK_WALTHER)
         coefficients = jets.path_series(homotopy.residual, point.u, point.tangent, point.solve, order)
     if not np.isfinite(coefficients.sum()):
         raise EvaluationError("the Taylor coefficients are not finite")

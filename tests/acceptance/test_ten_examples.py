@@ -1,0 +1,80 @@
+"""The paper's ten examples, traced to lambda = 0 from its starts with no active-set finish: ends, turns and work."""
+
+import numpy as np
+import pytest
+
+from continuation import SERIES, Status, trace
+from continuation.predictors import Taylor
+from problems.lcp import KKTHomotopy, certify_exactly
+from problems.paper import EXAMPLES
+
+each = pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: f"{example.number}-{example.label}")
+
+
+def homotopy(example):
+    return KKTHomotopy(example.problem, example.x0, example.z1, example.z2)
+
+
+@pytest.fixture(scope="module")
+def series():
+    """By number: the paths of the preset SERIES with Pade approximants of order 30."""
+    taylor = Taylor(order=30, rational=True)
+    return {example.number: trace(homotopy(example), preset=SERIES, predictor=taylor) for example in EXAMPLES}
+
+
+@pytest.fixture(scope="module")
+def default():
+    """By number: the paths of the default parts."""
+    return {example.number: trace(homotopy(example)) for example in EXAMPLES}
+
+
+@each
+def test_the_end_is_the_printed_solution_and_the_exact_one(example, series):
+    path = series[example.number]
+    x = path.endpoint.y[: example.q.size]
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.lam == 0.0
+    np.testing.assert_allclose(x, example.printed_solution, rtol=0, atol=1e-4)
+    np.testing.assert_allclose(x, [float(value) for value in example.solutions[0]], rtol=0, atol=1e-10)
+    assert len(path.turning_points) == (2 if example.number == 10 else 0)
+
+
+@each
+def test_the_end_certifies_an_exact_solution(example, series):
+    """The active set at the end, solved in rational arithmetic; exact for the floats, if not for all decimals."""
+    x = np.maximum(series[example.number].endpoint.y[: example.q.size], 0.0)
+    certificate = certify_exactly(example.problem, x)
+    assert certificate.solves
+    np.testing.assert_allclose(certificate.x_rounded, [float(v) for v in example.solutions[0]], rtol=1e-14, atol=0)
+
+
+def test_the_work_of_examples_1_to_9(series):
+    assert sum(series[number].counts.factorizations for number in range(1, 10)) <= 90
+
+
+def test_the_work_of_example_10(series):
+    assert series[10].counts.factorizations <= 80
+
+
+def test_the_turns_of_example_10_are_those_of_the_default_path(series, default):
+    turns, others = series[10].turning_points, default[10].turning_points
+    assert len(turns) == len(others) == 2
+    for one, other in zip(turns, others):
+        assert one.lam == pytest.approx(other.lam, abs=1e-9)
+        np.testing.assert_allclose(one.y, other.y, rtol=1e-6, atol=1e-6)
+    # Before the first turn lambda falls, between the two it rises.
+    assert turns[0].lam < turns[1].lam
+    assert turns[0].arclength < turns[1].arclength
+
+
+def test_the_square_root_end_of_example_7(series, default):
+    for path in (series[7], default[7]):
+        assert path.winding_number == 2
+        assert EXAMPLES[6].problem.natural_residual(path.endpoint.y[:4]) <= 1e-12
+
+
+@each
+def test_the_default_parts_reach_all_ten(example, default):
+    path = default[example.number]
+    assert path.status is Status.REACHED_TARGET
+    assert example.problem.relative_residual(path.endpoint.y[: example.q.size]) <= 1e-10
