@@ -135,6 +135,7 @@ def test_bad_problems_are_one_line_that_names_the_argument(run, tmp_path, second
     (tmp_path / "problem.doc").write_text("")
     np.save(tmp_path / "negative.npy", [1.0, -1.0])
     np.save(tmp_path / "three.npy", np.ones(3))
+    np.save(tmp_path / "outside.npy", [0.1, 1.0])
     (tmp_path / "old.h5").write_text("")
     cases = [
         ((tmp_path / "gone.npz",), "FILE: expected a file, found nothing"),
@@ -147,7 +148,9 @@ def test_bad_problems_are_one_line_that_names_the_argument(run, tmp_path, second
         ((second, "--q", tmp_path / "gone.npy"), "--q: expected a file, found nothing"),
         ((second, "--q", tmp_path / "three.npy"), "--q: expected 2 numbers, one a row of A, found 3"),
         ((second, "--x0", tmp_path / "three.npy"), "--x0: expected 2 numbers, found 3"),
-        ((second, "--x0", tmp_path / "negative.npy", "--homotopy", "kkt"), "--x0: expected positive finite numbers"),
+        ((second, "--x0", tmp_path / "negative.npy"), "--x0: expected a strictly feasible start (or --relaxed)"),
+        ((second, "--x0", tmp_path / "outside.npy"), "--x0: expected a strictly feasible start (or --relaxed), found"),
+        ((second, "--x0", tmp_path / "negative.npy", "--homotopy", "kkt", "--relaxed"), "--x0: expected positive"),
         ((second, "--homotopy", "simplex"), "--homotopy: invalid choice: 'simplex' (choose from"),
         ((second, "--archive", tmp_path / "old.h5"), "--archive: expected a new file, found an existing one"),
         ((second, "--archive", tmp_path / "no" / "run.h5"), "--archive: expected a file in an existing directory"),

@@ -45,13 +45,15 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.name is None:
             print("\n".join(names))
             return SUCCESS
-        chosen = names if arguments.name == EVERY else [arguments.name]
-        found = [study for name in chosen for study in studies(name, arguments.size, arguments.compare)]
+        if arguments.name not in (EVERY, *names):
+            known = ", ".join(names) or "(none installed)"
+            raise ValueError(f"expected {EVERY} or one of {known}, found {arguments.name!r}")
     except ValueError as error:
-        raise UsageError("NAME", str(error).removeprefix("NAME: ")) from error
+        raise UsageError("NAME", error) from error
     folder = _folder(arguments.output)
-    for study in found:
-        _one(study, folder)
+    for name in names if arguments.name == EVERY else [arguments.name]:
+        for study in studies(name, arguments.size, arguments.compare):
+            _one(study, folder)
     return SUCCESS
 
 

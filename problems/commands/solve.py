@@ -8,9 +8,12 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from problems.commands.arguments import PROBLEM_FORMATS, named
+from problems.lcp.problem import LCP
 
 HOMOTOPIES = ("auto", "kkt", "yu", "zhao", "xu", "wang")
 
@@ -30,7 +33,8 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("file", metavar="FILE", help=f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group")
     parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
     parser.add_argument("--homotopy", choices=HOMOTOPIES, default="auto", help="default: auto")
-    parser.add_argument("--x0", metavar="FILE", help="the start, n positive numbers; need not be feasible")
+    parser.add_argument("--x0", metavar="FILE", help="the start: x0 > 0 with A x0 + q > 0, as in the paper")
+    parser.add_argument("--relaxed", action="store_true", help="take any x0 > 0; what A x0 + q lacks is relaxed away")
     parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
     parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); needs matplotlib")
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
@@ -47,6 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
     with named(_ARGUMENTS):
         problem = read_problem(arguments.file, arguments.q)
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
+        if x0 is not None and not arguments.relaxed:
+            _check_start(problem, x0)
         solution = lcp.solve(
             problem,
             homotopy=arguments.homotopy,
@@ -60,6 +66,15 @@ def run(arguments: argparse.Namespace) -> int:
         drawn = solution if solution.paths else lcp.solve(problem, arguments.homotopy, x0=x0, finish=False)
         _draw(drawn, problem.n, arguments.plot)
     return SUCCESS if solution.outcome is lcp.Outcome.SOLVED else FAILURE
+
+
+def _check_start(problem: LCP, x0: Array) -> None:
+    """The paper's homotopy starts inside {x > 0, A x + q > 0}; a start outside is asked for by --relaxed."""
+    for name, values in (("x0", x0), ("A x0 + q", problem.w(x0))):
+        i = int(np.argmin(values))
+        if values[i] <= 0.0:
+            found = f"found {values[i]:g} in {name} at index {i}"
+            raise UsageError("--x0", f"expected a strictly feasible start (or --relaxed), {found}")
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:

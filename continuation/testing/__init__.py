@@ -1,0 +1,10 @@
+"""The conformance suite: whether a homotopy of somebody's own keeps the promises that the engine relies on.
+
+``check_homotopy(instance)`` runs it; ``homotopy_checks(instance)`` is for ``pytest.mark.parametrize``; from a shell it
+is ``continuation check module:Class``. Checks are chosen by the capabilities that the homotopy has.
+"""
+
+from continuation.testing.subject import CheckFailure
+from continuation.testing.suite import Check, Result, check_homotopy, homotopy_checks, run_checks
+
+__all__ = ["Check", "CheckFailure", "Result", "check_homotopy", "homotopy_checks", "run_checks"]

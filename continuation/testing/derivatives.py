@@ -1,0 +1,165 @@
+"""Checks of everything that says how the residual changes: Jacobian, differential, bordered solves, Taylor series."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.checks import check_jacobian
+from continuation.jets import path_series
+from continuation.linearization import Linearization
+from continuation.predictors.taylor import series_reach
+from continuation.testing.subject import Place, Subject, called, directions, fail
+
+ORDER = 6
+"""Of the Taylor coefficients that are compared."""
+
+SOLVES = 1e-8
+"""Largest relative residual of a bordered solve."""
+
+SERIES = 1e-6
+"""Largest error of a Taylor coefficient, relative to the coefficient's size."""
+
+
+@frozen(eq=False)
+class JacobianAlone:
+    """A homotopy with nothing but its `jacobian`, so that this is what the engine takes its derivative from."""
+
+    start: Any
+    residual: Any
+    jacobian: Any
+
+
+def jacobian(subject: Subject) -> None:
+    """`jacobian` is the derivative of the residual, H_y and H_lam."""
+    h = subject.homotopy
+    for place in subject.places:
+        with called("jacobian", place.where):
+            report = check_jacobian(JacobianAlone(h.start, h.residual, h.jacobian), place.u)
+        if not report.correct:
+            fail(f"{report.sentence}, {place.where}")
+
+
+def differential(subject: Subject) -> None:
+    """`differential` is the derivative of the residual along a direction."""
+    for place in subject.places:
+        reference = subject.derivative(place)
+        for v in directions(place.u.size, 3, 11):
+            with called("differential", place.where):
+                found = np.asarray(subject.homotopy.differential(place.y, place.lam, v.copy()), dtype=float)
+            expected = reference @ v
+            if found.shape != expected.shape:
+                fail(f"differential: {place.where} expected shape {expected.shape}, found {found.shape}")
+            allowed = 1e-6 * (np.abs(reference) @ np.abs(v)) + 1e-10 * float(np.abs(reference).max())
+            _compare("differential", place, "component", found, expected, allowed)
+
+
+def bordered(subject: Subject) -> None:
+    """`bordered` solves with [[H_y, H_lam], [border']], and knows the sign of its determinant."""
+    for place in subject.places:
+        matrix = subject.derivative(place)
+        for border in directions(place.u.size, 2, 13):
+            whole = np.vstack([matrix, border])
+            with called("bordered", place.where):
+                system = subject.homotopy.bordered(place.y, place.lam, border.copy())
+            _check_solves(place, whole, system)
+            _check_sign(place, whole, system.sign)
+
+
+def _check_solves(place: Place, whole: Array, system: Any) -> None:
+    n = len(whole) - 1
+    tangent = np.zeros(n + 1)
+    tangent[-1] = 1.0
+    for b in (tangent, *directions(n + 1, 2, 17)):
+        with called("bordered.solve", place.where):
+            z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
+        if z.shape != b.shape:
+            fail(f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
+        missed = np.abs(whole @ z - b)
+        # The size of what is added up in each equation: one that cancels cannot be held to its result. An equation in
+        # which all is round-off is held to the size that its coefficients and the solution allow.
+        largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
+        relative = missed / (np.abs(whole) @ np.abs(z) + np.abs(b) + 1e-7 * largest)
+        worst = int(np.argmax(np.where(np.isfinite(relative), relative, np.inf)))
+        if not relative[worst] <= SOLVES:
+            row = "the border's equation" if worst == n else f"equation {worst}"
+            fail(f"bordered: {place.where} the solution misses {row} by {missed[worst]:.3g}, "
+                 f"relative {relative[worst]:.3g}, expected at most {SOLVES:g}")  # fmt: skip
+
+
+def _check_sign(place: Place, whole: Array, sign: int) -> None:
+    if sign not in (-1, 0, 1):
+        fail(f"bordered: {place.where} expected a sign of -1, 0 (unknown) or 1, found {sign!r}")
+    # Near a singular matrix the sign is a matter of round-off.
+    if sign != 0 and np.linalg.cond(whole) < 1e12:
+        expected, logarithm = np.linalg.slogdet(whole)
+        if sign != expected:
+            size = f"{expected * np.exp(logarithm):.3g}" if abs(logarithm) < 700 else f"of sign {expected:+.0f}"
+            fail(f"bordered: {place.where} the sign is {sign:+d}, but the determinant is {size}")
+
+
+def taylor(subject: Subject) -> None:
+    """`taylor` gives the coefficients of the path in the pseudo-arclength of the point."""
+    n = subject.start.u.size
+    for place, point in subject.points():
+        with called("taylor", place.where):
+            c = np.asarray(subject.homotopy.taylor(point, ORDER), dtype=float)
+        if c.shape != (ORDER + 1, n):
+            fail(f"taylor: {place.where} expected shape {(ORDER + 1, n)} at order {ORDER}, found {c.shape}")
+        for k, expected in ((0, point.u), (1, point.tangent)):
+            allowed = np.full(n, 1e-10 * float(np.abs(expected).max()) + 1e-300)
+            _compare("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
+        by_jets = _series(subject, point)
+        if by_jets is not None:
+            for k in range(2, ORDER + 1):
+                allowed = np.full(n, SERIES * max(float(np.abs(by_jets[k]).max()), _noise(by_jets, k)))
+                _compare("taylor", place, f"coefficient {k}, component", c[k], by_jets[k], allowed)
+        else:
+            _check_order(subject, place, point, c)
+
+
+def _series(subject: Subject, point: Linearization) -> Array | None:
+    """The coefficients by jets, where the residual is written in numpy that they know."""
+    try:
+        with np.errstate(all="ignore"):
+            return path_series(subject.homotopy.residual, point.u, point.tangent, point.solve, ORDER)
+    except (TypeError, ArithmeticError, ValueError, AttributeError):
+        return None
+
+
+def _noise(c: Array, k: int) -> float:
+    """Size below which coefficient k does not matter on the scale of the ones before it."""
+    largest = max(float(np.abs(c[1]).max()), *(float(np.abs(row).max()) ** (1.0 / j) for j, row in enumerate(c) if j))
+    return float(1e-6 * largest**k)
+
+
+def _check_order(subject: Subject, place: Place, point: Linearization, c: Array) -> None:
+    """The residual along the series must vanish to its order, and the series stay in its own arclength."""
+    along = c @ point.border
+    for k in range(2, ORDER + 1):
+        if abs(along[k]) > SERIES * float(np.abs(c[k]).max()) + 1e-12:
+            fail(f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}")
+    h = 0.5 * min(series_reach(c, 1e-3), 1.0 + float(np.abs(c[0]).max()))
+    powers = np.arange(ORDER + 1)
+    sizes = []
+    for t in (h, 0.5 * h):
+        u = (t**powers) @ c
+        with called("residual", f"{place.where}, {t:.3g} along the series"):
+            sizes.append(float(np.abs(np.asarray(subject.homotopy.residual(u[:-1], float(u[-1])))).max()))
+    floor = 1e-12 * (1.0 + float(np.abs(subject.derivative(place)).max()) * (1.0 + float(np.abs(c[0]).max())))
+    if sizes[1] > floor and not sizes[0] > 2.0**ORDER * sizes[1]:
+        order = np.log2(sizes[0] / sizes[1])
+        fail(f"taylor: {place.where} the residual along the series falls like h^{order:.2g}, expected "
+             f"h^{ORDER + 1} ({sizes[0]:.3g} at h = {h:.3g})")  # fmt: skip
+
+
+def _compare(method: str, place: Place, what: str, found: Array, expected: Array, allowed: Array) -> None:
+    error = np.abs(found - expected)
+    excess = np.where(np.isfinite(error), error / np.maximum(allowed, np.finfo(float).tiny), np.inf)
+    i = int(np.argmax(excess))
+    if excess[i] > 1.0:
+        fail(f"{method}: {place.where} {what} {i} is {found[i]:.10g}, expected {expected[i]:.10g}, "
+             f"a difference of {error[i]:.3g}")  # fmt: skip

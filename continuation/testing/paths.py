@@ -1,0 +1,172 @@
+"""Checks of whole paths: the domain's boundary, the way back, half the steps, and the archive."""
+
+from __future__ import annotations
+
+import json
+import math
+import tempfile
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path as File
+from typing import Any
+
+import numpy as np
+
+from continuation.archive import ArchiveError, open_archive, resume
+from continuation.archive.codec import UnknownError, decode
+from continuation.archive.writer import PathLog
+from continuation.arrays import Array
+from continuation.audit import audit
+from continuation.budget import Budget
+from continuation.path import Path
+from continuation.status import Status
+from continuation.testing.subject import Place, Subject, called, directions, fail
+
+SHARP = 1e-6
+"""Relative error of `max_step` that is let pass."""
+
+
+def max_step_positive(subject: Subject) -> None:
+    """From a point inside one may go some way in every direction."""
+    for place in subject.places:
+        for v in _ways(place):
+            _longest(subject, place.where, place.u, v)
+        with called("max_step", place.where):
+            still = float(subject.homotopy.max_step(place.u.copy(), np.zeros_like(place.u)))
+        if not still > 1.0:
+            fail(f"max_step: {place.where} it is {still:g} along v = 0, expected inf: staying is always admissible")
+
+
+def max_step_sharp(subject: Subject) -> None:
+    """`max_step` ends exactly on the boundary: half-way there the other half is left, along 2 v it is half as long."""
+    for place in subject.places:
+        for v in _ways(place):
+            whole = _longest(subject, place.where, place.u, v)
+            if math.isinf(whole):
+                continue
+            doubled = _longest(subject, place.where, place.u, 2.0 * v)
+            if abs(2.0 * doubled - whole) > SHARP * whole:
+                fail(f"max_step: {place.where} it is {whole:.6g} along v and {doubled:.6g} along 2 v, expected half")
+            for share in (0.5, 0.999):
+                rest = (1.0 - share) * whole
+                left = _longest(subject, f"{place.where}, {share:g} of the way", place.u + share * whole * v, v)
+                if abs(left - rest) > SHARP * whole:
+                    fail(f"max_step: {place.where} it is {whole:.6g}; after {share:g} of that {rest:.6g} should be "
+                         f"left, found {left:.6g}")  # fmt: skip
+            inside = Place("", place.u + 0.999 * whole * v)
+            if not subject.finite(inside):
+                fail(f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that")
+
+
+def _ways(place: Place) -> Iterator[Array]:
+    """Random directions, in units of the point, since interior points live in orders of magnitude."""
+    size = np.where(place.u == 0.0, 1.0, np.abs(place.u))
+    for v in directions(place.u.size, 4, 19):
+        yield size * v
+
+
+def _longest(subject: Subject, where: str, u: Array, v: Array) -> float:
+    with called("max_step", where):
+        longest = float(subject.homotopy.max_step(u.copy(), v.copy()))
+    if not longest > 0.0:
+        fail(f"max_step: {where} it is {longest:g}, expected a positive number: the point is inside the domain")
+    return longest
+
+
+def trace(subject: Subject) -> None:
+    """The path can be followed, and stays inside."""
+    path = subject.path
+    if not subject.has("max_step"):
+        return
+    for before, after in pairwise(subject.regular.steps):
+        if after.index < path.endpoint.index:
+            longest = _longest(subject, f"at step {before.index}", before.u, after.u - before.u)
+            if longest <= 1.0:
+                fail(f"max_step: step {after.index} lies outside: only {longest:.6g} of the way there is admissible")
+
+
+def refinement(subject: Subject) -> None:
+    """A retrace with half the steps finds the same points, the same end and the same turning points."""
+    _audited(subject, False, "step refinement")
+
+
+def reversal(subject: Subject) -> None:
+    """A retrace from the end comes back to the start through the same points."""
+    _audited(subject, True, "reversal")
+
+
+def _audited(subject: Subject, backwards: bool, name: str) -> None:
+    path = subject.regular
+    if len(path) < 2:
+        return
+    with called(name, "along the path"):
+        report = audit(subject.homotopy, path, backwards=backwards)
+    if not report.same:
+        fail(f"{name}: {report.sentence}")
+
+
+def archive(subject: Subject) -> None:
+    """A path comes out of its archive as it went in, and so does the homotopy if the archive can hold it."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = File(folder) / "path.h5"
+        with called("archive", "while the path is written"):
+            path = subject.traced(observers=(PathLog(file),))
+        with open_archive(file) as stored:
+            again = stored.path(0)
+            text, arrays = stored.problem()
+    _same_path("archive", path, again)
+    if again.status is not path.status:
+        fail(f"archive: the path ended as {path.status.name}, the archive says {again.status.name}")
+    tree = json.loads(text)
+    if "unstorable" in tree:
+        # Said in the archive; such a homotopy is handed to `resume` by its owner.
+        return
+    try:
+        homotopy: Any = decode(tree, arrays.__getitem__)
+    except UnknownError as error:
+        fail(f"archive: the homotopy was stored and cannot be made again: {error}")
+    for place in subject.places:
+        with called("residual of the homotopy read back", place.where):
+            found = np.asarray(homotopy.residual(place.y, place.lam))
+        wanted = np.asarray(subject.homotopy.residual(place.y, place.lam))
+        if not np.array_equal(found, wanted, equal_nan=True):
+            difference = float(np.abs(found - wanted).max()) if found.shape == wanted.shape else math.inf
+            fail(f"archive: {place.where} the homotopy read back has another residual, by {difference:.3g}")
+
+
+def resumed(subject: Subject) -> None:
+    """A path stopped half-way and resumed from its archive is, bit for bit, the path that was never stopped."""
+    with called("resume", "while the whole path is traced"):
+        whole = subject.traced()
+    half = (len(whole) - 1) // 2
+    if half < 1:
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        file = File(folder) / "half.h5"
+        with called("resume", "while the first half is traced"):
+            first = subject.traced(observers=(PathLog(file),), budget=Budget(steps=half))
+            if first.status is not Status.BUDGET_EXHAUSTED:
+                fail(f"resume: the first {half} steps ended as {first.status.name}, those of the whole path did not")
+            try:
+                again = resume(file, subject.homotopy, budget=subject.limits)
+            except (ArchiveError, ValueError) as error:
+                fail(f"resume: {error}")
+    _same_path("resume", whole, again)
+
+
+def _same_path(name: str, wanted: Path, found: Path) -> None:
+    if len(wanted) != len(found) or len(wanted.events) != len(found.events):
+        fail(f"{name}: expected {len(wanted)} points and {len(wanted.events)} events, "
+             f"found {len(found)} and {len(found.events)}")  # fmt: skip
+    for p, q in zip(wanted.steps, found.steps):
+        if not np.array_equal(p.u, q.u):
+            fail(f"{name}: step {p.index} (lam = {p.lam:.6g}) differs by {float(np.abs(p.u - q.u).max()):.3g}")
+        if dict(p.observed) != dict(q.observed) and not _both_nan(p.observed, q.observed):
+            fail(f"{name}: step {p.index} observed {dict(p.observed)}, found {dict(q.observed)}")
+    for event, other in zip(wanted.events, found.events):
+        if event.name != other.name or not np.array_equal(event.u, other.u):
+            fail(f"{name}: the event {event.name!r} at lam = {event.lam:.6g} is {other.name!r} at {other.lam:.6g}")
+
+
+def _both_nan(p: Any, q: Any) -> bool:
+    return list(p) == list(q) and np.array_equal(list(p.values()), list(q.values()), equal_nan=True)

@@ -1,0 +1,237 @@
+"""What the checks look at: the homotopy, a few points near its path, and a path traced once for all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cached_property
+from typing import Any, NoReturn
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation.arrays import Array
+from continuation.budget import Budget
+from continuation.controllers import AllgowerGeorg, Bounds, Controller
+from continuation.derivatives import from_residual
+from continuation.evaluation import Counts, EvaluationError, Evaluator
+from continuation.linearization import Linearization, linearize
+from continuation.metric import Automatic
+from continuation.path import Kind, Path
+from continuation.presets import DEFAULT
+from continuation.start import StartError, first_point
+from continuation.status import Status
+from continuation.tolerance import Tolerance
+from continuation.tracer import Tracer
+
+STEPS = 60
+"""Longest path that the checks of whole paths trace."""
+
+FEWEST = 6
+"""A path with fewer points before its end is traced with shorter steps: two points would prove nothing."""
+
+STEPS_WITHOUT_TARGET = 12
+"""The same where the homotopy has no target: such a path may lead anywhere, and mostly to where nobody wants to go."""
+
+
+class CheckFailure(AssertionError):
+    """A homotopy does not keep a promise; the sentence says which, where, and by how much."""
+
+
+def fail(sentence: str) -> NoReturn:
+    """End a check."""
+    raise CheckFailure(sentence)
+
+
+@contextmanager
+def called(method: str, where: str) -> Iterator[None]:
+    """Turn whatever a method raises into the finding that it raises."""
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except CheckFailure:
+        raise
+    except Exception as error:  # A plug-in may raise anything; the suite is there to say so.
+        fail(f"{method}: {where} it raises {type(error).__name__}: {error}")
+
+
+@frozen(eq=False)
+class Place:
+    """A point and how to call it in a sentence."""
+
+    where: str
+    u: Array
+
+    @property
+    def y(self) -> Array:
+        """A copy of the unknowns, shape (N,), which a method may spoil."""
+        return self.u[:-1].copy()
+
+    @property
+    def lam(self) -> float:
+        """The parameter."""
+        return float(self.u[-1])
+
+
+@frozen(eq=False, slots=False)
+class Subject:
+    """A homotopy under examination; what several checks need is worked out once, when it is first asked for."""
+
+    homotopy: Any
+    steps: int | None = None
+
+    def has(self, capability: str) -> bool:
+        """Whether the homotopy has an attribute of this name, and a value in it."""
+        return getattr(self.homotopy, capability, None) is not None
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """Counted access, as the tracer has it."""
+        try:
+            return Evaluator(self.homotopy, Counts())
+        except TypeError as error:
+            fail(str(error))
+
+    @cached_property
+    def start(self) -> Place:
+        """The start, checked at the engine's own door."""
+        evaluator = self.evaluator
+        with called("start", "called without arguments"):
+            try:
+                return Place("at the start", evaluator.start())
+            except (ValueError, TypeError) as error:
+                fail(str(error))
+
+    @cached_property
+    def places(self) -> tuple[Place, ...]:
+        """The start, a point beside it off the path, and two points of the path if there is one."""
+        start = self.start
+        generator = np.random.default_rng(8)
+        aside = 1e-2 * (1.0 + np.abs(start.u)) * generator.uniform(0.5, 1.0, start.u.size)
+        aside *= generator.choice((-1.0, 1.0), start.u.size)
+        beside = Place("beside the start", start.u + aside * self.room(start.u, aside))
+        found = [start, beside] if self.finite(beside) else [start]
+        for k in self._sampled():
+            step = self.path.steps[k]
+            found.append(Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u))
+        return tuple(found)
+
+    def _sampled(self) -> list[int]:
+        """Two steps inside the path: its end may be singular."""
+        try:
+            last = len(self.regular) - 1
+        except CheckFailure:
+            return []
+        return sorted({k for k in (last // 2, last - 1) if k > 0})
+
+    def room(self, u: Array, v: Array) -> float:
+        """A factor that keeps u + v well inside the domain."""
+        if not self.has("max_step"):
+            return 1.0
+        with called("max_step", "near the start"):
+            longest = float(self.homotopy.max_step(u.copy(), v.copy()))
+        return min(1.0, 0.5 * longest) if longest > 0.0 else 0.0
+
+    def finite(self, place: Place) -> bool:
+        """Whether the residual can be evaluated there."""
+        try:
+            self.evaluator.residual(place.u)
+        except EvaluationError:
+            return False
+        return True
+
+    @cached_property
+    def first(self) -> Linearization:
+        """The first point of the path, as the tracer begins."""
+        metric = self.homotopy.metric if self.has("metric") else Automatic()
+        target = getattr(self.homotopy, "target", 0.0)
+        with called("start", "linearized"):
+            try:
+                return first_point(self.evaluator, self.start.u, metric, Tolerance(), 0, target)
+            except StartError as error:
+                fail(f"{error.status.name}: {error}")
+
+    @property
+    def limits(self) -> Budget:
+        """What a traced path may cost."""
+        if self.steps is not None:
+            return Budget(steps=self.steps)
+        return Budget(steps=STEPS if getattr(self.homotopy, "target", 0.0) is not None else STEPS_WITHOUT_TARGET)
+
+    @cached_property
+    def path(self) -> Path:
+        """The path from the start, or its first steps."""
+        with called("trace", "from the start"):
+            path = self.traced()
+        bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.INTERRUPTED)
+        if path.status in bad or len(path) < 2:
+            fail(f"trace: the path ended after {max(len(path) - 1, 0)} steps, {path.status.name}: {path.message}")
+        return path
+
+    @cached_property
+    def controller(self) -> Controller:
+        """The default one, with steps short enough that there are points between the start and the end."""
+        usual = DEFAULT.controller
+        tracer = Tracer(self.homotopy, budget=self.limits)
+        steps = [step for step in tracer if step.kind != Kind.TARGET]
+        if not isinstance(usual, AllgowerGeorg) or not 2 <= len(steps) < FEWEST:
+            return usual
+        # Half a step more, so that no step ends in the middle, where a symmetric path may have its branch point.
+        longest = steps[-1].arclength / (FEWEST + 0.5)
+        return evolve(usual, bounds=Bounds(maximum=longest, initial=longest))
+
+    def traced(self, **options: Any) -> Path:
+        """A trace from the start within the limits."""
+        tracer = Tracer(self.homotopy, **{"budget": self.limits, "controller": self.controller, **options})
+        for _ in tracer:
+            pass
+        return tracer.path
+
+    @cached_property
+    def regular(self) -> Path:
+        """The path without an end where it may be singular: on the boundary, a limit, or found by a finish."""
+        path = self.path
+        end = path.endpoint
+        if end.kind != Kind.TARGET or not (self.has("max_step") or path.winding_number or end.segment is None):
+            return path
+        events = [event for event in path.events if event.step < end.index]
+        return Path(steps=path.steps[:-1], events=events, status=Status.BUDGET_EXHAUSTED, counts=path.counts)
+
+    def points(self) -> Iterator[tuple[Place, Linearization]]:
+        """The places that lie on the path, linearized in the Euclidean metric."""
+        yield self.start, self.first.with_weights(np.ones_like(self.start.u))
+        for k in self._sampled():
+            step = self.path.steps[k]
+            border = step.tangent / float(np.linalg.norm(step.tangent))
+            with called("bordered" if self.has("bordered") else "jacobian", f"at step {k} of the path"):
+                yield (
+                    Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u),
+                    linearize(self.evaluator, step.u, np.ones_like(step.u), border, 0),
+                )
+
+    def derivative(self, place: Place) -> Array:
+        """[H_y, H_lam] as a dense matrix, shape (N, N + 1): by `jacobian`, else from the residual."""
+        if self.has("jacobian"):
+            with called("jacobian", place.where):
+                H_y, H_lam = self.homotopy.jacobian(place.y, place.lam)
+        else:
+            H_y, H_lam = from_residual(self.homotopy.residual, self.homotopy.start())(place.y, place.lam)
+        return np.column_stack([dense(H_y, place.u.size - 1), np.asarray(H_lam, dtype=float)])
+
+
+def dense(H_y: Any, n: int) -> Array:
+    """A matrix of any type as an array: what it does to the unit vectors."""
+    if isinstance(H_y, np.ndarray):
+        return np.asarray(H_y, dtype=float)
+    return np.column_stack([np.asarray(H_y @ unit, dtype=float) for unit in np.eye(n)])
+
+
+def directions(n: int, count: int, seed: int) -> list[Array]:
+    """Random directions of unit length."""
+    generator = np.random.default_rng(seed)
+    vectors = [generator.standard_normal(n) for _ in range(count)]
+    return [v / float(np.linalg.norm(v)) for v in vectors]
+
+
+Examination = Callable[[Subject], None]
+"""A check: returns if all is well, raises `CheckFailure` if not."""

@@ -1,0 +1,184 @@
+"""The suite: which checks a homotopy's capabilities call for, run one by one or all together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from attrs import field, frozen
+
+from continuation.testing import derivatives, paths, protocol
+from continuation.testing.subject import CheckFailure, Examination, Subject
+
+PASSED, FAILED, EXPECTED, NOT_RUN = "passed", "failed", "failed as expected", "not run"
+"""Outcomes of a check."""
+
+
+@frozen
+class Rule:
+    """A check, the capability that calls for it ("" for all homotopies), and the check that must have passed first."""
+
+    name: str
+    examine: Examination
+    capability: str = ""
+    after: str = "start"
+
+
+RULES = (
+    Rule("start", protocol.start, after=""),
+    Rule("residual", protocol.residual),
+    Rule("inputs_not_modified", protocol.inputs_not_modified),
+    Rule("repeatable", protocol.repeatable),
+    Rule("target", protocol.target, "target"),
+    Rule("jacobian_types", protocol.jacobian_types, "jacobian"),
+    Rule("jacobian", derivatives.jacobian, "jacobian", "jacobian_types"),
+    Rule("differential", derivatives.differential, "differential"),
+    Rule("bordered", derivatives.bordered, "bordered"),
+    Rule("start_on_path", protocol.start_on_path),
+    Rule("metric", protocol.metric, "metric"),
+    Rule("max_step_positive", paths.max_step_positive, "max_step"),
+    Rule("max_step_sharp", paths.max_step_sharp, "max_step", "max_step_positive"),
+    Rule("observe", protocol.observe, "observe"),
+    Rule("finish", protocol.finish, "finish"),
+    Rule("events", protocol.events, "events"),
+    Rule("references", protocol.references, "references"),
+    Rule("picklable", protocol.picklable),
+    Rule("taylor", derivatives.taylor, "taylor", "start_on_path"),
+    Rule("trace", paths.trace, after="start_on_path"),
+    Rule("refinement", paths.refinement, after="trace"),
+    Rule("reversal", paths.reversal, after="trace"),
+    Rule("archive", paths.archive, after="trace"),
+    Rule("resume", paths.resumed, after="trace"),
+)
+"""Cheap and basic ones first: the first message is then the one to mend first."""
+
+
+@frozen(eq=False)
+class Check:
+    """One check of one homotopy: call it; ``str(check)`` is its name.
+
+    Attributes
+    ----------
+    name : str
+    after : str
+        The check without which this one says nothing; empty for the first.
+    """
+
+    name: str
+    after: str
+    _subject: Subject = field(repr=False)
+    _examine: Examination = field(repr=False)
+
+    def __call__(self) -> None:
+        """Run it.
+
+        Raises
+        ------
+        CheckFailure
+            An AssertionError: what was wrong, where, and by how much.
+        """
+        self._examine(self._subject)
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@frozen
+class Result:
+    """What came of a check: its name, "passed", "failed", "failed as expected" or "not run", and the sentence."""
+
+    name: str
+    outcome: str
+    message: str = ""
+
+
+def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, ...]:
+    """The checks that the homotopy's capabilities call for.
+
+    Nothing of the homotopy is called before a check is, so that a wrong one fails its tests and not their collection::
+
+        @pytest.mark.parametrize("check", homotopy_checks(Spring()), ids=str)
+        def test_spring(check):
+            check()
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+        A small instance: matrices are made dense, and the path is traced about ten times.
+    steps : int, optional
+        How many steps of the path are looked at: 60 where there is a target, 12 where there is none.
+
+    Returns
+    -------
+    tuple of Check
+    """
+    subject = Subject(homotopy, steps)
+    called_for = (rule for rule in RULES if not rule.capability or subject.has(rule.capability))
+    return tuple(Check(rule.name, rule.after, subject, rule.examine) for rule in called_for)
+
+
+def run_checks(
+    homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
+) -> tuple[Result, ...]:
+    """Run all checks that apply, and collect what came of them; the parameters are those of `check_homotopy`."""
+    expected = dict(expected_failed_checks or {})
+    known = [rule.name for rule in RULES]
+    unknown = [name for name in expected if name not in known]
+    if unknown:
+        raise ValueError(f"expected_failed_checks: expected names among {', '.join(known)}, found {unknown[0]!r}")
+    results: dict[str, Result] = {}
+    for check in homotopy_checks(homotopy, steps=steps):
+        before = results.get(check.after)
+        if before is not None and before.outcome != PASSED:
+            results[check.name] = Result(check.name, NOT_RUN, f"it needs {check.after}, which did not pass")
+            continue
+        results[check.name] = _run(check, expected)
+    return tuple(results.values())
+
+
+def _run(check: Check, expected: Mapping[str, str]) -> Result:
+    try:
+        check()
+    except CheckFailure as failure:
+        if check.name in expected:
+            return Result(check.name, EXPECTED, f"{failure} ({expected[check.name]})")
+        return Result(check.name, FAILED, str(failure))
+    if check.name in expected:
+        message = f"expected to fail ({expected[check.name]}), but it passes: take it off the list"
+        return Result(check.name, FAILED, message)
+    return Result(check.name, PASSED)
+
+
+def check_homotopy(
+    homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
+) -> tuple[Result, ...]:
+    """Whether a homotopy keeps the promises that the engine relies on.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+        A small instance: matrices are made dense, and the path is traced about ten times.
+    expected_failed_checks : mapping of str to str, optional
+        Names of checks that are known to fail, and why.
+    steps : int, optional
+        How many steps of the path are looked at: 60 where there is a target, 12 where there is none.
+
+    Returns
+    -------
+    tuple of Result
+        Of every check that the capabilities call for.
+
+    Raises
+    ------
+    CheckFailure
+        An AssertionError with one line a check that failed unexpectedly.
+    ValueError
+        If there is no check of a name in `expected_failed_checks`.
+    """
+    results = run_checks(homotopy, expected_failed_checks=expected_failed_checks, steps=steps)
+    failed = [result for result in results if result.outcome == FAILED]
+    if failed:
+        lines = [f"{type(homotopy).__name__} fails {len(failed)} of {len(results)} checks:"]
+        lines += [f"  {result.name}: {result.message.removeprefix(f'{result.name}: ')}" for result in failed]
+        raise CheckFailure("\n".join(lines))
+    return results

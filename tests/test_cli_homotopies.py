@@ -1,0 +1,168 @@
+"""``continuation plugins``, ``trace`` and ``check``: any homotopy by its name, from a shell."""
+
+import json
+
+import numpy as np
+import pytest
+
+from continuation.archive import open_archive
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, main
+from problems.bifurcation.truth import bratu
+
+
+@pytest.fixture
+def run(capsys):
+    """main(argv) -> (status, stdout, stderr); bad input is always exactly one line on stderr."""
+
+    def call(*argv):
+        status = main([str(argument) for argument in argv])
+        captured = capsys.readouterr()
+        if status == BAD_INPUT:
+            assert captured.out == ""
+            assert captured.err.count("\n") == 1
+        return status, captured.out, captured.err
+
+    return call
+
+
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    """A working directory with a homotopy of somebody's own in it."""
+    (tmp_path / "my_homotopies.py").write_text(
+        "import numpy as np\n\n\n"
+        "class Root:\n"
+        '    """The square root of 2."""\n\n'
+        "    def start(self):\n"
+        "        return np.array([1.0]), 1.0\n\n"
+        "    def residual(self, y, lam):\n"
+        "        return y**2 - 2 + lam\n\n\n"
+        "class Wrong(Root):\n"
+        "    def jacobian(self, y, lam):\n"
+        "        return 3 * y[:, None], np.ones(1)\n\n\n"
+        "class Empty:\n"
+        "    pass\n\n\n"
+        "class Buggy(Root):\n"
+        "    def residual(self, y, lam):\n"
+        "        return y + 'text'\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_plugins_are_listed_with_options_and_reference(run):
+    status, out, err = run("plugins")
+    assert status == SUCCESS
+    assert err == ""
+    text = out[out.index("bratu-1d") :].split("\nbratu-2d")[0]
+    assert "u'' + lam e^u = 0 on (0, 1)" in text
+    assert "options: n=100, target=None" in text
+    assert "reference: Bratu 1914" in text
+    assert "from: continuation 0.1.0 (problems.bifurcation.bratu_1d:Bratu1D)" in text
+
+
+def test_one_plugin_is_shown_with_its_bibtex(run):
+    status, out, _ = run("plugins", "freudenstein-roth")
+    assert status == SUCCESS
+    assert out.count("@article{") == 2
+    assert run("plugins", "freudenstein")[0] == BAD_INPUT
+
+
+def test_trace_by_name_with_archive_and_plot(run, tmp_path):
+    archive, picture = tmp_path / "run.h5", tmp_path / "run.png"
+    status, out, _ = run(
+        "trace", "bratu-1d", "n=100", "--turning-points", 1, "--archive", archive, "--plot", picture, "--progress",
+        "--preset", "series",
+    )  # fmt: skip
+    assert status == SUCCESS
+    assert "STOPPED_AT_EVENT" in out
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    with open_archive(archive) as stored:
+        assert stored.attributes["homotopy_entry_point"] == "bratu-1d"
+        assert stored.path(0).endpoint.lam == pytest.approx(bratu.FOLD_1D[100][0], abs=1e-10)
+
+
+def test_trace_as_json_with_another_target(run):
+    status, out, _ = run("trace", "pitchfork", "imperfection=0.1", "--target", "0.5", "--json")
+    answer = json.loads(out)
+    assert status == SUCCESS
+    assert answer["homotopy"] == "pitchfork imperfection=0.1"
+    assert answer["status"] == "REACHED_TARGET"
+    assert answer["lam"] == 0.5
+    x = answer["y"][0]
+    assert 0.5 * x - x**3 + 0.1 == pytest.approx(0, abs=1e-12)
+
+
+def test_a_path_that_does_not_arrive_exits_with_one(run):
+    status, out, _ = run("trace", "circle", "--budget-steps", 3)
+    assert status == FAILURE
+    assert "BUDGET_EXHAUSTED" in out
+    assert run("trace", "circle")[0] == SUCCESS
+
+
+def test_a_homotopy_without_target_is_asked_for_none(run):
+    status, out, _ = run("trace", "pitchfork", "--target", "none", "--budget-steps", 5, "--direction", "-1")
+    assert status == FAILURE
+    end = next(line for line in out.splitlines() if line.startswith("end"))
+    assert float(end.split("=")[1]) < -1.0
+
+
+def test_the_lcp_of_a_file(run, tmp_path):
+    np.savez(tmp_path / "p.npz", A=[[1, -1], [-1, 1]], q=[-0.5, 2])
+    for name in ("kkt", "wang", "yu", "xu", "kmm"):
+        status, out, _ = run("trace", name, f"file={tmp_path / 'p.npz'}", "--json")
+        assert status == SUCCESS, name
+        np.testing.assert_allclose(json.loads(out)["y"][:2], [0.5, 0], atol=1e-8)
+
+
+def test_cite_prints_bibtex(run):
+    status, out, _ = run("trace", "circle", "--cite")
+    assert status == SUCCESS
+    assert "@software{continuation" in out
+    status, out, err = run("trace", "circle", "--cite", "--json")
+    json.loads(out)
+    assert "@software{continuation" in err
+
+
+def test_a_homotopy_of_the_working_directory(run, home):
+    status, out, _ = run("trace", "my_homotopies:Root", "--json")
+    assert status == SUCCESS
+    assert json.loads(out)["y"] == pytest.approx([np.sqrt(2)], abs=1e-12)
+    assert run("check", "my_homotopies:Root")[0] == SUCCESS
+
+
+def test_check_says_what_is_wrong(run, home):
+    status, out, _ = run("check", "my_homotopies:Wrong")
+    assert status == FAILURE
+    assert "failed   jacobian\n" in out
+    assert "H_y[0, 0] is 3, expected 2 (by jets), at the start" in out
+    assert out.strip().endswith("checks passed.")
+
+
+def test_a_bug_in_a_plugin_is_not_taken_for_bad_input(run, home):
+    with pytest.raises(TypeError, match="ufunc 'add'"):
+        run("trace", "my_homotopies:Buggy")
+
+
+def test_bad_input_is_one_line(run, home):
+    cases = [
+        (("trace", "nosuch"), "nosuch: no homotopy of this name is installed"),
+        (("trace", "bratu1d"), "did you mean bratu-1d"),
+        (("trace", "bratu-1d", "n=0"), "n: expected at least 1, found 0"),
+        (("trace", "bratu-1d", "n=many"), "n: expected an integer, found 'many'"),
+        (("trace", "bratu-1d", "m=3"), "m: expected an option of bratu-1d (n=100, target=None)"),
+        (("trace", "bratu-1d", "n"), "KEY=VALUE: expected an option like n=10, found 'n'"),
+        (("trace", "bratu-1d", "n=1", "n=2"), "n: expected one value, found two"),
+        (("trace", "kkt", "file=gone.npz"), "file: expected a file"),
+        (("trace", "kkt", "example=11"), "example: expected a number from 1 to 10, found 11"),
+        (("trace", "my_homotopies:Empty"), "homotopy: expected a method `start`, found none on Empty"),
+        (("trace", "my_homotopies:Gone"), "my_homotopies:Gone: cannot be loaded: AttributeError"),
+        (("trace", "circle", "--target", "soon"), "--target: expected a finite number or none, found 'soon'"),
+        (("trace", "circle", "--tolerance", "0"), "--tolerance: expected a positive number"),
+        (("trace", "circle", "--plot", "path.txt"), "--plot: expected a name in .png"),
+        (("trace", "circle", "--archive", home / "my_homotopies.py"), "--archive: "),
+        (("check", "circle", "radius=2"), "radius: expected an option of circle (none)"),
+    ]
+    for arguments, message in cases:
+        status, _, err = run(*arguments)
+        assert status == BAD_INPUT, arguments
+        assert message in err, arguments
