@@ -1,0 +1,58 @@
+"""The ready studies: found through the entry points `continuation.studies`, so that the engine imports no problems."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib.metadata import EntryPoint, entry_points
+from typing import Literal
+
+from continuation.chart.study import Study
+
+GROUP = "continuation.studies"
+"""Entry points of this group are functions (size, compare) to a sequence of studies, named as the entry point."""
+
+Size = Literal["smoke", "moderate", "full"]
+"""For tests, for a few minutes on two cores, for reports."""
+
+Maker = Callable[[Size, bool], Sequence[Study]]
+"""(size, compare) to studies; `compare` asks for outside solvers where they are installed."""
+
+
+def catalogue() -> dict[str, EntryPoint]:
+    """The ready studies by name, in alphabetical order; none is imported yet.
+
+    Raises
+    ------
+    ValueError
+        If two distributions provide a study of the same name.
+    """
+    found: dict[str, EntryPoint] = {}
+    for point in sorted(entry_points(group=GROUP), key=lambda point: point.name):
+        other = found.setdefault(point.name, point)
+        if other.value != point.value:
+            owners = " and ".join(p.dist.name if p.dist else p.value for p in (other, point))
+            raise ValueError(f"{point.name}: expected one package that provides this study, found {owners}")
+    return found
+
+
+def studies(name: str, size: Size = "moderate", compare: bool = False) -> Sequence[Study]:
+    """The studies behind a name.
+
+    Parameters
+    ----------
+    name : str
+        One of `catalogue`.
+    size : {"smoke", "moderate", "full"}
+    compare : bool
+        Ask for outside solvers too.
+
+    Raises
+    ------
+    ValueError
+        If there is no such name.
+    """
+    known = catalogue()
+    if name not in known:
+        raise ValueError(f"NAME: expected one of {', '.join(known) or '(none installed)'}, found {name!r}")
+    make: Maker = known[name].load()
+    return make(size, compare)

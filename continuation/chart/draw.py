@@ -1,0 +1,165 @@
+"""The work-precision chart: error on x, work on y, both logarithmic, one panel a problem, one line a method."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import floor, log10
+
+from attrs import frozen
+
+from continuation.chart.front import FLOOR, coordinates, on_front
+from continuation.chart.looks import Axes, Figure, few_ticks, handle, label, legend_below, look, panels, tidy
+from continuation.chart.results import WORK, Results, Row
+
+STRIP = 0.11
+"""Width of the strip of failures, as a fraction of the panel."""
+
+_FRONT = {"marker": "o", "markersize": 11, "markerfacecolor": "none", "markeredgecolor": "black", "linestyle": "none"}
+
+
+def draw(
+    results: Results,
+    error: str,
+    work: str,
+    *,
+    problems: Sequence[str] | None = None,
+    methods: Sequence[str] | None = None,
+) -> Figure:
+    """Draw error against work.
+
+    Runs on the Pareto front have a black ring. Errors that are round-off (at most `FLOOR`) are in a grey band on the
+    left. Failures have no place on x: they are in the strip on the right, at the work that they cost, or on its lower
+    edge where that is less or unknown.
+
+    Parameters
+    ----------
+    results : Results
+    error, work : str
+        Names in `results.errors` and `WORK`.
+    problems, methods : sequence of str, optional
+        Which; all by default.
+
+    Returns
+    -------
+    matplotlib Figure
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If the error or the work is none of the results'.
+    """
+    results.check(error, work)
+    shown = list(problems) if problems is not None else results.problems
+    names = list(methods) if methods is not None else results.methods
+    figure, axes = panels(len(shown))
+    for name, ax in zip(shown, axes):
+        rows = [row for row in results.of(problem=name) if row.method in names]
+        _panel(ax, rows, names, error, work)
+        ax.set_title(name, fontsize="medium")
+    label(axes, results.errors[error], WORK[work].label)
+    handles = [handle(look(k)) for k in range(len(names))]
+    legend_below(figure, [*handles, handle(_FRONT)], [*names, "Pareto front"])
+    figure.suptitle(results.title, fontsize="medium")
+    return figure
+
+
+@frozen
+class Precision:
+    """The work-precision chart as a figure of a study."""
+
+    error: str
+    work: str
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return f"{self.error}-{self.work}"
+
+    def draw(self, results: Results) -> Figure:
+        """See `draw`."""
+        return draw(results, self.error, self.work)
+
+
+def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, work: str) -> None:
+    points = {id(row): point for row in rows if (point := coordinates(row, error, work)) is not None}
+    band = _Band(max((e for e, _ in points.values()), default=FLOOR), len(names))
+    failures = []
+    for k, name in enumerate(names):
+        own = [row for row in rows if row.method == name]
+        placed = [band.place(k, *points[id(row)]) for row in own if id(row) in points]
+        if placed:
+            axes.plot(*zip(*placed), **look(k))
+        failures += [(k, row.work(work)) for row in own if row.failed]
+    front = [band.place(names.index(row.method), *points[id(row)]) for row in on_front(rows, error, work)]
+    if front:
+        axes.plot(*zip(*front), zorder=1, **_FRONT)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.margins(y=0.08)
+    few_ticks(axes.yaxis)
+    tidy(axes)
+    band.mark(axes)
+    _failures(axes, failures, len(names))
+
+
+@frozen
+class _Band:
+    """The left part of a panel, where errors are round-off: there a point's x is its method's column, and says no more.
+
+    Attributes
+    ----------
+    largest : float
+        Error in the panel.
+    count : int
+        Methods.
+    """
+
+    largest: float
+    count: int
+
+    @property
+    def _decades(self) -> float:
+        """Of errors beyond round-off, two at least; the band takes a third of the panel's width."""
+        return max(2.0, log10(self.largest / FLOOR) + 0.5)
+
+    @property
+    def _left(self) -> float:
+        return float(FLOOR * 10.0 ** (-0.5 * self._decades))
+
+    def place(self, k: int, error: float, work: float) -> tuple[float, float]:
+        """Where to draw a point of method k."""
+        if error > FLOOR:
+            return error, work
+        return float(self._left * (FLOOR / self._left) ** ((k + 0.6) / (self.count + 0.2))), work
+
+    def mark(self, axes: Axes) -> None:
+        """Shade the band, name it, and take its ticks away."""
+        from matplotlib.ticker import FixedLocator, LogFormatterSciNotation, NullLocator
+
+        first, last = round(log10(FLOOR)), floor(log10(FLOOR) + self._decades)
+        stride = 1 + (last - first) // 4
+        axes.set_xlim(self._left, FLOOR * 10.0**self._decades)
+        axes.axvspan(self._left, FLOOR, color="0.94", linewidth=0, zorder=0)
+        axes.xaxis.set_major_locator(FixedLocator([10.0**k for k in range(first, last + 1, stride)]))
+        axes.xaxis.set_major_formatter(LogFormatterSciNotation())
+        axes.xaxis.set_minor_locator(NullLocator())
+        middle = (self._left * FLOOR) ** 0.5
+        axes.annotate(
+            "round-off", (middle, 0.0), (0, -3), ("data", "axes fraction"), "offset points", fontsize="x-small",
+            ha="center", va="top",
+        )  # fmt: skip
+
+
+def _failures(axes: Axes, failures: Sequence[tuple[int, float]], count: int) -> None:
+    strip = axes.inset_axes((1.02, 0.0, STRIP, 1.0), sharey=axes)
+    strip.set_facecolor("0.94")
+    strip.spines[["top", "right", "left", "bottom"]].set_visible(False)
+    strip.tick_params(left=False, labelleft=False, bottom=False, labelbottom=False, which="both")
+    strip.set_xlim(-0.6, count - 0.4)
+    strip.set_title("failed", fontsize="x-small", pad=2)
+    # What raised has no counts: at the lower edge.
+    lowest = axes.get_ylim()[0]
+    for k, cost in failures:
+        strip.plot([k], [max(cost, lowest)], clip_on=False, **{**look(k), "linestyle": "none"})

@@ -1,0 +1,87 @@
+"""How lines look: told apart by colour, marker and style at once, so that print and the colour-blind lose nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from continuation.plot import COLOURS, STYLES, require_matplotlib
+
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
+
+DOTS_PER_INCH = 110
+
+Axes = Any
+Figure = Any
+
+
+def look(k: int) -> dict[str, Any]:
+    """Colour, marker and style of the k-th line: 7, 10 and 4 of them, so that 140 lines differ."""
+    return {
+        "color": COLOURS[k % len(COLOURS)],
+        "marker": MARKERS[k % len(MARKERS)],
+        "linestyle": STYLES[k % len(STYLES)],
+        "linewidth": 1.3,
+        "markersize": 5.5,
+        "markeredgecolor": "white",
+        "markeredgewidth": 0.5,
+    }
+
+
+def handle(style: dict[str, Any]) -> Any:
+    """A line with this look, for a legend, no larger than a line of text."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], **{**style, "markersize": min(style["markersize"], 9.0)})
+
+
+def panels(count: int, most_across: int = 3, height: float = 3.1) -> tuple[Figure, list[Axes]]:
+    """A figure with `count` panels in rows of at most `most_across`; none of them more than asked for."""
+    require_matplotlib()
+    from matplotlib.figure import Figure as Canvas
+
+    across = 2 if count == 4 else min(count, most_across)
+    down = -(-count // across)
+    width = 5.6 if across == 1 else 3.4 * across
+    figure = Canvas(figsize=(0.9 + width, 0.9 + height * down), layout="constrained")
+    grid = figure.subplots(down, across, squeeze=False).ravel()
+    for unused in grid[count:]:
+        unused.remove()
+    return figure, list(grid[:count])
+
+
+def legend_below(figure: Figure, handles: Sequence[Any], labels: Sequence[str]) -> None:
+    """One legend for all panels, outside of them."""
+    width = figure.get_size_inches()[0]
+    longest = max((len(label) for label in labels), default=1)
+    columns = max(1, min(len(labels), int(width / (0.5 + 0.075 * longest))))
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, fontsize="small")
+
+
+def label(axes: Sequence[Axes], across: str, up: str) -> None:
+    """Axis labels for a grid of panels: on y at the left edge, on x wherever there is no panel below."""
+    columns = axes[0].get_subplotspec().get_gridspec().ncols
+    for k, panel in enumerate(axes):
+        if k % columns == 0:
+            panel.set_ylabel(up)
+        if k + columns >= len(axes):
+            panel.set_xlabel(across, fontsize="small")
+
+
+def few_ticks(axis: Any) -> None:
+    """Ticks at 1, 2 and 5 of each decade, as plain numbers where the axis spans little, at the decades otherwise."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    if high <= 100.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def tidy(axes: Axes) -> Axes:
+    """Without a frame, with a light grid at the decades."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(which="major", color="0.9", linewidth=0.6)
+    axes.set_axisbelow(True)
+    return axes

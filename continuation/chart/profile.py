@@ -1,0 +1,107 @@
+"""The performance profile: which fraction of problems a method solves within a factor of the best one's work.
+
+Dolan and More, Benchmarking optimization software with performance profiles, Math. Program. 91, 2002.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.chart.looks import Figure, handle, label, legend_below, look, panels, tidy
+from continuation.chart.results import WORK, Results
+from continuation.chart.table import Cell, Table
+
+
+def ratios(results: Results, work: str, family: str | None = None) -> dict[str, Array]:
+    """For each method, a number a problem and rung: its work over the least of all methods; infinite where it failed.
+
+    Methods without a rung take part in each.
+    """
+    results.check(work=work)
+    rows = results.of(family=family)
+    rungs = sorted({row.rung for row in rows if not math.isnan(row.rung)}) or [math.nan]
+    cost: dict[tuple[str, str], dict[float, float]] = {}
+    for row in rows:
+        value = math.inf if row.failed else row.work(work)
+        for rung in rungs if math.isnan(row.rung) else (row.rung,):
+            cost.setdefault((row.problem, row.method), {})[rung] = value
+    found: dict[str, list[float]] = {method: [] for method in results.methods}
+    for problem in dict.fromkeys(row.problem for row in rows):
+        for rung in rungs:
+            costs = {method: cost.get((problem, method), {}).get(rung, math.inf) for method in found}
+            least = min(costs.values())
+            for method, value in costs.items():
+                found[method].append(value / least if math.isfinite(value) else math.inf)
+    return {method: np.array(values) for method, values in found.items()}
+
+
+def profile_table(results: Results, work: str) -> Table:
+    """One line a method and family: the fraction solved at all, and within 1, 2 and 10 times the best work."""
+    lines: list[tuple[Cell, ...]] = [
+        (family, method, values.size, *(float((values <= limit).mean()) for limit in (1.0, 2.0, 10.0)),
+         float(np.isfinite(values).mean()))
+        for family in results.families
+        for method, values in ratios(results, work, family).items()
+    ]  # fmt: skip
+    return Table(("family", "method", "runs", "best", "within 2", "within 10", "solved"), lines)
+
+
+def draw_profile(results: Results, work: str) -> Figure:
+    """Draw the profiles, one panel a family: the fraction solved against the factor over the best work.
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If the work is unknown.
+    """
+    results.check(work=work)
+    figure, axes = panels(len(results.families))
+    for family, ax in zip(results.families, axes):
+        for k, (_, values) in enumerate(ratios(results, work, family).items()):
+            finite = np.sort(values[np.isfinite(values)])
+            # A step at every ratio, from (1, fraction of best) on; the line goes on to the edge of the panel.
+            x = np.concatenate(([1.0], finite, [_WIDEST]))
+            y = np.concatenate(([np.mean(values <= 1.0)], np.arange(1, finite.size + 1), [finite.size]))
+            y[1:] /= values.size
+            style = {**look(k), "marker": ""}
+            ax.step(x, y, where="post", **style)
+            ax.plot([_WIDEST], y[-1:], clip_on=False, **look(k))
+        ax.set_xscale("log")
+        ax.set_xlim(1.0, _WIDEST)
+        ax.set_ylim(-0.03, 1.04)
+        ax.set_title(family, fontsize="medium")
+        tidy(ax)
+    label(axes, f"{WORK[work].label},\nover the least of all methods", "fraction solved")
+    legend_below(figure, [handle(look(k)) for k in range(len(results.methods))], results.methods)
+    figure.suptitle(results.title, fontsize="medium")
+    return figure
+
+
+_WIDEST = 100.0
+"""The right edge: beyond it only whether a problem is solved at all matters."""
+
+
+@frozen
+class Profile:
+    """The performance profile as a figure of a study."""
+
+    work: str
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return f"profile-{self.work}"
+
+    def draw(self, results: Results) -> Figure:
+        """See `draw_profile`."""
+        return draw_profile(results, self.work)
+
+    def table(self, results: Results) -> Table:
+        """See `profile_table`."""
+        return profile_table(results, self.work)

@@ -1,0 +1,116 @@
+"""Work against size: a line a method, with the fitted exponent."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.chart.looks import Axes, Figure, few_ticks, handle, label, legend_below, look, panels, tidy
+from continuation.chart.results import WORK, Results
+from continuation.chart.table import Cell, Table
+
+FITTED = 3
+"""Sizes that a fit needs at least; it is made to the larger half of them, since costs are asymptotic."""
+
+
+def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
+    """The exponent p of work ~ n^p for each (family, method), by least squares on logarithms; NaN below `FITTED` sizes.
+
+    A size with several runs counts with their mean; failures are left out.
+    """
+    results.check(work=work)
+    found = {}
+    for family in results.families:
+        for method in results.methods:
+            points = _points(results, family, method, work)
+            found[family, method] = _slope(points) if len(points) >= FITTED else float("nan")
+    return found
+
+
+def _points(results: Results, family: str, method: str, work: str) -> list[tuple[float, float]]:
+    rows = [row for row in results.of(family=family, method=method) if not row.failed]
+    sizes = sorted({row.n for row in rows})
+    return [(float(n), float(np.mean([row.work(work) for row in rows if row.n == n]))) for n in sizes]
+
+
+def _slope(points: list[tuple[float, float]]) -> float:
+    upper = points[-max(FITTED, len(points) // 2) :]
+    n, cost = np.log(np.array(upper)).T
+    return float(np.polyfit(n, cost, 1)[0])
+
+
+def scaling_table(results: Results, work: str) -> Table:
+    """One line a family and method: the work at each size, and the exponent."""
+    sizes = sorted({row.n for row in results.rows})
+    powers = exponents(results, work)
+    lines: list[tuple[Cell, ...]] = []
+    for (family, method), power in powers.items():
+        costs = dict(_points(results, family, method, work))
+        if costs:
+            lines.append((family, method, *(costs.get(float(n), float("nan")) for n in sizes), power))
+    return Table(("family", "method", *(f"n = {n}" for n in sizes), "exponent"), lines)
+
+
+def draw_scaling(results: Results, work: str) -> Figure:
+    """Draw work against n, one panel a family; the label of each line has its exponent.
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If the work is unknown.
+    """
+    results.check(work=work)
+    powers = exponents(results, work)
+    figure, axes = panels(len(results.families))
+    for family, ax in zip(results.families, axes):
+        ends = []
+        for k, method in enumerate(results.methods):
+            points = _points(results, family, method, work)
+            if not points:
+                continue
+            power = powers[family, method]
+            ax.plot(*zip(*points), **look(k))
+            if not np.isnan(power):
+                ends.append((points[-1][1], f"$n^{{{power:.1f}}}$", look(k)["color"]))
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+        ax.set_title(family, fontsize="medium")
+        few_ticks(ax.yaxis)
+        tidy(ax)
+        _name_ends(ax, ends)
+    label(axes, "size $n$", WORK[work].label)
+    legend_below(figure, [handle(look(k)) for k in range(len(results.methods))], results.methods)
+    figure.suptitle(results.title, fontsize="medium")
+    return figure
+
+
+def _name_ends(axes: Axes, ends: list[tuple[float, str, str]]) -> None:
+    """Write (height, text, colour) beside the panel, each at its height or as little above it as keeps them apart."""
+    to_panel = axes.transData + axes.transAxes.inverted()
+    lowest = 0.0
+    for height, text, colour in sorted(ends):
+        place = max(float(to_panel.transform((axes.get_xlim()[0], height))[1]), lowest)
+        axes.annotate(text, (1.02, place), xycoords="axes fraction", fontsize="small", va="center", color=colour)
+        lowest = place + 0.075
+
+
+@frozen
+class Scaling:
+    """The scaling chart as a figure of a study."""
+
+    work: str
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return f"scaling-{self.work}"
+
+    def draw(self, results: Results) -> Figure:
+        """See `draw_scaling`."""
+        return draw_scaling(results, self.work)
+
+    def table(self, results: Results) -> Table:
+        """See `scaling_table`."""
+        return scaling_table(results, self.work)

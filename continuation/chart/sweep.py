@@ -1,0 +1,82 @@
+"""Work against the ladder's value itself, one line a problem: where the best value lies, and which one was chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from attrs import frozen
+
+from continuation.chart.looks import Figure, handle, legend_below, look, panels, tidy
+from continuation.chart.results import WORK, Results, Row
+
+Chooser = Callable[[Row], float | None]
+"""The value that the library chooses for a row's problem; None where it does not choose."""
+
+_BEST = {"marker": "o", "markersize": 12, "markerfacecolor": "none", "markeredgecolor": "black", "linestyle": "none"}
+_CHOSEN = {"marker": "|", "markersize": 18, "markeredgecolor": "black", "markeredgewidth": 2.0, "linestyle": "none"}
+
+
+def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Figure:
+    """Draw work, relative to the least of each line, against the ladder; one panel a method.
+
+    Failures are left out of the lines; the best value of a line has a ring, the chosen one a bar.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+    chosen : callable, optional
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If the work is unknown.
+    """
+    results.check(work=work)
+    figure, axes = panels(len(results.methods), most_across=2, height=3.6)
+    for method, ax in zip(results.methods, axes):
+        for k, problem in enumerate(results.problems):
+            rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
+            if not rows:
+                continue
+            least = min(row.work(work) for row in rows)
+            values = [(row.rung, row.work(work) / least) for row in rows]
+            ax.plot(*zip(*values), **look(k))
+            ax.plot(*min(values, key=lambda pair: pair[1]), zorder=1, **_BEST)
+            choice = chosen(rows[0]) if chosen is not None else None
+            if choice is not None:
+                nearest = min(values, key=lambda pair: abs(pair[0] - choice))
+                ax.plot(choice, nearest[1], zorder=4, **_CHOSEN)
+        ax.set_yscale("log")
+        ax.set_yticks([1, 2, 4, 8, 16], labels=["1", "2", "4", "8", "16"])
+        ax.yaxis.set_minor_formatter("")
+        ax.set_title(method, fontsize="medium")
+        ax.set_xlabel(results.ladder)
+        tidy(ax)
+    axes[0].set_ylabel(f"{WORK[work].label}\nover the least of the line")
+    labels = [*results.problems, "least"]
+    handles = [*(handle(look(k)) for k in range(len(results.problems))), handle(_BEST)]
+    if chosen is not None:
+        labels, handles = [*labels, "chosen by the library"], [*handles, handle(_CHOSEN)]
+    legend_below(figure, handles, labels)
+    figure.suptitle(results.title, fontsize="medium")
+    return figure
+
+
+@frozen
+class Sweep:
+    """The sweep as a figure of a study."""
+
+    work: str
+    chosen: Chooser | None = None
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return f"{self.work}"
+
+    def draw(self, results: Results) -> Figure:
+        """See `draw_sweep`."""
+        return draw_sweep(results, self.work, self.chosen)

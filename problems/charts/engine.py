@@ -1,0 +1,164 @@
+"""The engine's parts against each other: presets, predictors, correctors, controllers, and how steps decide."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import Any
+
+import continuation
+from continuation.chart import (
+    ARCLENGTH,
+    CURVE_DISTANCE,
+    END_POINT,
+    TURNING_POINTS,
+    Method,
+    Precision,
+    Problem,
+    Study,
+    longest_steps,
+    tolerances,
+    traced,
+)
+from continuation.chart.catalogue import Size
+from continuation.controllers import AllgowerGeorg, Curvature, Fixed, Geometric, IterationCount, SeriesRange
+from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
+from continuation.metric import Automatic, Euclidean, Relative, RootMeanSquare
+from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent, Taylor
+from problems.charts import rivals
+from problems.charts.subjects import bratu, cosine, freudenstein
+
+BUDGET = continuation.Budget(steps=3000)
+
+Parts = dict[str, dict[str, Any]]
+"""Options of a trace, by the label of the method."""
+
+PRESETS: Parts = {
+    preset.name: {"preset": preset}
+    for preset in (continuation.DEFAULT, continuation.FAST, continuation.CONSERVATIVE, continuation.SERIES)
+}
+PREDICTORS: Parts = {
+    "Hermite (DEFAULT)": {"predictor": Hermite()},
+    "tangent": {"predictor": Tangent()},
+    "secant": {"predictor": Secant()},
+    "polynomial, degree 4": {"predictor": Polynomial(4)},
+    "Adams-Bashforth 3": {"predictor": AdamsBashforth(3)},
+    "Runge-Kutta 4": {"predictor": RungeKutta(4)},
+    "Taylor + series range": {"predictor": Taylor(), "controller": SeriesRange()},
+    "Pade + series range": {"predictor": Taylor(rational=True), "controller": SeriesRange()},
+}
+CORRECTORS: Parts = {
+    "bordered, reuse 0.2 (DEFAULT)": {"corrector": BorderedNewton(0.2)},
+    "bordered, reuse 0.5": {"corrector": BorderedNewton(0.5)},
+    "bordered Newton": {"corrector": BorderedNewton(0.0)},
+    "chord": {"corrector": Chord()},
+    "Broyden": {"corrector": Broyden()},
+    "Moore-Penrose": {"corrector": MoorePenrose()},
+    "natural parameter": {"corrector": NaturalParameter()},
+}
+CONTROLLERS: Parts = {
+    "Allgower-Georg (DEFAULT)": {"controller": continuation.DEFAULT.controller},
+    "Allgower-Georg, own values": {"controller": AllgowerGeorg()},
+    "curvature": {"controller": Curvature()},
+    "iteration count": {"controller": IterationCount()},
+    "fixed, 0.1": {"controller": Fixed()},
+    "geometric (the paper's)": {"controller": Geometric()},
+}
+SERIES: Parts = {
+    f"{kind}, accuracy {accuracy:g}{' (SERIES)' if rational and accuracy == 1e-5 else ''}": {
+        "preset": continuation.SERIES,
+        "predictor": Taylor(accuracy=accuracy, rational=rational),
+    }
+    for kind, rational in (("Pade", True), ("series", False))
+    for accuracy in (1e-3, 1e-5, 1e-7)
+}
+METRICS: Parts = {
+    "automatic (the default)": {"metric": Automatic()},
+    "Euclidean": {"metric": Euclidean()},
+    "root mean square": {"metric": RootMeanSquare()},
+    "relative": {"metric": Relative(floor=1e-3)},
+}
+PARTS: dict[str, tuple[str, Parts]] = {
+    "presets": ("presets", PRESETS),
+    "predictors": ("predictors, the other parts as in DEFAULT", PREDICTORS),
+    "correctors": ("correctors, the other parts as in DEFAULT", CORRECTORS),
+    "series": ("accuracy and kind of the series, the other parts as in SERIES", SERIES),
+    "metrics": ("metrics, the parts as in DEFAULT", METRICS),
+    "controllers": ("step controllers, the other parts as in DEFAULT", CONTROLLERS),
+}
+WORK = ("factorizations", "solves", "residuals", "seconds")
+
+
+def studies(size: Size, compare: bool) -> Sequence[Study]:
+    """One study a kind of part, one of longest steps, and at full size one of all combinations."""
+    problems = _problems(size)
+    rungs = {"smoke": (1e-6,), "moderate": (1e-3, 1e-6, 1e-9), "full": (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)}[size]
+    found = []
+    for name, (title, parts) in PARTS.items():
+        methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
+        if name == "presets" and compare:
+            methods.append(rivals.scipy_loop())
+        found.append(
+            Study(
+                name=f"engine-{name}",
+                title=f"Tolerance against work: {title}",
+                problems=problems,
+                methods=methods,
+                ladder=tolerances(*rungs),
+                errors=(END_POINT, TURNING_POINTS, *((ARCLENGTH,) if size == "full" else ())),
+                work=WORK,
+                figures=tuple(Precision("end_point", work) for work in ("factorizations", *_timed(name, size))),
+                repeats={"smoke": 0, "moderate": 1, "full": 3}[size],
+            )
+        )
+    found.append(_steps(problems, size))
+    return [*found, _combinations(problems)] if size == "full" else found
+
+
+def _timed(name: str, size: Size) -> tuple[str, ...]:
+    """Where a chart of times is drawn too: everywhere at full size, else for the presets alone."""
+    return ("seconds",) if size == "full" or name == "presets" else ()
+
+
+def _problems(size: Size) -> list[Problem]:
+    if size == "smoke":
+        return [freudenstein(), cosine(3)]
+    bratu_n = 100 if size == "moderate" else 1000
+    return [freudenstein(), bratu(bratu_n), *(cosine(n) for n in ((3, 5) if size == "moderate" else (3, 5, 8)))]
+
+
+def _steps(problems: list[Problem], size: Size) -> Study:
+    """Dense output: what shorter steps buy between the points."""
+    steps = {"smoke": (0.3,), "moderate": (1.0, 0.3, 0.1), "full": (3.0, 1.0, 0.3, 0.1, 0.03)}[size]
+    methods = [traced(label, budget=BUDGET, **options) for label, options in PREDICTORS.items()]
+    return Study(
+        name="engine-steps",
+        title="Longest step against work: the dense output of each predictor",
+        problems=problems if size == "full" else problems[:1] + problems[2:],
+        methods=methods,
+        ladder=longest_steps(*steps),
+        errors=(CURVE_DISTANCE, END_POINT),
+        work=WORK,
+        figures=(Precision("curve_distance", "factorizations"),),
+        repeats=0,
+    )
+
+
+def _combinations(problems: Sequence[Problem]) -> Study:
+    """All predictors with all correctors and all controllers."""
+    choices = product(PREDICTORS.items(), CORRECTORS.items(), CONTROLLERS.items())
+    methods: list[Method] = [
+        traced(f"{p} | {c} | {k}", budget=BUDGET, **{**controller, **predictor, **corrector})
+        for (p, predictor), (c, corrector), (k, controller) in choices
+        if "controller" not in predictor or controller is next(iter(CONTROLLERS.values()))
+    ]
+    return Study(
+        name="engine-combinations",
+        title="All predictors with all correctors and controllers",
+        problems=problems,
+        methods=methods,
+        ladder=tolerances(1e-8),
+        errors=(END_POINT, TURNING_POINTS),
+        work=WORK,
+        repeats=0,
+    )

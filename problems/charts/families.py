@@ -1,0 +1,91 @@
+"""Random linear complementarity problems: of a class, with a seed, of any size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import scipy.sparse as sp
+
+from continuation.arrays import Array, Matrix
+from problems.lcp import LCP
+
+Draw = Callable[[np.random.Generator, int], Matrix]
+
+
+def semidefinite(random: np.random.Generator, n: int) -> Array:
+    """A positive semidefinite matrix of rank n/2 or more plus a skew one: monotone, so row sufficient."""
+    factor, skew = random.standard_normal((n, max(1, n // 2))), random.standard_normal((n, n))
+    return np.asarray(factor @ factor.T / n + (skew - skew.T) / np.sqrt(n))
+
+
+def scaled_p(random: np.random.Generator, n: int) -> Array:
+    """D (positive definite plus skew) E with positive diagonals over two decades: a P-matrix, mostly not definite."""
+    factor, skew = random.standard_normal((n, n)), random.standard_normal((n, n))
+    core = factor @ factor.T / n + 0.1 * np.eye(n) + (skew - skew.T) / np.sqrt(n)
+    left, right = (10.0 ** random.uniform(-1.0, 1.0, n) for _ in range(2))
+    return np.asarray(left[:, None] * core * right)
+
+
+def n_matrix(random: np.random.Generator, n: int) -> Array:
+    """K - u v' with u_i v_i > K_ii, K an M-matrix: every principal minor is negative."""
+    K = -random.uniform(0.0, 1.0, (n, n)) / n
+    np.fill_diagonal(K, 0.0)
+    np.fill_diagonal(K, 0.5 - K.sum(axis=1))
+    u = random.uniform(1.0, 2.0, n)
+    v = (np.diag(K) + random.uniform(0.1, 1.0, n)) / u
+    return np.asarray(K - np.outer(u, v))
+
+
+def copositive(random: np.random.Generator, n: int) -> Array:
+    """Positive semidefinite of low rank plus nonnegative plus skew: strictly copositive, of no sign of minors."""
+    factor, skew = random.standard_normal((n, max(1, n // 4))), random.standard_normal((n, n))
+    return np.asarray(factor @ factor.T / n + random.uniform(0.0, 1.0, (n, n)) / np.sqrt(n) + (skew - skew.T) / n)
+
+
+def indefinite(random: np.random.Generator, n: int) -> Array:
+    """Independent normal entries: of no class, nondegenerate with probability one."""
+    return np.asarray(random.standard_normal((n, n)) / np.sqrt(n))
+
+
+def obstacle(random: np.random.Generator, n: int) -> Matrix:
+    """The second difference matrix, sparse: an M-matrix, as for a string over an obstacle."""
+    one = -np.ones(n - 1)
+    return sp.csr_array(sp.diags_array([one, np.full(n, 2.0), one], offsets=[-1, 0, 1]))
+
+
+FAMILIES: Mapping[str, Draw] = {
+    "semidefinite": semidefinite,
+    "scaled P": scaled_p,
+    "N": n_matrix,
+    "copositive": copositive,
+    "indefinite": indefinite,
+    "obstacle": obstacle,
+}
+"""By name."""
+
+
+def planted(family: str, n: int, seed: int) -> LCP:
+    """A problem of a family with a strictly complementary solution planted, so that it has one.
+
+    Parameters
+    ----------
+    family : str
+        One of `FAMILIES`.
+    n : int
+    seed : int
+        Decides everything, with the family and n.
+
+    Raises
+    ------
+    ValueError
+        For another family.
+    """
+    if family not in FAMILIES:
+        raise ValueError(f"family: expected one of {', '.join(FAMILIES)}, found {family!r}")
+    random = np.random.default_rng([seed, n, list(FAMILIES).index(family)])
+    A = FAMILIES[family](random, n)
+    values = random.uniform(0.1, 1.0, n)
+    basic = random.random(n) < 0.5
+    x, w = np.where(basic, values, 0.0), np.where(basic, 0.0, values)
+    return LCP(A, w - A @ x)

@@ -1,0 +1,39 @@
+"""Who solves what fraction of random problems, and at what cost: performance profiles over families and seeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import continuation
+from continuation.chart import Profile, Study, tolerances
+from continuation.chart.catalogue import Size
+from problems.charts import rivals
+from problems.charts.families import FAMILIES
+from problems.charts.lcp import MAKERS, RESIDUAL, WORK, path, problem, references, solver
+
+
+def studies(size: Size, compare: bool) -> Sequence[Study]:
+    """One panel a family; every problem has a planted solution."""
+    orders, seeds = {"smoke": ((5,), 1), "moderate": ((6, 12), 5), "full": ((5, 10, 20, 50), 25)}[size]
+    families = ("semidefinite", "N") if size == "smoke" else [name for name in FAMILIES if name != "obstacle"]
+    methods = [
+        *(path(name, make) for name, make in MAKERS.items()),
+        path("KKT, series", MAKERS["KKT"], preset=continuation.SERIES),
+        solver("KKT, finish", homotopy="kkt"),
+        solver("solve, auto", restarts=5),
+        *references(),
+        *(rivals.lcp_solvers() if compare else ()),
+    ]
+    return [
+        Study(
+            name="robustness",
+            title="Random problems with a planted solution",
+            problems=[problem(family, n, seed) for family in families for n in orders for seed in range(seeds)],
+            methods=methods,
+            ladder=tolerances(1e-8),
+            errors=(RESIDUAL,),
+            work=WORK,
+            figures=(Profile("factorizations"), Profile("seconds")),
+            repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
+        )
+    ]

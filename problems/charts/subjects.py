@@ -1,0 +1,69 @@
+"""The bifurcation problems as problems of a study, with their truths."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.integrate import quad
+
+from continuation.arrays import Array
+from continuation.chart import Problem, Truth, reference
+from continuation.events import TargetValue
+from problems.bifurcation import Bratu1D, Bratu2D, ExponentialCosine, FreudensteinRoth
+from problems.bifurcation.truth import exponential_cosine, freudenstein_roth
+from problems.charts.chandrasekhar import Chandrasekhar
+
+ROUND_THE_FOLD = {"target": None, "direction": 1}
+
+
+def freudenstein() -> Problem:
+    """Freudenstein and Roth's path to (5, 4), a polynomial in x2 from -2 to 4."""
+    step = 1e-6
+
+    def speed(t: float) -> float:
+        ahead, behind = freudenstein_roth.curve(np.array([t + step, t - step]))
+        return float(np.linalg.norm(ahead - behind)) / (2.0 * step)
+
+    truth = Truth(
+        end=np.array([5.0, 4.0, 1.0]),
+        turning_points=freudenstein_roth.turning_points(),
+        arclength=float(quad(speed, -2.0, 4.0, epsabs=1e-10, epsrel=1e-10)[0]),
+        nearest=lambda u: freudenstein_roth.curve(u[:, 1]),
+    )
+    return Problem("Freudenstein-Roth", FreudensteinRoth(), truth)
+
+
+def cosine(n: int) -> Problem:
+    """The exponential-cosine path, a graph over S = sum_j x_j."""
+
+    def nearest(u: Array) -> Array:
+        return exponential_cosine.curve(n, u[:, :-1].sum(axis=1))
+
+    truth = Truth(
+        end=exponential_cosine.curve(n, np.array(exponential_cosine.end(n))),
+        turning_points=exponential_cosine.turning_points(n),
+        arclength=exponential_cosine.arclength(n),
+        nearest=nearest,
+    )
+    return Problem(f"exponential-cosine, n = {n}", ExponentialCosine(n), truth, family="exponential-cosine")
+
+
+def bratu(n: int) -> Problem:
+    """Bratu's problem on an interval, through the fold to lam = 1 on the upper branch; the truth is a reference."""
+    options = {**ROUND_THE_FOLD, "events": (TargetValue(1.0, direction=-1),)}
+    subject = Bratu1D(n)
+    return Problem(f"Bratu 1D, n = {n}", subject, reference(subject, **options), options, n, "Bratu 1D (banded)")
+
+
+def bratu_square(m: int) -> Problem:
+    """Bratu's problem on a square of m x m points, through the fold to lam = 2 on the upper branch."""
+    options = {**ROUND_THE_FOLD, "events": (TargetValue(2.0, direction=-1),)}
+    subject = Bratu2D(m)
+    truth = reference(subject, **options)
+    return Problem(f"Bratu 2D, n = {m * m}", subject, truth, options, m * m, "Bratu 2D (sparse)")
+
+
+def chandrasekhar(n: int) -> Problem:
+    """Chandrasekhar's equation, through the fold to lam = 0.5 on the returning branch."""
+    options = {**ROUND_THE_FOLD, "events": (TargetValue(0.5, direction=-1),)}
+    subject = Chandrasekhar(n)
+    return Problem(f"H-equation, n = {n}", subject, reference(subject, **options), options, n, "H-equation (dense)")
