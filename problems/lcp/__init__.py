@@ -45,10 +45,10 @@ __all__ = [
     "classify",
     "default_start",
     "empty_interior",
-    "solve_by_enumeration",
     "farkas",
     "random_start",
     "solve",
+    "solve_by_enumeration",
     "strictly_feasible_start",
 ]
 

@@ -31,7 +31,7 @@ def suitable(structure: Structure) -> bool:
     problem = structure.problem
     if not problem.sparse or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
         return False
-    return np.count_nonzero(problem.A.data > 0.0) <= 1.5 * problem.n
+    return int(np.count_nonzero(problem.A.data > 0.0)) <= 1.5 * problem.n
 
 
 def guess(problem: LCP) -> Array:
@@ -90,4 +90,4 @@ def _independent(A: Matrix) -> Mask:
             for j in neighbours[starts[i] : starts[i + 1]]:
                 taken[j] = taken[j] or 2
             taken[i] = 1
-    return np.array(taken) == 1
+    return np.asarray(np.array(taken) == 1)

@@ -5,6 +5,7 @@ A step from a guess is one of the primal-dual active-set method, which is Newton
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from continuation.arrays import Array
 from continuation.evaluation import Counts
 from problems.lcp.certificate import certify
 from problems.lcp.faces import Face, Faces
+from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.problem import LCP
 
 Mask = NDArray[np.bool_]
@@ -22,13 +24,19 @@ Mask = NDArray[np.bool_]
 LATEST_START = 0.5
 """The finish is first tried on a path when its parameter has fallen to this."""
 
+CORRECTIONS = 2
+"""Refinements of a point whose signs are nearly right."""
+
 CAPABILITIES = (
     "target", "metric", "references", "start", "residual", "jacobian", "bordered", "differential", "taylor", "max_step",
     "observe",
 )  # fmt: skip
 
+LARGEST_PRODUCT = 1.0
+"""nor before the products x z1 (or x y) have fallen to this, in the problem's natural units,"""
+
 SPACING = 0.4
-"""and then each time it has fallen by this factor since."""
+"""and then each time the parameter has fallen by this factor since."""
 
 STEPS = 4
 """Corrections of the guess at each try on a path."""
@@ -81,26 +89,38 @@ class Finish:
             if face is None or point is None:
                 return None
             x, w = point
-            found = self._accepted(face, x, w)
-            if found is not None:
-                return found
+            if self._plausible(x, w):
+                x, solved = self._certified(face, x)
+                if solved:
+                    return x
+                w = self.problem.w(x)
             active = np.where(active, x > 0.0, w < 0.0)
         return None
 
-    def _accepted(self, face: Face, x: Array, w: Array) -> Array | None:
-        """The certified point, corrected in twice the working precision if need be; None where it does not solve."""
+    def _plausible(self, x: Array, w: Array) -> bool:
+        """Whether the signs are right to about the tolerance, so that a certificate is worth its cost."""
         lowest = -self.tolerance * self.problem.scale(x)
-        if float(x.min()) < lowest or float(w.min()) < lowest:
-            return None
-        candidate = x
-        for _ in range(3):
-            candidate = np.maximum(candidate, 0.0)
-            if certify(self.problem, candidate).solves(self.tolerance):
-                return candidate
-            candidate = face.refined(candidate)
-            if not np.isfinite(candidate).all():
-                return None
-        return None
+        return float(x.min()) >= lowest and float(w.min()) >= lowest
+
+    def _certified(self, face: Face, x: Array) -> tuple[Array, bool]:
+        """The point, clipped to x >= 0 and certified; else corrected in twice the working precision, for its signs."""
+        for _ in range(CORRECTIONS):
+            clipped = np.maximum(x, 0.0)
+            if certify(self.problem, clipped).solves(self.tolerance):
+                return clipped, True
+            better = face.refined(x)
+            if not np.isfinite(better).all():
+                break
+            x = better
+        return x, False
+
+
+def smallest_parameter(homotopy: Any, product: float) -> float:
+    """The parameter at which the products x z1 (or x y) have fallen to `product` natural units, in the median."""
+    n = homotopy.problem.n
+    y0, lam0 = homotopy.start()
+    x, w = natural_units(homotopy.problem)
+    return float(lam0 * product * x * w / np.median(y0[:n] * y0[n : 2 * n]))
 
 
 @define(eq=False, slots=False)
@@ -112,23 +132,33 @@ class Finishing:
     homotopy : KKTHomotopy or TwoVectorHomotopy
         Its first n unknowns are x.
     attempt : Finish or None
-        None in a homotopy read from an archive, which has no finish of its own.
+        None in a homotopy read from an archive, which is traced without a finish.
     next_lam : float
         The finish is tried when the parameter has fallen to this.
     """
 
     homotopy: Any
-    attempt: Finish
+    attempt: Finish | None = None
     next_lam: float = field(default=LATEST_START, init=False)
 
     def __attrs_post_init__(self) -> None:
-        # As attributes of the object itself: a wrapped call costs nothing, and each capability is found by its presence.
+        self.next_lam = min(LATEST_START, smallest_parameter(self.homotopy, LARGEST_PRODUCT))
+        # As attributes of the object itself: a call costs nothing more, and a capability is found by its presence.
         for name in CAPABILITIES:
             setattr(self, name, getattr(self.homotopy, name))
 
+    def archive_data(self) -> dict[str, Any]:
+        """The homotopy alone: what was tried is no part of the problem."""
+        return {"homotopy": self.homotopy}
+
+    @classmethod
+    def from_archive(cls, data: Mapping[str, Any]) -> Finishing:
+        """The homotopy again, without a finish."""
+        return cls(data["homotopy"])
+
     def finish(self, y: Array, lam: float) -> Array | None:
         """The certified end, its x in place of the first n unknowns; None to go on."""
-        if lam > self.next_lam:
+        if self.attempt is None or lam > self.next_lam:
             return None
         self.next_lam = SPACING * lam
         problem = self.attempt.problem

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Any
 
 import numpy as np
-from attrs import define, evolve, field, frozen
+from attrs import define, field, frozen
 
 from continuation.archive import PathLog
 from continuation.arrays import Array
@@ -16,28 +17,26 @@ from continuation.evaluation import Counts
 from continuation.path import Path
 from continuation.status import Status
 from continuation.trace import trace
+from continuation.tracer import Observer
 from problems.lcp.certificate import Certificate, certify
+from problems.lcp.faces import Mask
 from problems.lcp.finish import Finish, Finishing
-from problems.lcp.homotopies import (
-    KKTHomotopy,
-    Structure,
-    WangHomotopy,
-    XuHomotopy,
-    YuHomotopy,
-    ZhaoHomotopy,
-    random_start,
-)
+from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.padded import Padded
 from problems.lcp.problem import LCP
+from problems.lcp.restarts import FAR, TWO_VECTOR, Band, Restart, light, trace_light
 
-MAKERS: dict[str, Callable[..., Any]] = {
-    "kkt": KKTHomotopy,
-    "wang": WangHomotopy,
-    "yu": YuHomotopy,
-    "zhao": ZhaoHomotopy,
-    "xu": XuHomotopy,
-}
+MAKERS: dict[str, Callable[..., Any]] = {"kkt": KKTHomotopy, **TWO_VECTOR}
 """By the name that `solve` takes."""
+
+ROUND_OFF = 1e-15
+"""An end of this relative residual needs no polish."""
+
+STATIONARY = 1e-6
+"""Relative to the data and the point: how well the optimality conditions hold at what is called stationary."""
+
+AHEAD = 64
+"""Restarts handed to an executor before the first of them must have come back."""
 
 LARGEST_KEPT = 4_000_000
 """Numbers of path points kept in memory; of further paths only the two ends are."""
@@ -45,11 +44,14 @@ LARGEST_KEPT = 4_000_000
 
 @frozen(eq=False)
 class End:
-    """Where a path, or a finish, led: the certificate of its x, and the index of the path (-1 for none)."""
+    """Where a path, or a finish, led: the certificate of its x, and the index of the path (-1 for none).
+
+    `stationary` is whether x is the end of a KKT path, and the equations hold there.
+    """
 
     certificate: Certificate
     path: int
-    arrived: bool
+    stationary: bool
 
 
 @define(eq=False)
@@ -104,7 +106,11 @@ class Search:
         """Whether the last end is a solution."""
         return bool(self.ends) and self.ends[-1].certificate.solves(self.tolerance)
 
-    def finish_from(self, active: Array, steps: int) -> bool:
+    def accept(self, x: Array) -> None:
+        """Take a point that no path led to into account."""
+        self.ends.append(End(certify(self.problem, x), -1, False))
+
+    def finish_from(self, active: Mask, steps: int) -> bool:
         """The finish alone, from a guess of the active set."""
         if self.attempt is None:
             return False
@@ -112,17 +118,14 @@ class Search:
         x = self.attempt.settle(active, steps)
         self.counts.factorizations += self.attempt.counts.factorizations - before
         if x is not None:
-            self.ends.append(End(certify(self.problem, x), -1, True))
+            self.accept(x)
         return x is not None
 
     def follow(self, homotopy: Any, **options: Any) -> bool:
         """Trace one path to its end; whether that is a solution."""
         before = 0 if self.attempt is None else self.attempt.counts.factorizations
         traced = homotopy if self.attempt is None else Finishing(homotopy, self.attempt)
-        observers = () if self.log is None else (Padded(self.log, 3 * self.problem.n),)
-        path = trace(
-            traced, observers=observers, progress=self.progress, budget=self._left(), **{**self.options, **options}
-        )
+        path = trace(traced, observers=self._observers(), budget=self._left(), **{**options, **self.options})
         if self.attempt is not None:
             path.counts.factorizations += self.attempt.counts.factorizations - before
         self.add(path)
@@ -132,12 +135,83 @@ class Search:
         """Take a traced path into account."""
         self.counts = self.counts + path.counts
         if path.steps:
-            x = np.maximum(path.endpoint.y[: self.problem.n], 0.0)
-            self.ends.append(End(certify(self.problem, x), len(self.paths), path.status is Status.REACHED_TARGET))
+            arrived = path.status is Status.REACHED_TARGET
+            self.ends.append(End(self._certified(path, arrived), len(self.paths), arrived and self._stationary(path)))
             self._kept += len(path) * path.endpoint.u.size
         if self._kept > LARGEST_KEPT:
-            path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
+            light(path)
         self.paths.append(path)
+
+    def _stationary(self, path: Path) -> bool:
+        """Whether the end satisfies the optimality conditions of min x'w: those that the KKT homotopy relaxes."""
+        end, n = path.endpoint, self.problem.n
+        if end.y.size != 3 * n:
+            return False
+        size = STATIONARY * (1.0 + float(np.abs(self.problem.q).max()) + float(np.abs(end.y).max()))
+        lowest = min(float(end.y.min()), float(self.problem.w(end.y[:n]).min()))
+        return end.residual_norm <= size and lowest >= -size
+
+    def _certified(self, path: Path, arrived: bool) -> Certificate:
+        """The certificate of a path's end, which the finish brings to round-off where it can."""
+        x = np.maximum(path.endpoint.y[: self.problem.n], 0.0)
+        end = certify(self.problem, x)
+        if self.attempt is None or not arrived or end.relative_residual <= ROUND_OFF:
+            return end
+        before = self.attempt.counts.factorizations
+        polished = self.attempt.settle(x > end.w, 0, x)
+        self.counts.factorizations += self.attempt.counts.factorizations - before
+        return end if polished is None else certify(self.problem, polished)
+
+    def restart(
+        self, name: str, seed: int, count: int, executor: Executor | None, bands: tuple[Band, ...] = FAR
+    ) -> int:
+        """Trace restarts until one solves the problem, or the budget or the count is used up; how many were begun.
+
+        Over an executor the first solution in the order of the restarts is taken among those that are there.
+        """
+        tolerance = None if self.attempt is None else self.tolerance
+
+        def task(k: int) -> Restart:
+            return Restart(self.structure, name, bands, seed, k, tolerance, self.options)
+
+        if executor is None:
+            for k in range(count):
+                if self.exhausted:
+                    return k
+                self.add(task(k).trace(self._left(), self._observers()))
+                if self.solved:
+                    return k + 1
+            return count
+        return self._distributed(executor, [task(k) for k in range(count)])
+
+    def _distributed(self, executor: Executor, tasks: list[Restart]) -> int:
+        waiting: dict[Future[Path], Restart] = {}
+        ahead = iter(tasks)
+        begun = 0
+        try:
+            while True:
+                while len(waiting) < AHEAD and not self.exhausted and (task := next(ahead, None)) is not None:
+                    waiting[executor.submit(trace_light, task, self._left())] = task
+                    begun += 1
+                if not waiting:
+                    return begun
+                done, _ = wait(waiting, return_when=FIRST_COMPLETED)
+                for future in sorted(done, key=lambda one: waiting[one].k):
+                    del waiting[future]
+                    self.add(future.result())
+                    if self.solved:
+                        return begun
+        finally:
+            for future in waiting:
+                future.cancel()
+
+    def _observers(self) -> tuple[Observer, ...]:
+        archive = () if self.log is None else (Padded(self.log, 3 * self.problem.n),)
+        if not self.progress:
+            return archive
+        from continuation.progress import Progress
+
+        return (*archive, Progress())
 
     def _left(self) -> Budget:
         """What of the budget is left, at least a little of each."""
@@ -149,17 +223,8 @@ class Search:
         )
 
     def best(self) -> End | None:
-        """The solution, else the best end among those that reached lambda = 0, else among all."""
+        """The solution, else the best stationary point, else the end of least residual."""
         if not self.ends:
             return None
-        return min(self.ends, key=lambda end: (not end.certificate.solves(self.tolerance), not end.arrived,
+        return min(self.ends, key=lambda end: (not end.certificate.solves(self.tolerance), not end.stationary,
                                                end.certificate.residual))
-
-
-def another(name: str, search: Search, k: int, seed: int) -> Any:
-    """The k-th restart of a homotopy: its start depends on the seed and k alone."""
-    generator = np.random.default_rng([seed, k])
-    start = random_start(search.problem, generator)
-    if name == "kkt":
-        return KKTHomotopy(search.problem, start.x0, start.z1, start.z2, start.w0, structure=search.structure)
-    return MAKERS[name](search.problem, start.x0, start.w0, structure=search.structure)

@@ -7,35 +7,52 @@ times as often as starts near the solution; what tells them apart is the weight 
 
 from __future__ import annotations
 
+from collections.abc import Generator, Mapping
+from contextlib import closing
+from typing import Any
+
 import numpy as np
 from attrs import evolve, frozen
-from numpy.random import Generator
 
-from continuation.arrays import Array
+from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg
 from continuation.correctors import BorderedNewton
-from continuation.path import Path, Step
+from continuation.path import Kind, Path
 from continuation.predictors import Hermite
 from continuation.presets import Preset
-from continuation.progress import Progress
-from continuation.status import Status
 from continuation.tracer import Observer, Tracer
-from problems.lcp.finish import Finish, Finishing
-from problems.lcp.homotopies import KKTHomotopy, Start, Structure, TwoVectorHomotopy, WangHomotopy
+from problems.lcp.faces import Faces
+from problems.lcp.finish import Finish, Finishing, smallest_parameter
+from problems.lcp.homotopies import (
+    KKTHomotopy,
+    Start,
+    Structure,
+    TwoVectorHomotopy,
+    WangHomotopy,
+    XuHomotopy,
+    YuHomotopy,
+    ZhaoHomotopy,
+)
 from problems.lcp.homotopies.starts import SPREAD, natural_units
 from problems.lcp.problem import LCP
 
-SCALES = (0.7, 2.0)
-"""Ten to a power from this interval is the distance of a start, in natural units."""
+Band = tuple[float, float]
 
-WEIGHTS = 0.35
-"""Standard deviation of the decimal logarithm of the weight of z2 against z1."""
+FAR: tuple[Band, ...] = ((0.7, 1.5), (1.5, 2.5), (0.7, 1.5), (-0.3, 0.5))
+NEAR: tuple[Band, ...] = ((-0.5, 0.0),)
+"""Ten to a power from these intervals, in turn, is the distance of a start in natural units.
 
-SMALLEST = 2e-4
+Starts far out solve most, and each band solves problems that the others do not; for A >= 0 only near ones do well.
+"""
+
+WEIGHTS = (0.1, 0.02, 0.8)
+"""Standard deviation of the decimal logarithm of the weight of z2 against z1: at first, growth a restart, at most."""
+
+SMALLEST = 5e-5
 """Products x z1 below this, in natural units: what the active set is then, it remains."""
 
-LONGEST = 150
-"""Steps after which a restart is given up: few that turn so often end well, and none of them soon."""
+LONGEST = 100
+"""Steps, and n more, after which a restart is given up: few that turn so often end well, and none of them soon."""
 
 LARGEST_FRESH = 150
 """Up to this order a factorisation costs no more than the solves by which an old one is refined."""
@@ -55,22 +72,31 @@ def search_preset(n: int) -> Preset:
     )
 
 
-def distant_start(problem: LCP, generator: Generator) -> Start:
-    """A start of the KKT homotopy far out: scale, weight and components random, x z1 and w z2 each uniform.
+def restart_start(problem: LCP, generator: np.random.Generator, k: int, bands: tuple[Band, ...] = FAR) -> Start:
+    """The start of the k-th restart: scale, weight and components random, x z1 and w z2 each uniform.
 
     Parameters
     ----------
     problem : LCP
     generator : numpy.random.Generator
         Its state decides, so that restarts can be repeated.
+    k : int
+        The weights spread wider as k grows.
+    bands : tuple of intervals
+        `FAR` or `NEAR`.
     """
     x, w = natural_units(problem)
-    scale = 10.0 ** generator.uniform(*SCALES)
-    weight = 10.0 ** (WEIGHTS * generator.standard_normal())
+    scale = 10.0 ** generator.uniform(*bands[k % len(bands)])
+    first, growth, most = WEIGHTS
+    weight = 10.0 ** (min(first + growth * k, most) * generator.standard_normal())
     x0 = scale * x * generator.uniform(*SPREAD, problem.n)
     w0 = np.maximum(problem.w(x0), 0.0) + scale * w * generator.uniform(*SPREAD, problem.n)
     product = scale * scale * x * w
     return Start(x0, product / x0, weight * product / w0, w0)
+
+
+TWO_VECTOR = {"wang": WangHomotopy, "yu": YuHomotopy, "zhao": ZhaoHomotopy, "xu": XuHomotopy}
+"""The homotopies in (x, y), by the names that `solve` takes."""
 
 
 @frozen(eq=False)
@@ -79,22 +105,73 @@ class Restart:
 
     Attributes
     ----------
-    problem : LCP
+    structure : Structure
+        Of the problem.
     name : str
-        "kkt" or another homotopy's name, for which x0 and w0 of the start serve.
+        "kkt", or that of a homotopy in (x, y).
+    bands : tuple of intervals
+        How far out it may begin.
     seed, k : int
-    tolerance : float
-        Of the certificate; NaN to switch the finish off.
+    tolerance : float or None
+        Of the finish; None to go without it.
+    options : mapping
+        For the tracer, over those of `search_preset`.
     """
 
-    problem: LCP
+    structure: Structure
     name: str
+    bands: tuple[Band, ...]
     seed: int
     k: int
+    tolerance: float | None
+    options: Mapping[str, Any]
 
-    def homotopy(self, structure: Structure) -> KKTHomotopy | TwoVectorHomotopy:
+    def homotopy(self) -> KKTHomotopy | TwoVectorHomotopy:
         """The homotopy at its start."""
-        start = distant_start(self.problem, np.random.default_rng([self.seed, self.k]))
+        problem = self.structure.problem
+        start = restart_start(problem, np.random.default_rng([self.seed, self.k]), self.k, self.bands)
         if self.name == "kkt":
-            return KKTHomotopy(self.problem, start.x0, start.z1, start.z2, start.w0, structure=structure)
-        return WangHomotopy(self.problem, start.x0, start.w0, structure=structure)
+            return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=self.structure)
+        return TWO_VECTOR[self.name](problem, start.x0, start.w0, structure=self.structure)
+
+    def trace(self, budget: Budget, observers: tuple[Observer, ...] = ()) -> Path:
+        """The path, to its end or until it is given up; its counts hold those of the finish too."""
+        homotopy = self.homotopy()
+        n = self.structure.n
+        options = {"preset": search_preset(n), "tolerance": TRACE_TOLERANCE, **self.options}
+        finish = None if self.tolerance is None else Finish(Faces(self.structure), self.tolerance)
+        traced = homotopy if finish is None else Finishing(homotopy, finish)
+        tracer = Tracer(traced, budget=budget, observers=observers, **options)
+        with closing(_reasons(tracer, homotopy, finish is not None)) as reasons:
+            reason = next(reasons, "")
+        if reason:
+            tracer.path.message = f"Given up: {reason}."
+        if finish is not None:
+            tracer.path.counts.factorizations += finish.counts.factorizations
+        return tracer.path
+
+
+def _reasons(
+    tracer: Tracer, homotopy: KKTHomotopy | TwoVectorHomotopy, impatient: bool
+) -> Generator[str, None, None]:
+    """Trace, and yield a reason to give up whenever there is one: a path among many is not followed at any price."""
+    least, longest = smallest_parameter(homotopy, SMALLEST), LONGEST + homotopy.n
+    for step in tracer:
+        if not impatient or step.kind != Kind.REGULAR:
+            continue
+        if step.lam < least:
+            yield "so near the end the active set no longer changes, and it is not that of a solution"
+        elif step.index >= longest:
+            yield f"it has not ended after {step.index} steps"
+
+
+def light(path: Path) -> Path:
+    """The same path with only its two ends, and no curve between them."""
+    if path.steps:
+        path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
+    return path
+
+
+def trace_light(restart: Restart, budget: Budget) -> Path:
+    """What a worker does: trace a restart and send back what is small enough to send."""
+    return light(restart.trace(budget))

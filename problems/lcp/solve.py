@@ -2,34 +2,53 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 from concurrent.futures import Executor
 from contextlib import nullcontext
+from numbers import Integral, Real
 from os import PathLike
 from typing import Any
 
+import numpy as np
+from attrs import evolve
+
 from continuation.archive import PathLog
+from continuation.arrays import Array
 from continuation.budget import Budget
+from continuation.presets import FAST
+from continuation.tracer import Tracer
+from problems.lcp.cascade import guess, suitable
+from problems.lcp.certificate import certify
 from problems.lcp.faces import Faces
 from problems.lcp.feasible import NoStrictlyFeasiblePoint
 from problems.lcp.finish import Finish
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.starts import positive_vector
 from problems.lcp.infeasible import Farkas, farkas
+from problems.lcp.look import Look, look
 from problems.lcp.outcome import Outcome, Solution
-from problems.lcp.portfolio import MAKERS, Search, another
+from problems.lcp.portfolio import MAKERS, Search
 from problems.lcp.problem import LCP
+from problems.lcp.restarts import FAR, NEAR
+from problems.lcp.scaling import Scaled, balanced
 
 HOMOTOPIES = ("auto", "kkt", "wang", "yu", "zhao", "xu")
 
 FIRST_STEPS = 30
 """Corrections of the active set before any path."""
 
+LEAST_STEPS = 1000
+"""The same for a Z-matrix, where every correction makes the active set larger until it is right."""
+
 LARGEST_PROOF = 300
 """The largest order at which a proof that there is no solution is looked for unasked."""
 
+LARGEST_EARLY_PROOF = 40
+"""Up to this order the linear program costs less than a path, so it comes first."""
+
 NEARLY = 1e-5
-"""An end that solves the problem to this, and not to the tolerance, is an inaccurate solution, not a stationary point."""
+"""An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
 
 
 def solve(
@@ -69,11 +88,11 @@ def solve(
     tolerance : float
         What `Certificate.solves` is asked before anything is called a solution.
     archive : path, optional
-        A new HDF5 file for every path traced. With it the path is traced even where the finish alone would do.
+        A new HDF5 file for every path traced. With it paths are traced even where the finish alone would do.
     progress : bool
         A progress bar a path (needs tqdm).
     executor : concurrent.futures.Executor, optional
-        For the restarts.
+        For the restarts; not together with an archive.
     **options
         As for `continuation.trace`: preset, predictor, corrector, controller, ...
 
@@ -94,47 +113,121 @@ def solve(
         raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
     if homotopy not in HOMOTOPIES:
         raise ValueError(f"homotopy: expected one of {', '.join(HOMOTOPIES)}, found {homotopy!r}")
-    structure = Structure(problem)
-    attempt = Finish(Faces(structure), tolerance) if finish else None
+    _check_options(tolerance, restarts, options)
     if restarts is None:
         restarts = min(10 * problem.n, 1000) if homotopy == "auto" else 0
-    budget = budget if budget is not None else Budget(steps=math.inf, seconds=60.0)
-    log = None if archive is None else PathLog(archive)
-    with log if log is not None else nullcontext():
-        search = Search(structure, attempt, tolerance, budget, log, progress, options)
-        return _search(search, homotopy, x0, restarts, seed)
-
-
-def _search(search: Search, homotopy: str, x0: Any, restarts: int, seed: int) -> Solution:
-    problem = search.problem
+    if archive is not None and executor is not None:
+        raise ValueError("executor: expected None with an archive, which one process writes")
     start = None if x0 is None else positive_vector("x0", x0, problem.n)
-    names = ("wang", "kkt") if homotopy == "auto" else (homotopy,)
-    if search.log is None:
-        if search.finish_from(problem.q < 0.0, FIRST_STEPS):
-            return _answer(search, "Solved before any path: by the active-set method from x = 0.")
-        if start is not None and search.finish_from(start > problem.w(start), FIRST_STEPS):
-            return _answer(search, "Solved before any path: by the active-set method from x0.")
-    for name in names:
-        try:
-            path = MAKERS[name](problem, start, structure=search.structure)
-        except NoStrictlyFeasiblePoint as error:
-            return _infeasible(search, error)
-        if search.follow(path):
-            return _answer(search, f"Solved by the path of the {name} homotopy.")
-        if search.exhausted:
-            return _failure(search, f"The budget is used up: {search.exhausted}.")
-    if problem.n <= LARGEST_PROOF and homotopy == "auto":
+    scaled = balanced(problem) if homotopy == "auto" else None
+    structure = Structure(problem if scaled is None else scaled.problem)
+    search = Search(
+        structure,
+        Finish(Faces(structure), tolerance) if finish else None,
+        tolerance,
+        budget if budget is not None else Budget(steps=math.inf, seconds=60.0),
+        None if archive is None else PathLog(archive),
+        progress,
+        options,
+    )
+    with search.log if search.log is not None else nullcontext():
+        if homotopy != "auto":
+            return _named(search, homotopy, start, restarts, seed, executor)
+        if scaled is None:
+            return _automatic(search, start, restarts, seed, executor)
+        start = None if start is None else scaled.u(start)
+        return _unscaled(problem, scaled, _automatic(search, start, restarts, seed, executor), tolerance)
+
+
+def _check_options(tolerance: Any, restarts: Any, options: dict[str, Any]) -> None:
+    """Refuse what would otherwise show late, or, where no path is traced, never."""
+    if not isinstance(tolerance, Real) or not 0.0 < float(tolerance) < 1.0:
+        raise ValueError(f"tolerance: expected a number between 0 and 1, found {tolerance!r}")
+    if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
+        raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
+    known = set(inspect.signature(Tracer).parameters) - {"homotopy", "observers", "state", "start"}
+    unknown = set(options) - known
+    if unknown:
+        raise TypeError(f"options: expected some of {', '.join(sorted(known))}, found {', '.join(sorted(unknown))}")
+
+
+def _unscaled(problem: LCP, scaled: Scaled, answer: Solution, tolerance: float) -> Solution:
+    """The answer for the problem as given, judged anew there."""
+    message = f"{answer.message} Rows and columns were scaled by powers of two; the paths are in scaled units."
+    certificate = None if answer.x is None else certify(problem, scaled.x(answer.x))
+    outcome = answer.outcome
+    if outcome is Outcome.SOLVED and certificate is not None and not certificate.solves(tolerance):
+        outcome = Outcome.NOT_FOUND
+        message += f" Unscaled, the solution misses the tolerance: its residual is {certificate.residual:.1e}."
+    if outcome is Outcome.UNSOLVABLE:
         proof = farkas(problem)
-        if proof is not None:
-            return _answer(search, str(Outcome.UNSOLVABLE), proof)
-    tried = 0
-    while tried < restarts and not search.exhausted:
-        name = "kkt" if homotopy == "auto" else homotopy
-        solved = search.follow(another(name, search, tried, seed))
-        tried += 1
-        if solved:
-            return _answer(search, f"Solved by a path of the {name} homotopy from random start {tried} (seed {seed}).")
-    return _failure(search, f"Restarts from random starts: {tried} (seed {seed}).")
+        if proof is None:
+            outcome = Outcome.NOT_FOUND
+        return evolve(answer, problem=problem, outcome=outcome, certificate=certificate, message=message, farkas=proof)
+    return evolve(answer, problem=problem, outcome=outcome, certificate=certificate, message=message)
+
+
+def _automatic(search: Search, x0: Array | None, restarts: int, seed: int, executor: Executor | None) -> Solution:
+    """The portfolio: what is cheap and cannot mislead first."""
+    problem = search.problem
+    if (problem.q >= 0.0).all():
+        search.accept(np.zeros(problem.n))
+        return _answer(search, "q >= 0, so x = 0 is a solution.")
+    known = look(search.structure)
+    said = f"A is {known}."
+    if search.log is None and _finished_first(search, known, x0):
+        return _answer(search, f"{said} Solved by active sets alone, before any path.")
+    early = problem.n <= LARGEST_EARLY_PROOF
+    for name in known.names:
+        first = name == known.names[0]
+        if first and early and (proof := farkas(problem)) is not None:
+            return _answer(search, f"{said} A linear program gave the proof.", proof)
+        if search.follow(MAKERS[name](problem, x0, structure=search.structure), preset=FAST):
+            return _answer(search, f"{said} Solved by the path of the {name} homotopy.")
+        if search.exhausted:
+            return _failure(search, said, 0, seed)
+        if first and not early and (proof := _proof(problem)) is not None:
+            return _answer(search, f"{said} A linear program gave the proof.", proof)
+    tried = search.restart("kkt", seed, restarts, executor, NEAR if known.nonnegative else FAR)
+    if search.solved:
+        return _answer(search, f"{said} Solved by a path of the kkt homotopy from random start {tried} (seed {seed}).")
+    return _failure(search, said, tried, seed)
+
+
+def _finished_first(search: Search, known: Look, x0: Array | None) -> bool:
+    """Active sets alone: from coarser problems where A is of that kind, from x = 0, from x0."""
+    problem = search.problem
+    if suitable(search.structure) and search.finish_from(guess(problem) > 0.0, FIRST_STEPS):
+        return True
+    steps = min(problem.n, LEAST_STEPS) if known.z_matrix else FIRST_STEPS
+    if search.finish_from(problem.q < 0.0, steps):
+        return True
+    return x0 is not None and search.finish_from(x0 > problem.w(x0), FIRST_STEPS)
+
+
+def _named(
+    search: Search, name: str, x0: Array | None, restarts: int, seed: int, executor: Executor | None
+) -> Solution:
+    """One homotopy, as asked for."""
+    try:
+        homotopy = MAKERS[name](search.problem, x0, structure=search.structure)
+    except NoStrictlyFeasiblePoint as error:
+        proof = error.certificate
+        return _answer(search, str(error), proof if proof is not None and proof.no_feasible_point else None)
+    if search.follow(homotopy):
+        return _answer(search, f"By the path of the {name} homotopy.")
+    proof = _proof(search.problem)
+    if proof is not None:
+        return _answer(search, "A linear program gave the proof.", proof)
+    tried = search.restart(name, seed, restarts, executor)
+    if search.solved:
+        return _answer(search, f"By a path of the {name} homotopy from random start {tried} (seed {seed}).")
+    return _failure(search, "", tried, seed)
+
+
+def _proof(problem: LCP) -> Farkas | None:
+    """An exact proof that there is no feasible point, where looking for it is cheap."""
+    return farkas(problem) if problem.n <= LARGEST_PROOF else None
 
 
 def _answer(search: Search, message: str, proof: Farkas | None = None) -> Solution:
@@ -144,7 +237,7 @@ def _answer(search: Search, message: str, proof: Farkas | None = None) -> Soluti
         outcome = Outcome.SOLVED
     elif proof is not None:
         outcome = Outcome.UNSOLVABLE
-    elif end is not None and end.arrived and not end.certificate.solves(NEARLY):
+    elif end is not None and end.stationary and not end.certificate.solves(NEARLY):
         outcome = Outcome.STATIONARY
     return Solution(
         search.problem,
@@ -159,11 +252,9 @@ def _answer(search: Search, message: str, proof: Farkas | None = None) -> Soluti
     )
 
 
-def _failure(search: Search, message: str) -> Solution:
-    last = f"The last path: {search.paths[-1].message}" if search.paths else ""
-    return _answer(search, f"{message} {last}".strip())
-
-
-def _infeasible(search: Search, error: NoStrictlyFeasiblePoint) -> Solution:
-    proof = error.certificate
-    return _answer(search, str(error), proof if proof is not None and proof.no_feasible_point else None)
+def _failure(search: Search, said: str, tried: int, seed: int) -> Solution:
+    """Nothing solved: what the paths came to, and how many there were."""
+    first = f"The first path: {search.paths[0].message}" if search.paths else ""
+    restarts = f"Restarts from random starts: {tried} (seed {seed})." if tried else "No restarts were tried."
+    spent = f"The budget is used up: {search.exhausted}." if search.exhausted else ""
+    return _answer(search, " ".join(part for part in (said, first, restarts, spent) if part))

@@ -1,0 +1,115 @@
+"""The ready studies: their problems, their truths, and that small ones run."""
+
+import numpy as np
+import pytest
+
+import continuation
+from continuation import chart
+from continuation.checks import check_jacobian
+from problems import lcp
+from problems.charts import engine, families, order, rivals, robustness, scaling, subjects
+from problems.charts import lcp as lcp_charts
+from problems.charts.chandrasekhar import Chandrasekhar
+from problems.lcp.classes.exact import principal_minors
+
+MODULES = (engine, lcp_charts, order, scaling, robustness)
+
+
+@pytest.mark.parametrize("module", MODULES, ids=lambda module: module.__name__.rpartition(".")[2])
+def test_every_study_can_be_made(module):
+    found = module.studies("smoke", False)
+    assert len({study.name for study in found}) == len(found)
+    assert all(study.problems and study.methods and study.errors for study in found)
+
+
+@pytest.mark.parametrize("n", [1, 7])
+def test_the_h_equation_turns_where_it_should(n):
+    homotopy = Chandrasekhar(n)
+    assert check_jacobian(homotopy, np.append(np.linspace(1.0, 2.0, n), 0.7)).correct
+    end = continuation.TargetValue(0.5, direction=-1)
+    path = continuation.trace(homotopy, direction=1, events=[end])
+    (fold,) = path.turning_points
+    assert fold.lam == pytest.approx(1.0, abs=1e-12)
+    assert fold.y.mean() == pytest.approx(2.0, abs=1e-6)
+    assert path.endpoint.y.mean() == pytest.approx(2.0 * (1.0 + np.sqrt(0.5)) / 0.5, rel=1e-10)
+
+
+@pytest.mark.parametrize("family", families.FAMILIES)
+def test_a_planted_problem_has_a_solution_and_depends_on_the_seed_alone(family):
+    problem = families.planted(family, 6, 3)
+    again, other = families.planted(family, 6, 3), families.planted(family, 6, 4)
+    np.testing.assert_array_equal(problem.q, again.q)
+    assert (problem.q != other.q).any()
+    assert lcp.solve_by_enumeration(problem)
+
+
+def test_the_families_are_what_they_are_called():
+    random = np.random.default_rng(0)
+    for _ in range(5):
+        symmetric = families.semidefinite(random, 5)
+        assert np.linalg.eigvalsh(symmetric + symmetric.T).min() > -1e-12
+        scaled = (1e6 * families.scaled_p(random, 4)).round().astype(int).tolist()
+        assert min(principal_minors(scaled)) > 0
+        negative = (1e6 * families.n_matrix(random, 4)).round().astype(int).tolist()
+        assert max(principal_minors(negative)[1:]) < 0
+    with pytest.raises(ValueError, match="family: expected one of"):
+        families.planted("none", 2, 0)
+
+
+def test_the_truths_agree_with_an_accurate_trace():
+    problem = subjects.freudenstein()
+    reference = chart.reference(problem.subject)
+    np.testing.assert_allclose(problem.truth.end, reference.end, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(problem.truth.turning_points, reference.turning_points, rtol=0, atol=1e-9)
+    length = chart.ARCLENGTH.measure(problem, chart.Answer(continuation.Counts(), continuation.trace(problem.subject)))
+    assert length < 1e-8
+
+
+def test_the_plain_loop_arrives_and_is_counted():
+    study = chart.Study(
+        name="loop",
+        problems=[subjects.freudenstein()],
+        methods=[rivals.scipy_loop()],
+        ladder=chart.tolerances(1e-8),
+        errors=[chart.END_POINT],
+        repeats=0,
+    )
+    (row,) = chart.run(study).rows
+    assert not row.failed
+    assert row.errors["end_point"] < 1e-10
+    assert row.counts.factorizations > 0
+
+
+def test_methods_for_the_lcp_are_judged_by_the_certificate():
+    problem = lcp_charts.problem("semidefinite", 5, 0)
+    wrong = lcp_charts.direct("wrong", lambda p: (np.zeros(5), continuation.Counts(), "made up"))
+    none = lcp_charts.direct("none", lambda p: (None, continuation.Counts(), "a ray"))
+    methods = [lcp_charts.path("KKT", lcp.KKTHomotopy), *lcp_charts.references(), wrong, none]
+    study = chart.Study(
+        name="judged",
+        problems=[problem],
+        methods=methods,
+        ladder=chart.tolerances(1e-8),
+        errors=[lcp_charts.RESIDUAL],
+        repeats=0,
+    )
+    rows = {row.method: row for row in chart.run(study).rows}
+    assert {name: row.failure for name, row in rows.items()} == {
+        "KKT": "", "Lemke": "", "modulus": "", "min-Newton": "", "wrong": "wrong end", "none": "stopped"
+    }  # fmt: skip
+    assert rows["KKT"].errors["natural_residual"] < 1e-12
+    path = continuation.trace(lcp.KKTHomotopy(problem.subject))
+    assert rows["KKT"].counts == path.counts
+    assert rows["none"].message == "a ray"
+
+
+def test_the_study_of_orders_names_the_order_that_is_taken():
+    (study,) = order.studies("smoke", False)
+    results = chart.run(study)
+    assert not any(row.failed for row in results.rows)
+    by_name = {row.problem: row for row in results.rows}
+    dense = by_name["H-equation, n = 10"]
+    assert order.unknowns(dense) == len(Chandrasekhar(10).start()[0]) + 1
+    assert order.unknowns(by_name["KKT, n = 10"]) == 31
+    table = order.CostModel().table(results)
+    assert [line[0] for line in table.rows] == results.problems

@@ -1,0 +1,229 @@
+"""Paths under strain: close folds, near-singular and badly scaled matrices, weights, degenerate and double ends.
+
+The rule asserted throughout: an end that is claimed is right, and where it cannot be reached the status says so.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from continuation import CONSERVATIVE, DEFAULT, SERIES, Status, trace
+from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, solve, solve_by_enumeration
+from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, near_singular_lcps, planted_lcps
+
+PRESETS = pytest.mark.parametrize("preset", [DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
+
+
+def share(examples):
+    """So many examples in the default profile, a hundred times as many in the nightly one."""
+    return settings(max_examples=settings.default.max_examples * examples // 100)
+
+
+def x_at_end(problem, path):
+    return np.maximum(path.endpoint.y[: problem.n], 0.0)
+
+
+# --- turning points that come close ------------------------------------------------------------------------
+
+MERGE = 3.9121535
+"""Where the two turning points of the family below merge, from their distance at eight values of a beyond."""
+
+
+def folding(a):
+    """A row sufficient matrix, a start from which lambda turns twice for a > MERGE, and not at all for a < MERGE."""
+    problem = LCP([[0, -a], [1, 0]], [5, 2])
+    return KKTHomotopy(problem, [2.0, 1.0])
+
+
+@PRESETS
+@pytest.mark.parametrize("a", [4.5, MERGE + 4e-3, MERGE + 1e-3])
+def test_two_close_turning_points_are_found_and_are_folds(preset, a):
+    """H_y is singular at each, the path between them runs backwards, and all presets agree to nine digits."""
+    homotopy = folding(a)
+    path = trace(homotopy, preset=preset)
+    first, second = path.turning_points
+    assert first.lam < second.lam
+    for turn, reference in zip(path.turning_points, trace(homotopy).turning_points):
+        values = np.linalg.svd(homotopy.jacobian(turn.y, turn.lam)[0], compute_uv=False)
+        assert values[-1] < 1e-9 * values[-2]
+        np.testing.assert_allclose(turn.u, reference.u, rtol=0, atol=1e-7)
+        assert turn.lam == pytest.approx(reference.lam, abs=1e-9)
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y[:2], 0.0, atol=1e-8)
+
+
+def test_the_gap_between_them_shrinks_as_at_a_cusp():
+    """As the power 3/2 of the distance from the merger, down to 2e-6 in lambda."""
+    gaps = {}
+    for d in (4e-3, 2e-3, 1e-3, 5e-4):
+        first, second = trace(folding(MERGE + d)).turning_points
+        gaps[d] = (second.lam - first.lam) / d**1.5
+    assert list(gaps.values()) == pytest.approx([0.206] * 4, rel=3e-3)
+
+
+@PRESETS
+@pytest.mark.parametrize("d", [-1e-2, -1e-3, -1e-6, 1e-6, 1e-4])
+def test_close_to_the_merger_none_or_both_are_found_and_the_end_is_the_same(preset, d):
+    """A pair inside one step may be missed, never one of the two: the orientation goes on as it was."""
+    path = trace(folding(MERGE + d), preset=preset)
+    assert len(path.turning_points) in ((0,) if d < -1e-4 else (0, 2))
+    assert {step.orientation for step in path.steps[1:]} == {-1}
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y[:2], 0.0, atol=1e-8)
+
+
+# --- near-singular and badly scaled matrices ---------------------------------------------------------------
+
+
+@share(60)
+@given(near_singular_lcps())
+def test_near_singular_matrices_stop_near_the_end_if_at_all(pair):
+    """A power of two from singular: the path arrives, or stops where a singular end begins, and says that it did."""
+    problem, x0 = pair
+    path = trace(KKTHomotopy(problem, x0))
+    if path.status is not Status.REACHED_TARGET:
+        assert path.status is Status.STEP_TOO_SMALL
+        assert "singular point" in path.message
+        assert path.endpoint.lam < 1e-4
+    assert np.isfinite(path.y).all()
+
+
+@share(40)
+@given(near_singular_lcps(st.integers(1, 3)))
+def test_near_singular_problems_are_called_solved_only_when_they_are(pair):
+    """To the tolerance of the certificate, whatever way the solver took."""
+    problem, x0 = pair
+    solution = solve(problem, "kkt", x0=x0)
+    if solution.outcome is Outcome.SOLVED:
+        assert certify(problem, solution.x).solves(1e-10)
+    else:
+        assert solution.outcome in (Outcome.STATIONARY, Outcome.NOT_FOUND)
+        assert not certify(problem, solution.x).solves(1e-10)
+
+
+@share(40)
+@given(badly_scaled_lcps("P"))
+def test_badly_scaled_problems_are_solved(pair):
+    """Units between 2^-26 and 2^26, ratios beyond 1e15: the certificate's residual, in the units of q."""
+    problem, _ = pair
+    solution = solve(problem)
+    assert solution.outcome is Outcome.SOLVED
+    assert solution.certificate.solves(1e-10)
+
+
+@share(15)
+@given(st.data())
+def test_weights_of_a_ratio_of_1e8_do_not_matter(data):
+    """Row sufficient, z1 and z2 each between 1e-4 and 1e4: the path is another one, its end solves."""
+    problem, x0 = data.draw(feasible_lcps("row_sufficient", st.integers(1, 3)))
+    powers = data.draw(st.lists(st.integers(-4, 4), min_size=2 * problem.n, max_size=2 * problem.n))
+    z1, z2 = np.split(10.0 ** np.array(powers), 2)
+    path = trace(KKTHomotopy(problem, x0, z1, z2))
+    assert path.status is Status.REACHED_TARGET
+    assert certify(problem, x_at_end(problem, path)).solves(1e-8)
+
+
+@PRESETS
+def test_one_heavy_and_one_light_weight(preset):
+    """The extreme, 1e4 against 1e-4 in every pair: the unique solution of a P-matrix, still to ten digits."""
+    problem = LCP([[2, 1, 0], [-3, 2, 1], [1, -2, 4]], [-4, 5, -1])
+    (solution,) = solve_by_enumeration(problem).solutions
+    homotopy = KKTHomotopy(problem, [3.0, 1.0, 1.0], [1e4, 1e-4, 1e4], [1e-4, 1e4, 1e-4])
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y[:3], solution.point, rtol=0, atol=1e-10)
+
+
+@pytest.mark.xfail(strict=True, reason="the endgame asks Newton for more digits than there are")
+@pytest.mark.parametrize("preset", [DEFAULT, SERIES], ids=lambda preset: preset.name)
+def test_an_end_inside_a_face_of_solutions(preset):
+    """Row sufficient, A singular, all w = 0 on a segment: near its inside the condition of H' is about 1/lambda^2."""
+    problem = LCP([[0, -6, -18], [4, 0, -12], [6, 6, 0]], [61, 18, -34])
+    path = trace(KKTHomotopy(problem, [2.0, 4.0, 2.0]), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert certify(problem, x_at_end(problem, path)).solves(1e-8)
+
+
+@pytest.mark.xfail(strict=True, reason="a division by zero where the tangent has no share of lambda")
+def test_extreme_units_raise_no_warning():
+    """One unknown in units of 2^-23, its row in units of 2^26."""
+    path = trace(KKTHomotopy(LCP([[2.0**49]], [-5 * 2.0**24]), [3 * 2.0**-24]))
+    assert path.endpoint.y.shape == (3,)
+
+
+# --- ends: degenerate, double, without a solution ----------------------------------------------------------
+
+
+@PRESETS
+@pytest.mark.parametrize("n", [1, 2, 8])
+@pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
+def test_all_pairs_zero_is_an_end_of_half_powers(make, n, preset):
+    """LCP(0, I): x = w = 0, where x and w go like the square root of lambda; the endgame's limit has all digits."""
+    path = trace(make(LCP(np.eye(n), np.zeros(n)), np.arange(1.0, n + 1.0)), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.winding_number == 2
+    assert "lam - target|^(1/2)" in path.message
+    assert path.endpoint.y.max() < 1e-12
+    assert path.end_error < 1e-7
+
+
+@share(25)
+@given(planted_lcps("degenerate", "P", st.integers(1, 3)))
+def test_degenerate_vertices_of_p_matrices(pair):
+    """Some x_i = w_i = 0, which only the half power reaches: the solution to ten digits, from an infeasible start."""
+    problem, x = pair
+    path = trace(KKTHomotopy(problem))
+    assert path.status is Status.REACHED_TARGET
+    assert path.winding_number == 2
+    np.testing.assert_allclose(x_at_end(problem, path), x, rtol=1e-9, atol=1e-9)
+
+
+@share(25)
+@given(planted_lcps("degenerate", "any", st.integers(1, 3)))
+def test_degenerate_vertices_of_any_matrix(pair):
+    """Solvable by construction: SOLVED, or another end that says what it is."""
+    problem, _ = pair
+    solution = solve(problem, "kkt", finish=False)
+    if solution.outcome is Outcome.SOLVED:
+        assert certify(problem, solution.x).solves(1e-10)
+    else:
+        assert solution.outcome in (Outcome.STATIONARY, Outcome.NOT_FOUND)
+
+
+@PRESETS
+@pytest.mark.parametrize("q", [1e-2, 1e-4])
+def test_two_solutions_close_together(preset, q):
+    """LCP(q, -1) has the solutions 0 and q; the path ends at one of them, not between (q/2 is stationary)."""
+    path = trace(KKTHomotopy(LCP([[-1]], [q]), [1.0]), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert min(abs(path.endpoint.y[0] - x) for x in (0.0, q)) < 1e-8
+
+
+@pytest.mark.parametrize("q", [1e-6, 1e-8, 1e-12, 0.0])
+def test_two_solutions_within_the_tolerance(q):
+    """Nearer than the tolerance, and where they are one, the path ends in the gap; `solve` finds a solution exactly."""
+    problem = LCP([[-1]], [q])
+    path = trace(KKTHomotopy(problem, [1.0]))
+    assert path.status is Status.REACHED_TARGET
+    assert -1e-12 <= path.endpoint.y[0] <= q + 1e-12
+    solution = solve(problem)
+    assert solution.outcome is Outcome.SOLVED
+    assert solution.residual <= 1e-12
+
+
+def test_no_solution_by_a_hair_is_proved():
+    """LCP(-1e-8, -1) is infeasible: a Farkas vector, not an end that nearly solves."""
+    solution = solve(LCP([[-1]], [-1e-8]))
+    assert solution.outcome is Outcome.UNSOLVABLE
+    assert solution.farkas is not None
+
+
+def test_the_path_of_wang_runs_off_where_there_is_nothing_to_find():
+    """On LCP(2, -1) it could end at 0 or 2, and on the counterexamples nowhere: DIVERGED, and the parameter stalls."""
+    for problem in (LCP([[0, 1], [0, 0]], [-1, 1]), LCP([[1, 1], [1, -1]], [-1, -2])):
+        path = trace(WangHomotopy(problem))
+        assert path.status is Status.DIVERGED
+        assert "runs off to infinity" in path.message
+        assert path.endpoint.lam > 1e-3
+        assert np.abs(path.endpoint.y).max() > 1e3

@@ -1,0 +1,204 @@
+"""The KKT path, one theorem a test: its start, its course, its end.
+
+Numbers are those of Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity
+Problems". Where their statement is wrong (3.7, 3.9) or unproven (3.4) the test is of what is true in its place.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from continuation import Status, Tracer, trace
+from problems.lcp import LCP, KKTHomotopy, certify, random_start
+from problems.lcp.classes.exact import ExactMatrix
+from problems.lcp.classes.exact import determinant as integer_determinant
+from problems.lcp.strategies import feasible_lcps, lcps
+
+SMALL = 1e-7
+"""Relative size below which a number at the end of a path counts as zero; most ends are good to 1e-12."""
+
+
+def share(examples):
+    """So many examples in the default profile, a hundred times as many in the nightly one."""
+    return settings(max_examples=settings.default.max_examples * examples // 100)
+
+
+def kkt_path(pair, **options):
+    """The path of the paper's start z1 = z2 = e."""
+    problem, x0 = pair
+    return trace(KKTHomotopy(problem, x0), **options)
+
+
+def determinant(M):
+    """Exact, in the units of the floats of M."""
+    exact = ExactMatrix.of(M)
+    return Fraction(integer_determinant(exact.entries), exact.scale**exact.n)
+
+
+def small(value, *sizes):
+    return np.abs(value) <= SMALL * (1.0 + max(float(np.abs(size).max()) for size in sizes))
+
+
+# --- the start ---------------------------------------------------------------------------------------------
+
+
+@share(50)
+@given(feasible_lcps())
+def test_the_start_is_regular(pair):
+    """Theorem 3.1: det H_y(y0, 1) = prod x0_i w0_i > 0; exactly, on integers."""
+    problem, x0 = pair
+    homotopy = KKTHomotopy(problem, x0)
+    y0, lam0 = homotopy.start()
+    assert not homotopy.residual(y0, lam0).any()
+    H_y, _ = homotopy.jacobian(y0, lam0)
+    assert determinant(H_y) == int(np.prod(x0) * np.prod(problem.w(x0))) > 0
+
+
+@share(50)
+@given(feasible_lcps())
+def test_the_determinant_is_negative_in_the_positive_direction(pair):
+    """Theorem 3.10: det [[H'], [tau']] < 0 at the start for the direction tau in which lambda falls."""
+    problem, x0 = pair
+    homotopy = KKTHomotopy(problem, x0)
+    y0, lam0 = homotopy.start()
+    H_y, H_lam = homotopy.jacobian(y0, lam0)
+    tau = np.append(np.linalg.solve(H_y, H_lam), -1.0)
+    assert determinant(np.vstack([np.column_stack([H_y, H_lam]), tau])) < 0
+    tracer = Tracer(homotopy)
+    assert next(iter(tracer)).tangent[-1] < 0
+    assert tracer.state.orientation == homotopy.bordered(y0, lam0, tau).sign == -1
+
+
+# --- the course --------------------------------------------------------------------------------------------
+
+
+@share(40)
+@given(feasible_lcps())
+def test_the_path_of_a_feasible_start_is_feasible_throughout(pair):
+    """Theorem 3.1: the curve lies in F x R++ x R++: x, z1, z2 and A x + q are positive at every step."""
+    problem, _ = pair
+    for step in kkt_path(pair).steps[:-1]:
+        assert step.lam > 0
+        assert step.y.min() > 0
+        assert problem.w(step.y[: problem.n]).min() > 0
+
+
+@share(40)
+@given(lcps(), st.integers(0, 2**32 - 1))
+def test_the_path_of_any_positive_start_is_positive_throughout(problem, seed):
+    """The same off the feasible set, with w = A x + q + lambda (w0 - A x0 - q) in the place of A x + q."""
+    start = random_start(problem, np.random.default_rng(seed))
+    homotopy = KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0)
+    for step in trace(homotopy).steps[:-1]:
+        assert step.y.min() > 0
+        assert (problem.w(step.y[: problem.n]) + step.lam * homotopy.rho).min() > 0
+
+
+@share(40)
+@given(feasible_lcps())
+def test_the_path_is_an_interval_that_ends_at_lambda_zero(pair):
+    """Theorem 3.5: not a circle, and never back at lambda = 1, where y0 is the only zero.
+
+    That it is bounded (Theorem 3.4) is not proved in the paper, nor here; no counterexample is known.
+    """
+    path = kkt_path(pair)
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.lam == 0.0
+    assert (path.lam[1:] < 1.0).all()
+
+
+@share(40)
+@given(feasible_lcps("PSD"))
+def test_semidefinite_matrices_give_monotone_paths_and_definite_matrices(pair):
+    """A PSD, symmetric or not: G = (1 - lam) [A + A' + diag(z1/x) + A' diag(z2/w) A] + lam I > 0, so lambda falls.
+
+    G is taken as the rational matrix that it is in floats, its leading minors exactly.
+    """
+    problem, _ = pair
+    n, A = problem.n, problem.A
+    path = kkt_path(pair)
+    assert not path.turning_points
+    assert (np.diff(path.lam) < 0).all()
+    for step in path.steps[:-1]:
+        x, z1, z2 = step.y[:n], step.y[n : 2 * n], step.y[2 * n :]
+        inner = A + A.T + np.diag(z1 / x) + A.T @ np.diag(z2 / problem.w(x)) @ A
+        minors = ExactMatrix.of((1 - step.lam) * inner + step.lam * np.eye(n)).minors
+        assert all(minors[(1 << k) - 1] > 0 for k in range(1, n + 1))
+        assert step.tangent[-1] < 0
+
+
+# --- the end -----------------------------------------------------------------------------------------------
+
+
+@share(60)
+@given(feasible_lcps())
+@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
+@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+def test_the_quadratic_identity_at_the_end(pair):
+    """With dx = x - z2, dw = w - z1: A' dx = -dw and x_i w_i + z1_i z2_i = dx_i dw_i >= 0 (from Remark 2)."""
+    problem, _ = pair
+    n = problem.n
+    y = kkt_path(pair).endpoint.y
+    x, z1, z2 = y[:n], y[n : 2 * n], y[2 * n :]
+    w = problem.w(x)
+    assert small(np.minimum(y, 0.0), y).all()
+    assert small(np.minimum(w, 0.0), y, w).all()
+    dx, dw = x - z2, w - z1
+    assert small(problem.A.T @ dx + dw, problem.A, y, w).all()
+    products = dx * dw
+    assert small(x * w + z1 * z2 - products, np.outer(y, y), np.outer(w, w)).all()
+    assert small(np.minimum(products, 0.0), np.outer(y, y), np.outer(w, w)).all()
+
+
+@share(60)
+@given(feasible_lcps())
+@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
+@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+def test_complementarity_index_by_index(pair):
+    """Theorem 3.6, read index by index: x_i w_i = 0 exactly where dx_i dw_i = 0 or z1_i + z2_i > 0.
+
+    The end is known to a few digits more than the gap that is asked for here between zero and positive.
+    """
+    problem, _ = pair
+    n = problem.n
+    y = kkt_path(pair).endpoint.y
+    x, z1, z2 = y[:n], y[n : 2 * n], y[2 * n :]
+    w = problem.w(x)
+    gap = 1e-3 * (1.0 + float(np.abs(np.append(y, w)).max()))
+    for i in range(n):
+        if min(x[i], w[i]) > gap:
+            assert small(z1[i], y)
+            assert small(z2[i], y)
+            assert (x[i] - z2[i]) * (w[i] - z1[i]) > gap * gap / 2
+        if max(z1[i], z2[i]) > gap or (x[i] - z2[i]) * (w[i] - z1[i]) <= 0:
+            assert small(min(x[i], w[i]), y, w)
+
+
+@share(100)
+@given(feasible_lcps())
+@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
+@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+def test_where_the_end_is_no_solution_a_matrix_is_singular(pair):
+    """Theorem 3.8: if diag(w) + diag(x) A' is nonsingular at the end, then x solves the LCP."""
+    problem, _ = pair
+    x = kkt_path(pair).endpoint.y[: problem.n]
+    if not certify(problem, x).solves(1e-4):
+        M = np.diag(problem.w(x)) + np.diag(x) @ problem.A.T
+        values = np.linalg.svd(M, compute_uv=False)
+        assert values[-1] <= SMALL * max(1.0, values[0])
+
+
+@share(100)
+@given(feasible_lcps("row_sufficient"))
+def test_row_sufficient_matrices_are_solved(pair):
+    """What is true in the place of Theorems 3.7 and 3.9: where A is row sufficient every KKT point solves the LCP.
+
+    Cottle, Pang and Venkateswaran 1989; Cottle, Pang and Stone, Theorem 3.5.4. PSD, P and P_* matrices are such.
+    """
+    problem, _ = pair
+    path = kkt_path(pair)
+    assert path.status is Status.REACHED_TARGET
+    certificate = certify(problem, np.maximum(path.endpoint.y[: problem.n], 0.0))
+    assert certificate.solves(1e-8), (certificate.relative_residual, path.message)

@@ -1,0 +1,188 @@
+"""What must not matter (units, order, start) and who must agree (every method, and brute force), one theorem a test."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from continuation import Status, trace
+from problems.lcp import (
+    LCP,
+    KKTHomotopy,
+    KojimaMegiddoMizunoHomotopy,
+    Outcome,
+    WangHomotopy,
+    XuHomotopy,
+    YuHomotopy,
+    ZhaoHomotopy,
+    certify,
+    random_start,
+    solve,
+    solve_by_enumeration,
+)
+from problems.lcp.strategies import feasible_lcps, lcps, planted_lcps
+
+SMALL_ORDERS = st.integers(1, 3)
+TWO_VECTOR = (YuHomotopy, ZhaoHomotopy, XuHomotopy, WangHomotopy, KojimaMegiddoMizunoHomotopy)
+
+
+def share(examples):
+    """So many examples in the default profile, a hundred times as many in the nightly one."""
+    return settings(max_examples=settings.default.max_examples * examples // 100)
+
+
+def powers(n):
+    """Units of n unknowns: powers of two, by which every product is exact."""
+    return st.lists(st.integers(-6, 6).map(lambda k: 2.0**k), min_size=n, max_size=n).map(np.array)
+
+
+def end(homotopy):
+    path = trace(homotopy)
+    assert path.status is Status.REACHED_TARGET
+    return path.endpoint.y[: homotopy.problem.n]
+
+
+def near(x, y, accuracy=1e-6):
+    return np.abs(x - y).max() <= accuracy * (1.0 + np.abs(y).max())
+
+
+def unique_solution(problem):
+    """That of a P-matrix (Cottle, Pang and Stone, Theorem 3.3.7), exact but for its rounding."""
+    (solution,) = solve_by_enumeration(problem).solutions
+    return solution.point
+
+
+# --- units and order ---------------------------------------------------------------------------------------
+
+
+@share(30)
+@given(feasible_lcps(), st.integers(-6, 6))
+def test_the_kkt_path_scales_with_its_unit(pair, power):
+    """With q, x0, z1 and z2 multiplied by s the KKT path is s times itself: H1 has degree 1 in them, H2 and H3 two."""
+    problem, x0 = pair
+    s, ones = 2.0**power, np.ones(problem.n)
+    plain = trace(KKTHomotopy(problem, x0, ones, ones))
+    scaled = trace(KKTHomotopy(LCP(problem.A, s * problem.q), s * x0, s * ones, s * ones))
+    assert scaled.status is plain.status
+    np.testing.assert_allclose(scaled.endpoint.y / s, plain.endpoint.y, rtol=1e-6, atol=1e-6)
+    assert len(scaled.turning_points) == len(plain.turning_points)
+
+
+@share(30)
+@given(st.data())
+def test_the_path_of_wang_scales_with_all_units(data):
+    """x -> x/E, y -> D y takes Wang's path for A, q to that for D A E, D q, with any positive diagonals D and E."""
+    problem, x0 = data.draw(feasible_lcps("P"))
+    left, right = data.draw(powers(problem.n)), data.draw(powers(problem.n))
+    y0 = problem.w(x0)
+    scaled = LCP(left[:, None] * problem.A * right, left * problem.q)
+    x = end(WangHomotopy(problem, x0, y0))
+    assert near(right * end(WangHomotopy(scaled, x0 / right, left * y0)), x)
+
+
+@share(30)
+@given(st.data())
+def test_solve_does_not_depend_on_units(data):
+    """LCP(D q, D A E) has the solutions x/E of LCP(q, A)."""
+    problem = data.draw(lcps("P"))
+    left, right = data.draw(powers(problem.n)), data.draw(powers(problem.n))
+    solution = solve(LCP(left[:, None] * problem.A * right, left * problem.q))
+    assert solution.outcome is Outcome.SOLVED
+    assert near(right * solution.x, unique_solution(problem))
+
+
+@share(30)
+@given(st.data())
+def test_the_paths_do_not_depend_on_the_order_of_the_unknowns(data):
+    """Q' A Q, Q' q from Q' x0 has the path Q' x(s) for every permutation Q."""
+    problem, x0 = data.draw(feasible_lcps())
+    order = np.array(data.draw(st.permutations(range(problem.n))))
+    permuted = LCP(problem.A[np.ix_(order, order)], problem.q[order])
+    one, other = trace(KKTHomotopy(problem, x0)), trace(KKTHomotopy(permuted, x0[order]))
+    assert other.status is one.status
+    whole = np.concatenate([order, order + problem.n, order + 2 * problem.n])
+    np.testing.assert_allclose(other.endpoint.y, one.endpoint.y[whole], rtol=1e-6, atol=1e-6)
+    assert len(other.turning_points) == len(one.turning_points)
+
+
+# --- starts ------------------------------------------------------------------------------------------------
+
+
+@share(40)
+@given(lcps("P"), st.integers(0, 2**32 - 1))
+@pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
+def test_every_start_leads_to_the_unique_solution(make, problem, seed):
+    """P-matrices: LCP(q, A) has one solution for every q, and the paths of all starts end there."""
+    start = random_start(problem, np.random.default_rng(seed))
+    given_start = (start.x0, start.z1, start.z2, start.w0) if make is KKTHomotopy else (start.x0, start.w0)
+    assert near(end(make(problem, *given_start)), unique_solution(problem))
+
+
+@share(30)
+@given(lcps("P"), st.sampled_from(("auto", "kkt", "wang", "yu", "xu")))
+def test_every_method_of_solve_finds_the_unique_solution(problem, name):
+    """The same of `solve` by paths alone, with the methods whose papers claim P-matrices, and Yu's."""
+    solution = solve(problem, name, finish=False, tolerance=1e-8)
+    assert solution.outcome is Outcome.SOLVED
+    assert near(solution.x, unique_solution(problem))
+
+
+# --- brute force -------------------------------------------------------------------------------------------
+
+
+@share(60)
+@given(lcps(n=SMALL_ORDERS))
+def test_solve_agrees_with_brute_force(problem):
+    """Solvable or not, as all 2^n faces say: SOLVED and UNSOLVABLE are never wrong."""
+    truth = solve_by_enumeration(problem)
+    solution = solve(problem, restarts=2)
+    if solution.outcome is Outcome.SOLVED:
+        assert truth.solvable
+        assert not truth.complete or any(near(solution.x, x) for x in truth.points)
+    if solution.outcome is Outcome.UNSOLVABLE:
+        assert not truth.solvable
+    if not truth.solvable:
+        assert solution.outcome is not Outcome.SOLVED
+
+
+@share(40)
+@given(planted_lcps("strict", "row_sufficient"))
+def test_what_has_a_solution_by_construction_is_solved(pair):
+    """Row sufficient matrices are Q0: what is feasible is solvable, and the first KKT path finds it."""
+    problem, _ = pair
+    assert solve(problem, "kkt", finish=False, tolerance=1e-8).outcome is Outcome.SOLVED
+
+
+@pytest.mark.parametrize("make", TWO_VECTOR, ids=lambda make: make.__name__)
+def test_an_end_of_the_earlier_homotopies_is_a_solution(make):
+    """Yu, Zhao, Xu, Wang, Kojima-Megiddo-Mizuno: at lambda = 0 they ask for y = A x + q, x y = 0 and x, y >= 0."""
+
+    @share(25)
+    @given(feasible_lcps(n=SMALL_ORDERS))
+    def arrives_at_a_solution(pair):
+        problem, x0 = pair
+        path = trace(make(problem, x0))
+        if path.status is not Status.REACHED_TARGET:
+            assert path.status is Status.DIVERGED
+            return
+        x = np.maximum(path.endpoint.y[: problem.n], 0.0)
+        assert certify(problem, x).solves(1e-7)
+        truth = solve_by_enumeration(problem)
+        assert truth.solvable
+        assert not truth.complete or any(near(x, point) for point in truth.points)
+
+    arrives_at_a_solution()
+
+
+@share(60)
+@given(feasible_lcps(n=SMALL_ORDERS))
+def test_a_certified_end_of_the_kkt_path_is_one_of_the_solutions(pair):
+    """And an end that is not certified is none of them."""
+    problem, x0 = pair
+    x = np.maximum(end(KKTHomotopy(problem, x0)), 0.0)
+    truth = solve_by_enumeration(problem)
+    solved = certify(problem, x).solves(1e-7)
+    if solved:
+        assert truth.solvable
+    if truth.complete:
+        assert solved == any(near(x, point) for point in truth.points)

@@ -1,0 +1,140 @@
+"""The reduction from 3n to n unknowns, one theorem a test: one determinant, one sign, one step."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from attrs import frozen
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from continuation import trace
+from problems.lcp import LCP, KKTHomotopy, KojimaMegiddoMizunoHomotopy, WangHomotopy, XuHomotopy, YuHomotopy
+from problems.lcp.classes.exact import ExactMatrix
+from problems.lcp.classes.exact import determinant as integer_determinant
+from problems.lcp.strategies import feasible_lcps
+from problems.paper import EXAMPLES
+
+TWO_TURNS = (EXAMPLES[9].problem, EXAMPLES[9].x0)
+
+
+def share(examples):
+    """So many examples in the default profile, a hundred times as many in the nightly one."""
+    return settings(max_examples=settings.default.max_examples * examples // 100)
+
+
+def determinant(M):
+    """Exact, in the units of the entries of M."""
+    exact = ExactMatrix.of(M)
+    return Fraction(integer_determinant(exact.entries), exact.scale**exact.n)
+
+
+def reduced_matrix(A, x, z1, z2, w, lam):
+    """G = (1 - lam) [A + A' + diag(z1/x) + A' diag(z2/w) A] + lam I, in rational arithmetic."""
+    n = len(A)
+    A, x, z1, z2, w = (np.vectorize(Fraction, otypes=[object])(part) for part in (A, x, z1, z2, w))
+    inner = A + A.T + np.diag(z1 / x) + A.T @ ((z2 / w)[:, None] * A)
+    lam = Fraction(lam)
+    return (1 - lam) * inner + lam * np.array([[Fraction(i == j) for j in range(n)] for i in range(n)])
+
+
+def reduced_at(problem, step):
+    n = problem.n
+    y = step.y
+    return reduced_matrix(problem.A, y[:n], y[n : 2 * n], y[2 * n :], problem.w(y[:n]), step.lam)
+
+
+@share(60)
+@given(feasible_lcps(), st.integers(0, 7), st.lists(st.integers(1, 5), min_size=8, max_size=8))
+def test_the_determinant_factors(pair, eighths, multipliers):
+    """det H_y = det G prod x_i prod w_i for every lambda and all x, z1, z2, w > 0: exactly, on small dyadic numbers."""
+    problem, x = pair
+    n, lam, w = problem.n, eighths / 8, problem.w(x)
+    z1, z2 = np.array(multipliers[:n], dtype=float), np.array(multipliers[-n:], dtype=float)
+    H_y, _ = KKTHomotopy(problem, x).jacobian(np.concatenate([x, z1, z2]), lam)
+    G = reduced_matrix(problem.A, x, z1, z2, w, lam)
+    assert (G == G.T).all()
+    assert determinant(H_y) == determinant(G) * int(np.prod(x) * np.prod(w))
+
+
+@share(40)
+@given(feasible_lcps())
+@example(TWO_TURNS)
+def test_lambda_falls_where_the_reduced_determinant_is_positive(pair):
+    """The orientation det [[H'], [tangent']] < 0 of the start is that of every step, so sign(dlam/ds) = -sign det G.
+
+    det [[H'], [v']] = det H_y |v|^2 / v_lam for H' v = 0, and det H_y has the sign of det G.
+    """
+    problem, x0 = pair
+    path = trace(KKTHomotopy(problem, x0))
+    for step in path.steps[1:-1]:
+        assert step.orientation == -1
+        if step.share > 1e-6:
+            assert np.sign(float(determinant(reduced_at(problem, step)))) == -np.sign(step.tangent[-1])
+
+
+@share(40)
+@given(feasible_lcps())
+@example(TWO_TURNS)
+def test_the_sign_of_the_reduction_is_that_of_the_full_system(pair):
+    """The sign of det [[H'], [tangent']] as the reduced factorisation has it, against all 3n + 1 rows exactly."""
+    problem, x0 = pair
+    homotopy = KKTHomotopy(problem, x0)
+    for step in trace(homotopy).steps[1:-1:3]:
+        full = np.vstack([np.column_stack(homotopy.jacobian(step.y, step.lam)), step.tangent])
+        assert homotopy.bordered(step.y, step.lam, step.tangent).sign == (1 if determinant(full) > 0 else -1) == -1
+
+
+@frozen
+class Full:
+    """A homotopy without its reduction: the library factors the whole matrix, and differentiates by jets."""
+
+    reduced: object
+    target = 0.0
+
+    @property
+    def metric(self):
+        return self.reduced.metric
+
+    def start(self):
+        return self.reduced.start()
+
+    def residual(self, y, lam):
+        return self.reduced.residual(y, lam)
+
+    def jacobian(self, y, lam):
+        return self.reduced.jacobian(y, lam)
+
+    def max_step(self, u, v):
+        return self.reduced.max_step(u, v)
+
+
+def assert_same_path(homotopy):
+    one, other = trace(homotopy), trace(Full(homotopy))
+    assert other.status is one.status
+    assert len(other) == len(one)
+    np.testing.assert_allclose(other.u, one.u, rtol=1e-8, atol=1e-8)
+    assert [turn.step for turn in other.turning_points] == [turn.step for turn in one.turning_points]
+
+
+@share(25)
+@given(feasible_lcps())
+@example(TWO_TURNS)
+def test_reduced_and_full_steps_agree(pair):
+    """The path with n + 1 unknowns a solve is, step by step, that with 3n + 1."""
+    problem, x0 = pair
+    assert_same_path(KKTHomotopy(problem, x0))
+
+
+@pytest.mark.parametrize("make", [YuHomotopy, XuHomotopy, WangHomotopy, KojimaMegiddoMizunoHomotopy])
+def test_reduced_and_full_steps_agree_for_the_earlier_homotopies(make):
+    """The same with n + 1 and 2n + 1, on positive definite matrices, where all of them arrive."""
+
+    @share(8)
+    @given(feasible_lcps("PSD", st.integers(1, 3)))
+    def agree(pair):
+        problem, x0 = pair
+        definite = LCP(problem.A + np.eye(problem.n), problem.q)
+        assert_same_path(make(definite, x0))
+
+    agree()
