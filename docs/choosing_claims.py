@@ -1,0 +1,343 @@
+"""What docs/choosing.md states, as tests on the results of the studies, by the names that the page gives them."""
+
+import math
+from statistics import median
+
+from continuation import chart
+
+SERIES = ("Taylor + series range", "Pade + series range")
+PATHS = ("KKT", "Wang", "Yu", "Xu", "Zhao", "Kojima")
+IN_XY = PATHS[1:]
+
+
+class Charts:
+    """The stored results of a folder by study, read when asked for."""
+
+    def __init__(self, folder):
+        self.folder, self._read = folder, {}
+
+    def __getitem__(self, study):
+        if study not in self._read:
+            self._read[study] = chart.read(self.folder / f"{study}.h5")
+        return self._read[study]
+
+
+def total(results, method, work="factorizations", **where):
+    """Work over all runs of a method that succeeded, optionally at one rung or on one problem."""
+    rows = [row for row in results.of(method=method) if all(getattr(row, k) == v for k, v in where.items())]
+    return sum(row.work(work) for row in rows if not row.failed)
+
+
+def ratio(results, a, b, work="factorizations"):
+    """Median over the problems and rungs that both solved of a's work over b's."""
+    other = {(row.problem, row.rung): row for row in results.of(method=b) if not row.failed}
+    pairs = [
+        row.work(work) / other[row.problem, row.rung].work(work)
+        for row in results.of(method=a)
+        if not row.failed and (row.problem, row.rung) in other
+    ]
+    return median(pairs)
+
+
+def solved(results, method, **where):
+    """Fraction of a method's runs that succeeded."""
+    rows = [row for row in results.of(method=method) if all(getattr(row, k) == v for k, v in where.items())]
+    return sum(not row.failed for row in rows) / len(rows)
+
+
+def median_excess(results, method, work="factorizations"):
+    """Over the runs that succeeded."""
+    far = chart.excess(results, next(iter(results.errors)), work)
+    return median(value for (_, name, _), value in far.items() if name == method and math.isfinite(value))
+
+
+CLAIMS = {}
+
+
+def claim(test):
+    """Register a test by its name."""
+    CLAIMS[test.__name__] = test
+    return test
+
+
+# -- presets -------------------------------------------------------------------------------------------------------
+
+
+@claim
+def series_needs_fewest_factorizations(charts):
+    results = charts["engine-presets"]
+    return all(total(results, "SERIES") < total(results, m) for m in results.methods if m != "SERIES") and (
+        2.5 < total(results, "DEFAULT") / total(results, "SERIES") < 3.5
+    )
+
+
+@claim
+def series_is_slow_on_small_problems(charts):
+    return ratio(charts["engine-presets"], "SERIES", "DEFAULT", "seconds") > 1.5
+
+
+@claim
+def conservative_costs_several_times_default(charts):
+    return ratio(charts["engine-presets"], "CONSERVATIVE", "DEFAULT") > 3.0
+
+
+@claim
+def three_presets_never_fail(charts):
+    return all(solved(charts["engine-presets"], name) == 1.0 for name in ("DEFAULT", "CONSERVATIVE", "SERIES"))
+
+
+@claim
+def fast_saves_little_and_jumps(charts):
+    results = charts["engine-presets"]
+    jumps = [row for row in results.of(method="FAST") if row.failure == chart.Failure.JUMP]
+    return 0.85 < ratio(results, "FAST", "DEFAULT") < 1.0 and bool(jumps) and all(row.rung > 1e-8 for row in jumps)
+
+
+@claim
+def tolerance_is_cheap(charts):
+    results = charts["engine-presets"]
+    work = [total(results, "DEFAULT", rung=rung) for rung in sorted({row.rung for row in results.rows})]
+    return max(work) <= 1.1 * min(work)
+
+
+# -- predictors ----------------------------------------------------------------------------------------------------
+
+
+@claim
+def hermite_is_near_the_best(charts):
+    results = charts["engine-predictors"]
+    others = [m for m in results.methods if m not in SERIES and solved(results, m) == 1.0]
+    return total(results, "Hermite (DEFAULT)") <= 1.1 * min(total(results, m) for m in others)
+
+
+@claim
+def secant_is_worse(charts):
+    results = charts["engine-predictors"]
+    failed = {row.problem for row in results.of(method="secant") if row.failed}
+    return ratio(results, "secant", "Hermite (DEFAULT)") > 1.4 and any("cosine" in name for name in failed)
+
+
+@claim
+def runge_kutta_is_dear(charts):
+    return ratio(charts["engine-predictors"], "Runge-Kutta 4", "Hermite (DEFAULT)") > 3.0
+
+
+@claim
+def series_and_pade_pay(charts):
+    results = charts["engine-predictors"]
+    series, pade = SERIES
+    return (
+        total(results, series) < 0.5 * total(results, "Hermite (DEFAULT)")
+        and total(results, pade) < 0.8 * total(results, series)
+    )  # fmt: skip
+
+
+@claim
+def series_has_the_best_dense_output(charts):
+    results = charts["engine-steps"]
+    rungs = sorted({row.rung for row in results.rows})
+
+    def error(problem, method, rung):
+        (row,) = (r for r in results.of(problem=problem, method=method) if r.rung == rung)
+        return row.errors["curve_distance"]
+
+    return all(
+        100.0 * error(p, SERIES[0], rungs[-1]) < error(p, "Hermite (DEFAULT)", rungs[0]) for p in results.problems
+    )
+
+
+# -- correctors and controllers ------------------------------------------------------------------------------------
+
+DEFAULT_CORRECTOR = "bordered, reuse 0.2 (DEFAULT)"
+
+
+@claim
+def reuse_saves_factorizations(charts):
+    results = charts["engine-correctors"]
+    return all(
+        ratio(results, name, DEFAULT_CORRECTOR) > 2.0 and ratio(results, name, DEFAULT_CORRECTOR, "solves") < 1.0
+        for name in ("bordered Newton", "Moore-Penrose")
+    )
+
+
+@claim
+def broyden_saves_solves(charts):
+    results = charts["engine-correctors"]
+    return (
+        0.8 < total(results, "Broyden") / total(results, DEFAULT_CORRECTOR) < 1.1
+        and total(results, "Broyden", "solves") < 0.72 * total(results, DEFAULT_CORRECTOR, "solves")
+    )  # fmt: skip
+
+
+@claim
+def broyden_loses_on_larger_systems(charts):
+    results = charts["scaling-curves"]
+    largest = max(row.n for row in results.of(family="H-equation (dense)"))
+    where = {"family": "H-equation (dense)", "n": largest}
+    return total(results, "DEFAULT, Broyden", **where) > 1.3 * total(results, "DEFAULT", **where)
+
+
+@claim
+def linear_correctors_dislike_tight_tolerances(charts):
+    results = charts["engine-correctors"]
+    rungs = sorted({row.rung for row in results.rows})
+    return all(total(results, name, rung=rungs[0]) > 1.1 * total(results, name, rung=rungs[-1])
+               for name in ("Broyden", "chord"))  # fmt: skip
+
+
+@claim
+def default_controller_is_on_the_front(charts):
+    results = charts["engine-controllers"]
+    far = chart.excess(results, "end_point", "factorizations")
+    own = [value for (_, name, _), value in far.items() if name == "Allgower-Georg (DEFAULT)"]
+    return median(own) == 1.0 and max(own) <= 7.0 / 6.0
+
+
+@claim
+def geometric_jumps(charts):
+    rows = charts["engine-controllers"].of(method="geometric (the paper's)")
+    return any(row.failure == chart.Failure.JUMP for row in rows)
+
+
+# -- metric, series ------------------------------------------------------------------------------------------------
+
+
+@claim
+def automatic_metric_is_good(charts):
+    results = charts["engine-metrics"]
+    own = total(results, "automatic (the default)")
+    return (
+        solved(results, "automatic (the default)") == 1.0
+        and own <= total(results, "Euclidean")
+        and own < total(results, "root mean square")
+    )
+
+
+@claim
+def pade_pays(charts):
+    results = charts["engine-series"]
+    pairs = (("1e-05 (SERIES)", "1e-05"), ("1e-07", "1e-07"))
+    return all(
+        total(results, f"Pade, accuracy {a}") < 0.75 * total(results, f"series, accuracy {b}") for a, b in pairs
+    )
+
+
+@claim
+def accuracy_is_the_best(charts):
+    results = charts["engine-series"]
+    methods = [method for method in results.methods if "Pade" in method]
+    rejected = {m: sum(row.counts.rejected for row in results.of(method=m)) for m in methods}
+    own = "Pade, accuracy 1e-05 (SERIES)"
+    return (
+        total(results, own) == min(total(results, method) for method in methods)
+        and rejected["Pade, accuracy 0.001"] > 50 + rejected[own]
+    )
+
+
+def _relative_cost(results, method, problem):
+    """Order to seconds over the least."""
+    rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
+    least = min(row.seconds for row in rows)
+    return {row.rung: row.seconds / least for row in rows}
+
+
+@claim
+def orders_from_13_to_20_are_good(charts):
+    results = charts["order"]
+    pade = results.methods[-1]
+    costs = [_relative_cost(results, pade, problem) for problem in results.problems]
+    return all(min(cost[K] for K in cost if K < 10) > 1.0 for cost in costs) and (
+        median(max(cost[K] for K in cost if 13 <= K <= 20) for cost in costs) < 1.35
+    )
+
+
+@claim
+def chosen_order_is_near_the_best(charts):
+    from problems.charts.order import CostModel
+
+    table = CostModel().table(charts["order"])
+    return max(line[table.head.index("chosen over fastest")] for line in table.rows) <= 1.25
+
+
+# -- linear complementarity ----------------------------------------------------------------------------------------
+
+
+@claim
+def kkt_solves_the_ten_examples(charts):
+    results = charts["lcp-paper"]
+    return solved(results, "KKT") == 1.0 and all(solved(results, name) < 1.0 for name in IN_XY)
+
+
+@claim
+def solve_is_cheaper_than_the_path(charts):
+    results = charts["lcp-paper"]
+    least = {row.problem: row.work("factorizations") for row in results.of(method="KKT")}
+    cheaper = [row.work("factorizations") < least[row.problem] for row in results.of(method="solve, auto")]
+    return solved(results, "solve, auto") == 1.0 and sum(cheaper) >= 0.8 * len(cheaper)
+
+
+@claim
+def references_fail_on_some(charts):
+    results = charts["lcp-paper"]
+    names = ("Lemke", "modulus", "min-Newton")
+    dear = median_excess(results, "KKT")
+    return all(0.0 < solved(results, name) < 1.0 and median_excess(results, name) < dear for name in names)
+
+
+@claim
+def modulus_makes_many_solves(charts):
+    rows = [row for row in charts["lcp-paper"].of(method="modulus") if not row.failed]
+    return all(row.counts.factorizations == 1 and row.counts.solves > 20 for row in rows)
+
+
+@claim
+def kkt_solves_n_matrices(charts):
+    results = charts["robustness"]
+    return solved(results, "KKT", family="N") == 1.0 and solved(results, "Wang", family="N") == 0.0
+
+
+@claim
+def wang_series_saves(charts):
+    results = charts["lcp-generated"]
+    return (
+        solved(results, "Wang") == solved(results, "Wang, series") == 1.0
+        and ratio(results, "Wang, series", "Wang") <= 0.75
+    )
+
+
+@claim
+def kkt_fails_on_scaled_p(charts):
+    rows = [row for row in charts["lcp-generated"].of(family="scaled P", method="KKT") if row.n == 100]
+    return all(row.failure == chart.Failure.BUDGET for row in rows)
+
+
+@claim
+def zhao_never_arrives(charts):
+    return solved(charts["lcp-generated"], "Zhao") == 0.0
+
+
+# -- size and robustness -------------------------------------------------------------------------------------------
+
+
+@claim
+def factorizations_do_not_grow(charts):
+    return all(abs(p) < 0.25 for p in chart.exponents(charts["scaling-curves"], "factorizations").values())
+
+
+@claim
+def series_gains_with_size(charts):
+    rows = charts["scaling-curves"].of(family="H-equation (dense)")
+    sizes = sorted({row.n for row in rows})
+    fastest = [min((row for row in rows if row.n == n), key=lambda row: row.seconds).method for n in sizes]
+    return fastest[0] != "SERIES" and fastest[-1] == "SERIES" and sizes[-1] == 1000
+
+
+@claim
+def solve_is_robust_where_theory_says_so(charts):
+    results = charts["robustness"]
+    return all(solved(results, "solve, auto", family=f) == 1.0 for f in ("semidefinite", "scaled P", "copositive"))
+
+
+@claim
+def pure_paths_fail_on_indefinite(charts):
+    return all(solved(charts["robustness"], name, family="indefinite") < 1.0 for name in PATHS)

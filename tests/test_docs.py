@@ -1,0 +1,69 @@
+"""Every Python block of the README and the documentation runs, every command exists, every page is reachable."""
+
+import importlib.util
+import re
+import shlex
+from fnmatch import fnmatch
+from pathlib import Path
+
+import pytest
+
+from continuation.cli.commands import register
+from continuation.cli.parser import Parser
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.parts)]
+NAMES = [str(path.relative_to(ROOT)) for path in PAGES]
+_SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
+_TREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def load(file):
+    spec = importlib.util.spec_from_file_location(file.stem, file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+executed = load(DOCS / "executed.py")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_the_blocks_of_a_page_run(page, tmp_path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    for shown in executed.run(page.read_text(encoding="utf-8"), tmp_path, page.name):
+        assert "Traceback" not in shown.output
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_the_commands_of_a_page_exist(page):
+    parser = Parser(prog="continuation")
+    register(parser.add_subparsers())
+    for block in _SHELL.findall(page.read_text(encoding="utf-8")):
+        for line in block.splitlines():
+            words = shlex.split(line, comments=True)
+            if words and words[0] == "continuation":
+                parser.parse_args(words[1:])
+
+
+def test_every_page_is_in_the_table_of_contents():
+    listed = {line for tree in _TREE.findall((DOCS / "index.md").read_text()) for line in tree.split("\n")}
+    pages = {str(page.relative_to(DOCS).with_suffix("")) for page in PAGES[1:]} - {"index"}
+    assert [page for page in pages if not any(fnmatch(page, pattern) for pattern in listed)] == []
+
+
+def test_a_failing_block_is_named_with_its_line(tmp_path):
+    text = "# Title\n\n```python\nx = 1\n```\n\n```python\nx += 1\nx / 0\n```\n"
+    with pytest.raises(ZeroDivisionError) as caught:
+        list(executed.run(text, tmp_path, "page.md"))
+    last = caught.traceback[-1]
+    assert str(last.path).endswith("page.md")
+    assert last.lineno + 1 == 9
+
+
+def test_what_a_block_prints_and_draws_follows_it(tmp_path):
+    text = "```python\nprint('said')\nopen('drawn.png', 'wb').close()\n```\n\nAfter.\n"
+    page = executed.with_results(text, tmp_path, "page.md", "/generated/page")
+    assert "said\n```\n\n![drawn](/generated/page/drawn.png)\n" in page
+    assert page.index("said\n") < page.index("After.")
