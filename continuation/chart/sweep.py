@@ -50,7 +50,10 @@ def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Fi
                 nearest = min(values, key=lambda pair: abs(pair[0] - choice))
                 ax.plot(choice, nearest[1], zorder=4, **_CHOSEN)
         ax.set_yscale("log")
-        ax.set_yticks([1, 2, 4, 8, 16], labels=["1", "2", "4", "8", "16"])
+        highest = max(2.0, ax.get_ylim()[1])
+        ticks = [2**k for k in range(20) if 2**k <= highest]
+        ax.set_yticks(ticks, labels=[str(tick) for tick in ticks])
+        ax.set_ylim(0.85, highest)
         ax.yaxis.set_minor_formatter("")
         ax.set_title(method, fontsize="medium")
         ax.set_xlabel(results.ladder)

@@ -54,9 +54,10 @@ def test_a_restart_depends_on_seed_and_number_alone():
     assert not np.array_equal(reseeded.origin.x0, restart(problem, 3).homotopy().origin.x0)
 
 
-def test_a_hopeless_path_is_given_up_with_a_reason():
+def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
+    monkeypatch.setattr("problems.lcp.restarts.SMALLEST", 1e-2)
     problem = planted(3)
-    paths = [restart(problem, k).trace(continuation.Budget()) for k in range(12)]
+    paths = [restart(problem, k).trace(continuation.Budget()) for k in range(6)]
     given_up = [k for k, path in enumerate(paths) if path.message.startswith("Given up")]
     assert given_up
     for k in given_up:

@@ -48,7 +48,8 @@ def random_planted(n: int, seed: int) -> LCP:
 def frictional_contact(n: int, seed: int) -> LCP:
     """Stewart and Trinkle's time step for a plane body on n/4 contacts: singular, copositive, redundant.
 
-    Unknowns (normal, two tangents, slip) a contact; W = B' G' G B with G of three rows (two forces and a moment), friction 0.2 .. 0.9.
+    Unknowns (normal, two tangents, slip) a contact; W = B' G' G B with G of three rows (two forces and a moment),
+    friction 0.2 .. 0.9.
     """
     r = np.random.default_rng(seed)
     k = n // 4
@@ -90,7 +91,8 @@ def american_option(n: int) -> LCP:
     price = np.linspace(np.log(0.1), np.log(10.0), n + 2)
     h = price[1] - price[0]
     a, b = 0.5 * volatility**2 / h**2, (rate - 0.5 * volatility**2) / (2.0 * h)
-    diagonals = [np.full(n - 1, -step * (a - b)), np.full(n, 1.0 + step * (2.0 * a + rate)), np.full(n - 1, -step * (a + b))]
+    below, main, above = -step * (a - b), 1.0 + step * (2.0 * a + rate), -step * (a + b)
+    diagonals = [np.full(n - 1, below), np.full(n, main), np.full(n - 1, above)]
     A = sp.diags_array(diagonals, offsets=[-1, 0, 1], dtype=float)
     payoff = np.maximum(1.0 - np.exp(price), 0.0)
     q = A @ payoff[1:-1] - payoff[1:-1]
