@@ -64,9 +64,10 @@ def main(number: int, seed: int) -> int:
         solvable = lcp.solve_by_enumeration(problem).solvable
         claims[solution.outcome.name] += 1
         solved = solution.outcome is lcp.Outcome.SOLVED
-        if solved and not solvable or solution.outcome is lcp.Outcome.UNSOLVABLE and solvable:
+        if (solved and not solvable) or (solution.outcome is lcp.Outcome.UNSOLVABLE and solvable):
             wrong += 1
-            print(f"FALSE {solution.outcome.name}\nA = {problem.A.tolist()}\nq = {problem.q.tolist()}\nx = {solution.x}")
+            where = f"A = {problem.A.tolist()}\nq = {problem.q.tolist()}\nx = {solution.x}"
+            print(f"FALSE {solution.outcome.name}\n{where}")
         if solvable and not solved:
             missed[kind] += 1
     print(f"{number} problems, seed {seed}, {time.perf_counter() - began:.0f} s: {wrong} false claims or exceptions")
