@@ -46,6 +46,10 @@ class NotFiniteError(EvaluationError):
     """The homotopy has no finite value at a point: the edge of its domain, or an overflow."""
 
 
+class SingularPointError(EvaluationError):
+    """The bordered matrix has no factorisation at a point: it is singular there, as in a branch point."""
+
+
 @frozen(eq=False)
 class CountedSystem:
     """A bordered factorisation whose solves are counted."""
@@ -187,5 +191,5 @@ class Evaluator:
         except EvaluationError:
             raise
         except ArithmeticError as error:
-            raise EvaluationError(f"the bordered matrix could not be factored: {error}") from error
+            raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error
         return CountedSystem(system, self.counts)

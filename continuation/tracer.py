@@ -305,7 +305,9 @@ class Tracer:
                 trial = evolve(trial, reason="the arc is not on one path, as far as its determinant and inside tell")
             rejections += 1
             self.counts.rejected += 1
-            h = decision.h
+            # A step that ends in a branch point finds no factors there; halves of it would only creep up to the place.
+            singular = trial.correction is not None and trial.correction.singular
+            h = decision.h * (1.19 if singular else 1.0)
             if self._hopeless(trial, h):
                 return None
 

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.evaluation import EvaluationError, Evaluator, NotFiniteError
+from continuation.evaluation import EvaluationError, Evaluator, NotFiniteError, SingularPointError
 from continuation.linearization import Anchor, Linearization
 from continuation.metric import norm
 from continuation.tolerance import Tolerance
@@ -36,6 +36,8 @@ class Correction:
         Why it failed.
     finite : bool
         False where it failed because the homotopy has no finite value at an iterate.
+    singular : bool
+        True where it failed because the bordered matrix has no factorisation at an iterate.
     anchor : Anchor or None
         The last factorisation made on the way, which may serve the tangent too.
     """
@@ -48,6 +50,7 @@ class Correction:
     distance: float
     reason: str = ""
     finite: bool = True
+    singular: bool = False
     anchor: Anchor | None = None
 
 
@@ -116,5 +119,6 @@ def iterate(
             if size <= 1.0 and residual_norm <= tolerance.residual:
                 return outcome(k + 1)
     except EvaluationError as error:
-        return evolve(outcome(0, str(error)), finite=not isinstance(error, NotFiniteError))
+        finite, singular = not isinstance(error, NotFiniteError), isinstance(error, SingularPointError)
+        return evolve(outcome(0, str(error)), finite=finite, singular=singular)
     return outcome(max_iterations, f"the corrector did not converge in {max_iterations} iterations")

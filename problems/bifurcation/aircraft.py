@@ -65,6 +65,7 @@ class Aircraft:
 
     elevator: float = field(default=0.0, validator=finite)
     target: float | None = field(default=None, validator=finite_or_none)
+    problem_class: ClassVar[str] = "equilibria of vehicles"
     references: ClassVar[tuple[str, ...]] = (MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT)
 
     def start(self) -> tuple[Array, float]:

@@ -36,6 +36,7 @@ class Bratu1D:
 
     n: int = field(default=100, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
+    problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
     references: ClassVar[tuple[str, ...]] = (BRATU,)
 
     def start(self) -> tuple[Array, float]:

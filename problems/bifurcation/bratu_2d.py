@@ -45,6 +45,7 @@ class Bratu2D:
 
     m: int = field(default=20, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
+    problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
     references: ClassVar[tuple[str, ...]] = (BRATU,)
     # The sparsity never changes along the path: it is worked out once, and H_y alters the diagonal's values alone.
     _laplacian: Any = field(init=False, repr=False)

@@ -24,6 +24,7 @@ class Circle:
     """
 
     target: ClassVar[float | None] = None
+    problem_class: ClassVar[str] = "plane curves, to test with"
     references: ClassVar[tuple[str, ...]] = (ALLGOWER_GEORG,)
 
     def start(self) -> tuple[Array, float]:

@@ -30,6 +30,7 @@ class Cusp:
 
     splitting: float = field(default=1.0, validator=finite)
     target: float | None = field(validator=finite_or_none)
+    problem_class: ClassVar[str] = "singularities, to test with"
     references: ClassVar[tuple[str, ...]] = (GOLUBITSKY_SCHAEFFER,)
 
     @target.default

@@ -31,6 +31,7 @@ class ExponentialCosine:
 
     n: int = field(default=5, validator=positive_integer)
     target: float | None = field(default=1.0, validator=finite_or_none)
+    problem_class: ClassVar[str] = "fixed points, to test with"
     references: ClassVar[tuple[str, ...]] = (WATSON,)
 
     def start(self) -> tuple[Array, float]:

@@ -41,6 +41,7 @@ class FreudensteinRoth:
     """
 
     target: float | None = field(default=1.0, validator=finite_or_none)
+    problem_class: ClassVar[str] = "nonlinear equations, to test with"
     references: ClassVar[tuple[str, ...]] = (FREUDENSTEIN_ROTH, RHEINBOLDT_BURKARDT)
 
     def start(self) -> tuple[Array, float]:

@@ -31,6 +31,7 @@ class Pitchfork:
 
     imperfection: float = field(default=0.0, validator=finite)
     target: float | None = field(default=1.0, validator=finite_or_none)
+    problem_class: ClassVar[str] = "singularities, to test with"
     references: ClassVar[tuple[str, ...]] = (GOLUBITSKY_SCHAEFFER,)
 
     def start(self) -> tuple[Array, float]:

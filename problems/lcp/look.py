@@ -36,7 +36,7 @@ class Look:
     def names(self) -> tuple[str, ...]:
         """The homotopies to try from their default starts, in order."""
         if self.negative_diagonal:
-            return ("kkt", "wang")
+            return ("kkt",)
         return ("wang", "kkt")
 
     def __str__(self) -> str:

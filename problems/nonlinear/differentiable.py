@@ -21,6 +21,11 @@ class BuiltOnFunction(Protocol):
         ...
 
     @property
+    def problem_class(self) -> str:
+        """What it is for, in words."""
+        ...
+
+    @property
     def references(self) -> Sequence[str]:
         """BibTeX entries."""
         ...
@@ -73,6 +78,11 @@ class Differentiable(Generic[H]):
     def target(self) -> float | None:
         """That of the homotopy."""
         return self.homotopy.target
+
+    @property
+    def problem_class(self) -> str:
+        """That of the homotopy."""
+        return self.homotopy.problem_class
 
     @property
     def references(self) -> Sequence[str]:

@@ -41,6 +41,7 @@ class FixedPointHomotopy:
 
     F: Function
     a: Array = field(converter=start_vector)
+    problem_class: ClassVar[str] = "nonlinear equations F(x) = 0"
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (CHOW_MALLET_PARET_YORKE,)
 

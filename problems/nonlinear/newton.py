@@ -43,6 +43,7 @@ class NewtonHomotopy:
     a: Array = field(converter=start_vector)
     value: Array = field(init=False, repr=False)
     """F(a), shape (n,)."""
+    problem_class: ClassVar[str] = "nonlinear equations F(x) = 0"
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (KELLER, ALLGOWER_GEORG)
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from continuation import (
     CONSERVATIVE,
@@ -77,6 +78,13 @@ def test_a_knot_may_lie_in_the_branch_point(h):
     assert path.status is Status.REACHED_TARGET
     (event,) = branch_points(path)
     np.testing.assert_allclose(event.u, 0.0, rtol=0, atol=1e-10)
+
+
+def test_steps_that_would_creep_up_to_the_branch_point_pass_it():
+    controller = evolve(DEFAULT.controller, bounds=Bounds(maximum=0.25, initial=0.25))
+    path = trace(Pitchfork(), controller=controller)
+    assert path.status is Status.REACHED_TARGET
+    assert len(branch_points(path)) == 1
 
 
 @every_preset

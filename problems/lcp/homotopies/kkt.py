@@ -63,6 +63,7 @@ class KKTHomotopy:
     problem: LCP
     origin: Start
     structure: Structure
+    problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (DUTTA_DAS_JANA,)
     metric: ClassVar[RelativeMetric] = RelativeMetric()

@@ -48,6 +48,7 @@ class TwoVectorHomotopy:
     y0: Array
     references: tuple[str, ...]
     structure: Structure
+    problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
     metric: ClassVar[RelativeMetric] = RelativeMetric()
 
