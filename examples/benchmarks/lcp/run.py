@@ -223,8 +223,7 @@ def main() -> None:
         rows = SECTIONS[name](arguments.seeds)
         lines = [HEAD, ["---"] * len(HEAD)]
         firsts: dict[str, Row] = {}
-        for row in rows:
-            lines.append(row.cells(firsts.setdefault(row.family, row)))
+        lines += [row.cells(firsts.setdefault(row.family, row)) for row in rows]
         tables.append("\n".join("| " + " | ".join(cells) + " |" for cells in lines))
     if arguments.markdown:
         arguments.markdown.write_text("\n\n".join(tables) + "\n", encoding="utf-8")
