@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable, Sequence
 from importlib.metadata import EntryPoint, entry_points
 
-from continuation.cli import archives, figures, homotopies
+from continuation.cli import archives, charts, figures, homotopies
 from continuation.cli.parser import Subparsers, UsageError
 from continuation.plugins import grouped, owners
 
@@ -26,6 +26,7 @@ def register(subparsers: Subparsers) -> None:
     homotopies.register(subparsers)
     archives.register(subparsers)
     figures.register(subparsers)
+    charts.register(subparsers)
 
 
 def _loaded(name: str, points: Sequence[EntryPoint]) -> Register:

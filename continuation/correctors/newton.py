@@ -111,7 +111,7 @@ class MoorePenrose:
 
 @frozen
 class NaturalParameter:
-    """Newton at the predicted value of the parameter: the border is e_{N+1}. Fails at folds, as it must."""
+    """Newton at the predicted value of the parameter: the border is e_{N+1}, which is singular at a fold itself."""
 
     reuse: float = field(default=0.1, validator=and_(ge(0), le(1)))
     max_iterations: int = field(default=8, validator=gt(0))

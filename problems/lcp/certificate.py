@@ -23,6 +23,10 @@ LARGEST_ACTIVE_SET = 400
 _ROUNDING = 100 * float(np.finfo(float).eps)
 
 
+ROUNDING = 1e-6
+"""The largest residual, in units of 1 + |q|_inf, that the rounding of a large x may excuse."""
+
+
 @frozen(eq=False)
 class Certificate:
     """How well x solves the LCP, evaluated in twice the working precision.
@@ -59,9 +63,11 @@ class Certificate:
         """Whether x may be called a solution: a stricter test than a small relative residual.
 
         The residual must be at most tolerance (1 + |q|_inf), but for what rounding x costs. Relative to |x| alone
-        a point that runs off to infinity along a solution of LCP(0, A) would pass on a problem without solution.
+        a point that runs off to infinity along a solution of LCP(0, A) would pass on a problem without solution. For
+        the same reason the allowance for rounding, which grows with |x|, never exceeds ROUNDING (1 + |q|_inf).
         """
-        return self.relative_residual <= tolerance and self.residual <= tolerance * self.data_scale + self.attainable
+        allowance = tolerance * self.data_scale + min(self.attainable, ROUNDING * self.data_scale)
+        return self.relative_residual <= tolerance and self.residual <= allowance
 
 
 def certify(problem: LCP, x: Array) -> Certificate:

@@ -366,3 +366,9 @@ def test_random_float_multiplier():
 def test_no_multiplier_where_points_are_feasible():
     for item in (*EXAMPLES, *COUNTEREXAMPLES):
         assert farkas(item.problem) is None
+
+
+def test_a_huge_x_excuses_no_residual():
+    # Found by the random check against enumeration: the rounding of x3 = 1.5e17 must not excuse w3 = -5.
+    problem = LCP([[0, -1, 0], [3, 0, 0], [0, -2, 0]], [3.0, -3.0, 1.0])
+    assert not certify(problem, np.array([1.0, 3.0, 1.5e17])).solves()
