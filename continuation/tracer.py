@@ -362,7 +362,7 @@ class Tracer:
                 return None
             state = evolve(state, orientation=arrival.orientation)
         try:
-            if not guards.connected(evaluator, arc):
+            if not guards.connected(evaluator, arc, tolerance):
                 return None
             ending = Ending(arc, Kind.TARGET, Status.REACHED_TARGET) if trial.landed else self._ends.on(arc, state)
             found, monitors = occurrences(evaluator, events, state.monitors, ending.arc, tolerance)

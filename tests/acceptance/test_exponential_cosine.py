@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
+from continuation import CONSERVATIVE, DEFAULT, FAST, Status, guards, trace
 from continuation.audit import arclength, audit
 from continuation.controllers import Bounds, Geometric
 from continuation.predictors import Tangent
@@ -64,7 +64,21 @@ def test_the_audit_agrees(n, backwards):
     assert found.same, found
 
 
+@pytest.fixture
+def unguarded(monkeypatch):
+    """The engine without the guard that refuses arcs whose middle is off the path: with it, nothing jumps here."""
+    monkeypatch.setattr(guards, "connected", lambda evaluator, arc, tolerance: True)
+
+
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
+def test_the_guard_keeps_even_the_papers_controller_on_the_path(n):
+    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric())
+    assert path.status is Status.REACHED_TARGET
+    assert len(path.turning_points) == TABLE[n][2]
+
+
+@pytest.mark.parametrize("n", [5, 6, 7, 8])
+@pytest.mark.usefixtures("unguarded")
 def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
     path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric())
     assert path.status is Status.REACHED_TARGET
@@ -72,6 +86,7 @@ def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
     assert not audit(ExponentialCosine(n), path).same
 
 
+@pytest.mark.usefixtures("unguarded")
 def test_a_path_that_jumped_has_no_length():
     path = trace(ExponentialCosine(5), predictor=Tangent(), controller=Geometric())
     with pytest.raises(ArithmeticError, match="are not joined"):
