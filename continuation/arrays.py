@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.blas import dasum, idamax
 
 Array: TypeAlias = NDArray[np.float64]
 """A float64 array; shapes are named in the docstrings."""
 
 Matrix: TypeAlias = Any
 """A dense (N, N) array, a scipy sparse array, a `continuation.linear.Banded`, or a LinearOperator."""
+
+
+def finite(entries: Array) -> bool:
+    """Whether the sum of magnitudes is finite, for contiguous `entries` of shape (N,).
+
+    One BLAS call, which takes a quarter of the time of numpy's test and never warns.
+    """
+    return isfinite(dasum(entries))
+
+
+def largest(entries: Array) -> float:
+    """The largest magnitude among finite `entries`, shape (N,), N > 0: one BLAS call and no array in between."""
+    return abs(float(entries[idamax(entries)]))

@@ -8,11 +8,11 @@ from continuation.arrays import Array
 from continuation.evaluation import EvaluationError, Evaluator
 from continuation.events import Event, TargetValue, TurningPoint
 from continuation.linearization import Linearization
-from continuation.location import Arc, hidden, locate, samples
+from continuation.location import Arc, hidden, locate
 from continuation.tolerance import Tolerance
 
 ROUND_OFF = 1e-13
-"""How near a fold must be to the target, relative to 1 + |target|, to lie on it."""
+"""How near a fold must be to the target, relative to max(1, |target|), to lie on it."""
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:
@@ -62,12 +62,11 @@ def occurrences(
     """
     found: list[tuple[int, Linearization]] = []
     values = []
-    inside = samples(arc)
     for i, event in enumerate(events):
         g = event.monitor(arc.b.u, arc.b.tangent)
         values.append(g)
-        first = before[i] if before[i] != 0.0 else event.monitor(*samples(arc, (0.02,))[0])
-        if first == 0.0 or not hidden(event, inside, first, g):
+        first = before[i] if before[i] != 0.0 else event.monitor(*arc.behind)
+        if first == 0.0 or not hidden(event, arc.samples, first, g):
             continue
         try:
             points = locate(evaluator, event, arc, first, g, tolerance)

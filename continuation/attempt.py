@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, finite
 from continuation.correctors import BorderedNewton, Correction, Corrector
 from continuation.evaluation import EvaluationError, Evaluator, NotFiniteError
 from continuation.linearization import Linearization, linearize, relinearize
@@ -69,7 +69,7 @@ class Stepper:
             predicted = prediction(h)
         except EvaluationError as error:
             return Trial(h, None, None, 0.0, str(error), finite=not isinstance(error, NotFiniteError))
-        if not np.isfinite(predicted.sum()):
+        if not finite(predicted):
             return Trial(h, None, None, 0.0, "the predicted point is not finite", finite=False)
         border = point.border
         correction = self.corrector.correct(self.evaluator, point, predicted, border, self.tolerance)

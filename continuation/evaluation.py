@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from attrs import asdict, define, frozen
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, finite
 from continuation.derivatives import Derivative, from_residual
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
@@ -69,8 +69,7 @@ class CountedSystem:
             z = self.system.solve(r, rho)
         except SingularError as error:
             raise EvaluationError(str(error)) from error
-        # One reduction: a sum is finite unless an entry is not (or the entries are about to overflow anyway).
-        if not np.isfinite(z.sum()):
+        if not finite(z):
             raise EvaluationError("a bordered solve gave values that are not finite")
         return z
 
@@ -139,8 +138,8 @@ class Evaluator:
                 r: Array = np.asarray(self._residual(u[:-1], float(u[-1])), dtype=float)
             except (ArithmeticError, ValueError) as error:
                 raise NotFiniteError(f"the residual could not be evaluated: {error}") from error
-            if not np.isfinite(r.sum()):
-                raise NotFiniteError("the residual is not finite")
+        if not finite(r):
+            raise NotFiniteError("the residual is not finite")
         return r
 
     @property
@@ -185,9 +184,10 @@ class Evaluator:
                     system = self._bordered(u[:-1], float(u[-1]), border)
             else:
                 H_y, H_lam = self._evaluated(u)
-                if not np.isfinite(np.sum(H_lam)) or (isinstance(H_y, np.ndarray) and not np.isfinite(H_y.sum())):
+                column = np.asarray(H_lam, dtype=float)
+                if not finite(column) or (isinstance(H_y, np.ndarray) and not np.isfinite(H_y.sum())):
                     raise NotFiniteError("the derivative is not finite")
-                system = factor_bordered(H_y, np.asarray(H_lam, dtype=float), border)
+                system = factor_bordered(H_y, column, border)
         except EvaluationError:
             raise
         except ArithmeticError as error:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from continuation.evaluation import EvaluationError, Evaluator
 from continuation.location import Arc, land
 from continuation.metric import inner, norm
@@ -51,7 +49,7 @@ def connected(evaluator: Evaluator, arc: Arc, tolerance: Tolerance) -> bool:
     One residual and one solve with the factorisation at hand estimate how far the middle is off. On an arc that turns
     by less than a right angle a cubic misses its middle by less than a hundredth of its length.
     """
-    middle = arc.segment.at(0.5)
+    middle, _ = arc.samples[len(arc.samples) // 2]
     off = arc.a.solve(-evaluator.residual(middle))
     if norm(arc.a.weights, off) <= SLACK * norm(arc.a.weights, arc.b.u - arc.a.u):
         return True
@@ -68,7 +66,7 @@ def divergence(
     moved by less than a thousandth in each, or when it is beyond the horizon, whatever the parameter does.
     """
     mark, lam, stalled = marks
-    size = float(np.abs(u[:-1]).max())
+    size = largest(u[:-1])
     if mark == 0.0:
         return (max(size, 1.0), float(u[-1]), 0.0), False
     if size < 10.0 * mark:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from continuation.evaluation import CountedSystem, Counts, EvaluationError, Evaluator
 from continuation.metric import norm
 
@@ -109,14 +110,18 @@ def relinearize(
     """Linearize at u with a factorisation from nearby: the tangent is refined to round-off, and makes along . v > 0.
 
     Iterative refinement of M v = e_{N+1} with the factors of M~ multiplies the error by I - M~^{-1} M. It is believed
-    only if it contracts by 0.3 or better. Where the determinant's sign counts (`signed`), so must the refinement of a
-    right-hand side in general position: if M~^{-1} M had a negative eigenvalue, its component would not shrink, so
-    det M~ and det M have one sign. Else u gets factors of its own.
+    only if it contracts by 0.3 or better, else u gets factors of its own. Where the determinant's sign counts
+    (`signed`), the refinement begins with an error in general position, of the metric's size in each component: if
+    M~^{-1} M had a negative eigenvalue, that part of the error would not shrink, so det M~ and det M have one sign.
     """
     apply = evaluator.differential(u)
     tangent = None
-    if apply is not None and (not signed or _same_sign(apply, anchor)):
-        tangent = _refined(apply, anchor)
+    if apply is not None:
+        if signed:
+            guess = _general(u.size) / np.sqrt(weights)
+        else:
+            guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
+        tangent = _refined(apply, anchor, guess)
     if tangent is None:
         return linearize(evaluator, u, weights, along, 0)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
@@ -125,36 +130,26 @@ def relinearize(
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
 
 
-def _same_sign(apply: Callable[[Array], Array], anchor: Anchor) -> bool:
-    """Whether refinement contracts on a right-hand side that has a part in every direction."""
-    system, border = anchor.system, anchor.border
-    r = np.cos(1.0 + 1.7 * np.arange(border.size - 1.0) ** 2)
-    z = system.solve(r, 0.0)
-    before = np.inf
-    for _ in range(6):
-        increment = system.solve(r - apply(z), -float(np.dot(border, z)))
-        size = float(np.abs(increment).max())
-        if size > 0.3 * before:
-            return False
-        if size <= 1e-6 * float(np.abs(z).max()):
-            return True
-        z, before = z + increment, size
-    return True
+@lru_cache(maxsize=4)
+def _general(n: int) -> Array:
+    """A vector of n components between -1 and 1 that has a part in every direction."""
+    vector: Array = np.cos(1.0 + 1.7 * np.arange(float(n)) ** 2)
+    vector.flags.writeable = False
+    return vector
 
 
-def _refined(apply: Callable[[Array], Array], anchor: Anchor) -> Array | None:
+def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array) -> Array | None:
     """The solution v of M v = e_{N+1} at the point of `apply`, to round-off; None where refinement fails."""
     system, border = anchor.system, anchor.border
-    v = system.solve(np.zeros(border.size - 1), 1.0)
-    before = np.inf
-    for _ in range(12):
+    v, before = guess, np.inf
+    for _ in range(14):
         increment = system.solve(-apply(v), 1.0 - float(np.dot(border, v)))
-        size = float(np.abs(increment).max()) / float(np.abs(v).max())
+        size = largest(increment)
         if size > 0.3 * before:
             # At round-off the increments no longer shrink: that is the end of a refinement that has worked.
-            return v if before <= 1e-11 else None
+            return v if before <= 1e-11 * largest(v) else None
         v = v + increment
-        if size <= 1e-14:
+        if size <= 1e-14 * largest(v):
             return v
         before = size
     return None
@@ -180,13 +175,13 @@ class Refined:
         for _ in range(8):
             increment = self.near.solve(r - self.apply(z), rho - float(np.dot(self.border, z)))
             z = z + increment
-            size = float(np.abs(increment).max())
-            if size <= 1e-13 * float(np.abs(z).max()):
+            size = largest(increment)
+            if size <= 1e-13 * largest(z):
                 return z
             if size > 0.3 * before:
                 break
             before = size
-        if before <= 1e-9 * float(np.abs(z).max()):
+        if before <= 1e-9 * largest(z):
             return z
         raise EvaluationError("a factorisation from nearby could not be refined")
 

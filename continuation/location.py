@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Callable
+from functools import cached_property, partial
 
 import numpy as np
 from attrs import frozen
@@ -26,6 +26,19 @@ class Arc:
     b: Linearization
     border: Array
     segment: Segment
+
+    @cached_property
+    def samples(self) -> list[tuple[Array, Array]]:
+        """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
+        points, slopes = self.segment.sampled()
+        length = float(np.dot(self.border, self.b.u - self.a.u))
+        return [(u, slope / length) for u, slope in zip(points, slopes)]
+
+    @property
+    def behind(self) -> tuple[Array, Array]:
+        """The same just behind the beginning."""
+        length = float(np.dot(self.border, self.b.u - self.a.u))
+        return self.segment.at(0.02), self.segment.derivative(0.02) / length
 
 
 def settle(
@@ -76,13 +89,6 @@ def land(evaluator: Evaluator, near: Linearization, guess: Array, border: Array,
     return relinearize(evaluator, u, near.weights, anchor, border)
 
 
-def samples(arc: Arc, at: Sequence[float] | None = None) -> list[tuple[Array, Array]]:
-    """Points of the segment inside the arc, with tangents of about unit length; they cost no evaluation of H."""
-    length = float(np.dot(arc.border, arc.b.u - arc.a.u))
-    where = arc.segment.inside if at is None else at
-    return [(arc.segment.at(t), arc.segment.derivative(t) / length) for t in where]
-
-
 def hidden(event: Event, inside: list[tuple[Array, Array]], ga: float, gb: float) -> bool:
     """Whether the monitor may vanish on an arc, judged by its ends and the samples inside.
 
@@ -99,7 +105,7 @@ def locate(
 ) -> list[Linearization]:
     """All zeros of the monitor on the arc, in order, each on the path to round-off."""
     knots = [(arc.a, ga), (arc.b, gb)]
-    along = [ga, *(event.monitor(u, v) for u, v in samples(arc)), gb]
+    along = [ga, *(event.monitor(u, v) for u, v in arc.samples), gb]
     divided = ga * gb > 0.0 or sum(p * q < 0.0 for p, q in itertools.pairwise(along)) > 1
     if divided:
         knots[1:1] = [_knot(evaluator, event, arc, t, tolerance) for t in _dividing(arc, along)]

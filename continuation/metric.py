@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
 import numpy as np
@@ -34,7 +35,7 @@ def inner(weights: Array, a: Array, b: Array) -> float:
 
 def norm(weights: Array, a: Array) -> float:
     """The length of `a` in the metric of `weights`."""
-    return float(np.sqrt(np.dot(weights * a, a)))
+    return math.sqrt(np.dot(weights * a, a))
 
 
 def share(weights: Array, v: Array) -> float:
@@ -113,7 +114,8 @@ class Automatic:
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """1/max(|y_i|, 1)^2 for y, and one fixed weight for the parameter."""
-        weights: Array = np.maximum(np.abs(u), 1.0) ** -2
+        size = np.maximum(np.abs(u), 1.0)
+        weights: Array = 1.0 / (size * size)
         if current is not None:
             weights[-1] = current[-1]
             return weights

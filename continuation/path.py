@@ -198,7 +198,9 @@ class Path:
 
     @property
     def endpoint(self) -> Step:
-        """The last point."""
+        """The last point; an IndexError says why there is none."""
+        if not self.steps:
+            raise IndexError(f"the path has no point. {self.message}")
         return self.steps[-1]
 
     @property

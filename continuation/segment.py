@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -26,9 +27,24 @@ class Segment(Protocol):
         """Its derivative with respect to t, shape (N + 1,)."""
         ...
 
+    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
+        """Points and derivatives at all of `inside`, each of shape (len(inside), N + 1)."""
+        ...
+
     def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
         """The part up to the point `end` of the path, at pseudo-arclength sigma, where the tangent is v."""
         ...
+
+
+_QUARTERS = (0.25, 0.5, 0.75)
+_T = np.array(_QUARTERS)
+_BASIS = np.array(
+    [
+        [(1.0 - _T) ** 2 * (1.0 + 2.0 * _T), _T**2 * (3.0 - 2.0 * _T), _T * (1.0 - _T) ** 2, _T**2 * (_T - 1.0)],
+        [6.0 * _T * (_T - 1.0), 6.0 * _T * (1.0 - _T), (1.0 - _T) * (1.0 - 3.0 * _T), _T * (3.0 * _T - 2.0)],
+    ]
+).transpose(0, 2, 1)
+"""Hermite's basis and its derivative at the quarters: (2, 3, 4)."""
 
 
 @frozen(eq=False)
@@ -43,7 +59,7 @@ class HermiteSegment:
     @property
     def inside(self) -> tuple[float, ...]:
         """Quarters: the derivative of a cubic changes sign twice at most."""
-        return (0.25, 0.5, 0.75)
+        return _QUARTERS
 
     def at(self, t: float) -> Array:
         """The cubic at t."""
@@ -60,6 +76,11 @@ class HermiteSegment:
         b = chord - self.d1
         slope: Array = chord + (1.0 - t) * (1.0 - 3.0 * t) * a + t * (2.0 - 3.0 * t) * b
         return slope
+
+    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
+        """All at once: a product of matrices costs less than one point by itself."""
+        points, slopes = _BASIS @ np.array([self.u0, self.u1, self.d0, self.d1])
+        return points, slopes
 
     def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
         """The cubic to the new end."""
@@ -113,6 +134,10 @@ class SeriesSegment:
         """Its derivative at t."""
         slope: Array = self.length * self.curve.derivative(t * self.length)
         return slope + self.power * t ** (self.power - 1) * self.gap
+
+    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
+        """One by one."""
+        return [self.at(t) for t in _SIXTEENTHS], [self.derivative(t) for t in _SIXTEENTHS]
 
     def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
         """The same series to the new end."""

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import field, frozen
 from attrs.validators import ge, gt
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 
 
 @frozen
@@ -24,9 +24,8 @@ class Tolerance:
 
     def measure(self, increment: Array, u: Array) -> float:
         """The largest increment in units of the tolerance: small is <= 1."""
-        size = np.abs(u)
-        scale = self.absolute + self.relative * np.maximum(size, 1e-3 * float(size.max()))
-        return float((np.abs(increment) / scale).max())
+        scale = self.absolute + self.relative * np.maximum(np.abs(u), 1e-3 * largest(u))
+        return largest(increment / scale)
 
 
 def as_tolerance(value: float | Tolerance) -> Tolerance:

@@ -4,30 +4,29 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve
 
 from continuation import guards
-from continuation.arcs import angle_between, length_between, segment_between
-from continuation.arrays import Array
-from continuation.arrival import cut, monitored, occurrences, position, stop
+from continuation.arcs import angle_between, length_between
+from continuation.arrays import Array, largest
+from continuation.arrival import monitored
 from continuation.attempt import HIGH_ORDER_FRACTION, LOW_ORDER_FRACTION, Stepper, Trial
-from continuation.branch import passed
 from continuation.budget import Budget
 from continuation.checks import check_jacobian
 from continuation.citation import references_of, unique
 from continuation.controllers import Attempt, Controller
 from continuation.correctors import Corrector
 from continuation.endgame import End
-from continuation.ends import Ending, Ends
+from continuation.ends import Ends
 from continuation.evaluation import Counts, EvaluationError, Evaluator
 from continuation.events import Event
+from continuation.examination import Accepted, Examiner, residual_norm
 from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve
 from continuation.linearization import Anchor, Linearization
-from continuation.location import Arc
 from continuation.metric import Metric, norm, share
 from continuation.path import Kind, LocatedEvent, Path, Step
 from continuation.predictors import Knot, Prediction, Predictor
@@ -54,16 +53,6 @@ class Observer(Protocol):
     def end(self, tracer: Tracer) -> None:
         """The end; `tracer.path` is complete."""
         ...
-
-
-@frozen(eq=False)
-class Accepted:
-    """An accepted arc after examination: how it ends, its step, the state after it, the events on it."""
-
-    ending: Ending
-    step: Step
-    state: State
-    events: list[LocatedEvent]
 
 
 class Tracer:
@@ -149,6 +138,7 @@ class Tracer:
         stepper = Stepper(self._evaluator, self.settings.corrector, self.settings.tolerance, max_step, fraction)
         self._stepper = stepper
         self._ends = Ends(stepper, self.settings.target)
+        self._examiner = Examiner(self._evaluator, self.settings, self._ends)
         self._finish = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
         self._observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._start = start
@@ -213,10 +203,18 @@ class Tracer:
             )
         else:
             point = leave(self._evaluator, self._start, u0.size, settings.metric)
-        r = float(np.abs(self._evaluator.residual(point.u)).max())
+        r = largest(self._evaluator.residual(point.u))
         here = Knot(0.0, point.u, point.tangent)
         first = Step(
-            0, point.u, point.tangent, 0.0, residual_norm=r, orientation=point.orientation, kind=Kind.START
+            0,
+            point.u,
+            point.tangent,
+            0.0,
+            residual_norm=r,
+            orientation=point.orientation,
+            kind=Kind.START,
+            share=share(point.weights, point.tangent),
+            observed=self._observed(point.u),
         )
         state = State(
             history=(here,),
@@ -232,7 +230,7 @@ class Tracer:
             marks=guards.divergence((0.0, 0.0, 0.0), point.u, 0.0)[0],
         )
         # The state last: whatever interrupts before it, a resumed trace begins again and lacks nothing.
-        self._record(point, first, state)
+        self._record(first, state)
         if settings.target is not None and point.lam == settings.target and self._start is None:
             self._end(Status.REACHED_TARGET, f"{Status.REACHED_TARGET} The start lies on it.")
         return point
@@ -252,10 +250,12 @@ class Tracer:
         for observer in self.observers:
             observer.end(self)
 
-    def _record(self, point: Linearization, step: Step, state: State, events: Sequence[LocatedEvent] = ()) -> None:
+    def _observed(self, u: Array) -> Mapping[str, float]:
+        """The homotopy's extra scalars at a point."""
+        return {} if self._observe is None else self._observe(u[:-1], float(u[-1]))
+
+    def _record(self, step: Step, state: State, events: Sequence[LocatedEvent] = ()) -> None:
         """Add a step, with the events before it, to the path, the state and the observers: all or, if cut off, none."""
-        observed = self._observe(step.y, step.lam) if self._observe is not None else {}
-        step = evolve(step, share=share(point.weights, point.tangent), observed=observed)
         self.path.events.extend(events)
         self.path.steps.append(step)
         self.state = state
@@ -288,9 +288,9 @@ class Tracer:
         landing = self._ends.land(point, prediction, h, state.tried)
         if landing is not None:
             if landing.landed:
-                accepted = self._accept(point, evolve(state, index=state.index + 1), landing, 0, prediction)
+                accepted = self._examiner.examine(point, evolve(state, index=state.index + 1), landing, 0, prediction)
                 if accepted is not None:
-                    return self._move(accepted)
+                    return self._move(point, accepted)
             state = evolve(state, tried=point.lam)
         while True:
             trial = self._stepper.attempt(point, prediction, self._stepper.shortened(point, prediction, h))
@@ -298,9 +298,9 @@ class Tracer:
             memory = decision.state
             if decision.accept and trial.arrival is not None:
                 draft = evolve(state, controller=memory, h=decision.h, index=state.index + 1)
-                accepted = self._accept(point, draft, trial, rejections, prediction)
+                accepted = self._examiner.examine(point, draft, trial, rejections, prediction)
                 if accepted is not None:
-                    return self._move(accepted)
+                    return self._move(point, accepted)
                 decision = evolve(decision, h=trial.h / 2.0)
                 trial = evolve(trial, reason="the arc is not on one path, as far as its determinant and inside tell")
             rejections += 1
@@ -346,86 +346,35 @@ class Tracer:
 
     # -- after acceptance -------------------------------------------------------------------------------------
 
-    def _accept(
-        self, point: Linearization, state: State, trial: Trial, rejections: int, prediction: Prediction
-    ) -> Accepted | None:
-        """Examine an arc that the controller accepts: orientation, end, events; None if it does not hold."""
-        arrival, correction = trial.arrival, trial.correction
-        assert arrival is not None
+    def _move(self, point: Linearization, accepted: Accepted) -> Linearization | None:
+        """Make the arrival the current point: metric, history, divergence, and the homotopy's own finish."""
+        state, trial, ending = accepted.state, accepted.trial, accepted.ending
+        arrival, correction = ending.arc.b, trial.correction
         assert correction is not None
-        evaluator, tolerance, events = self._evaluator, self.settings.tolerance, self.settings.events
-        arc = Arc(point, arrival, point.border, segment_between(point, arrival, prediction))
-        branch = None
-        if arrival.orientation not in (0, state.orientation):
-            branch = passed(evaluator, point, arrival, tolerance)
-            if branch is None:
-                return None
-            state = evolve(state, orientation=arrival.orientation)
-        try:
-            if not guards.connected(evaluator, arc, tolerance):
-                return None
-            ending = Ending(arc, Kind.TARGET, Status.REACHED_TARGET) if trial.landed else self._ends.on(arc, state)
-            found, monitors = occurrences(evaluator, events, state.monitors, ending.arc, tolerance)
-        except EvaluationError:
-            return None
-        if branch is not None and position(arc, branch.u) <= position(arc, ending.arc.b.u):
-            found.append((self.settings.branch_index, branch))
-            found.sort(key=lambda pair: position(arc, pair[1].u))
-        last, occurred = stop(events, state.occurrences, found)
-        if last is not None:
-            i, stopping = found[last]
-            ending = Ending(cut(ending.arc, stopping), events[i].kind, Status.STOPPED_AT_EVENT)
-            found = found[: last + 1]
-        whole = ending.arc.b is arrival
-        end = ending.arc.b
-        angle = trial.angle if whole else angle_between(point, end)
+        marks, diverged = guards.divergence(state.marks, arrival.u, largest(state.origin.u[:-1]))
+        weights = self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights)
+        moved = arrival.with_weights(weights)
+        whole = arrival is trial.arrival
+        angle = trial.angle if whole else angle_between(point, arrival)
         step = Step(
             index=state.index,
-            u=end.u,
-            tangent=end.tangent,
-            arclength=state.here.arclength + length_between(point, end, angle),
+            u=moved.u,
+            tangent=arrival.tangent,
+            arclength=state.here.arclength + length_between(point, arrival, angle),
             step_length=trial.h,
-            residual_norm=correction.residual_norm if whole else self._residual_norm(end.u),
-            orientation=end.orientation,
+            residual_norm=correction.residual_norm if whole else residual_norm(self._evaluator, moved.u),
+            orientation=moved.orientation,
             kind=ending.kind,
             corrector_iterations=correction.iterations,
-            rejections=rejections,
+            rejections=accepted.rejections,
             contraction=correction.contraction,
             distance=correction.distance,
             angle=angle,
+            share=share(moved.weights, moved.tangent),
             segment=ending.arc.segment,
             weights=point.weights,
+            observed=self._observed(moved.u),
         )
-        located = [self._located(i, event, point, state) for i, event in found]
-        return Accepted(ending, step, evolve(state, monitors=monitors, occurrences=occurred), located)
-
-    def _located(self, i: int, at: Linearization, begin: Linearization, state: State) -> LocatedEvent:
-        event = self.settings.events[i]
-        return LocatedEvent(
-            name=event.name,
-            kind=event.kind,
-            arclength=state.here.arclength + length_between(begin, at, angle_between(begin, at)),
-            u=at.u,
-            tangent=at.tangent,
-            residual_norm=self._residual_norm(at.u),
-            monitor=event.monitor(at.u, at.tangent),
-            orientation=at.orientation,
-            step=state.index,
-        )
-
-    def _residual_norm(self, u: Array) -> float:
-        try:
-            return float(np.abs(self._evaluator.residual(u)).max())
-        except EvaluationError:
-            return math.nan
-
-    def _move(self, accepted: Accepted) -> Linearization | None:
-        """Make the arrival the current point: metric, history, divergence, and the homotopy's own finish."""
-        state, step, ending = accepted.state, accepted.step, accepted.ending
-        arrival = ending.arc.b
-        marks, diverged = guards.divergence(state.marks, arrival.u, float(np.abs(state.origin.u[:-1]).max()))
-        weights = self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights)
-        moved = arrival.with_weights(weights)
         knot = Knot(step.arclength, moved.u, moved.tangent)
         state = evolve(
             state,
@@ -433,9 +382,11 @@ class Tracer:
             weights=moved.weights,
             anchor=(moved.anchor.u, moved.anchor.border),
             marks=marks,
+            monitors=accepted.monitors,
+            occurrences=accepted.occurrences,
         )
         self.counts.accepted += 1
-        self._record(moved, step, state, accepted.events)
+        self._record(step, state, accepted.events)
         if ending.status is not Status.TRACING:
             if ending.limit is not None:
                 self.path.end_error, self.path.winding_number = ending.limit.error, ending.limit.winding_number
@@ -464,13 +415,15 @@ class Tracer:
             tangent=chord / length if length > 0.0 else point.tangent,
             arclength=before.arclength + length,
             step_length=length,
-            residual_norm=self._residual_norm(u),
+            residual_norm=residual_norm(self._evaluator, u),
             orientation=point.orientation,
             kind=Kind.TARGET,
+            share=share(point.weights, point.tangent),
+            observed=self._observed(u),
         )
         assert self.state is not None
         self.counts.accepted += 1
-        self._record(point, last, self.state)
+        self._record(last, self.state)
         if limit is not None:
             self.path.end_error, self.path.winding_number = limit.error, limit.winding_number
         self._end(Status.REACHED_TARGET, message)

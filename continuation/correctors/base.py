@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from continuation.evaluation import EvaluationError, Evaluator, NotFiniteError, SingularPointError
 from continuation.linearization import Anchor, Linearization
 from continuation.metric import norm
@@ -87,12 +87,14 @@ def iterate(
     direction: Direction,
     max_iterations: int,
     max_contraction: float,
+    anchors: Sequence[Anchor] = (),
 ) -> Correction:
     """Add increments until one is small and the residual agrees, or until they stop shrinking.
 
     An increment that grows by more than `max_contraction` ends the iteration: a corrector that wanders finds another
     branch, and a shorter step is cheaper than a lucky one. Two exceptions: near the tolerance round-off makes ratios
-    meaningless, so there only the iteration limit counts.
+    meaningless, so there only the iteration limit counts. `direction` may add the factorisations that it makes to
+    `anchors`: the last goes with the outcome.
     """
     u = predicted.copy()
     contraction, size, before = 0.0, np.inf, np.nan
@@ -100,22 +102,22 @@ def iterate(
 
     def outcome(iterations: int, reason: str = "") -> Correction:
         distance = norm(point.weights, u - predicted)
-        return Correction(u, not reason, iterations, residual_norm, contraction, distance, reason)
+        anchor = anchors[-1] if anchors else None
+        return Correction(u, not reason, iterations, residual_norm, contraction, distance, reason, anchor=anchor)
 
     try:
         r = evaluator.residual(u)
         for k in range(max_iterations):
             increment = direction(k, u, r, contraction)
             before, size = size, tolerance.measure(increment, u)
-            if np.isfinite(before):
-                ratio = size / before
-                if size > 1.0:
-                    contraction = max(contraction, ratio)
-                    if ratio > max_contraction:
-                        return outcome(k + 1, f"the corrector does not contract (ratio {ratio:.2g})")
+            if k and size > 1.0:
+                ratio = size / before if before > 0.0 else np.inf
+                contraction = max(contraction, ratio)
+                if ratio > max_contraction:
+                    return outcome(k + 1, f"the corrector does not contract (ratio {ratio:.2g})")
             u += increment
             r = evaluator.residual(u)
-            residual_norm = float(np.abs(r).max())
+            residual_norm = largest(r)
             if size <= 1.0 and residual_norm <= tolerance.residual:
                 return outcome(k + 1)
     except EvaluationError as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import field, frozen
 from attrs.validators import and_, ge, gt, le
 
 from continuation.arrays import Array
@@ -44,19 +44,21 @@ class BorderedNewton:
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
     ) -> Correction:
         """See `Corrector.correct`."""
-        anchor: Anchor | None = None
+        anchors: list[Anchor] = []
         fresh_at = 0
 
         def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
-            nonlocal anchor, fresh_at
-            if anchor is None or self.reuse == 0.0 or (contraction > self.reuse and k > fresh_at + 1):
-                anchor, fresh_at = Anchor(u.copy(), border, evaluator.factor(u, border)), k
-            return anchor.system.solve(-r, 0.0)
+            nonlocal fresh_at
+            if not anchors or self.reuse == 0.0 or (contraction > self.reuse and k > fresh_at + 1):
+                anchors[:] = [Anchor(u.copy(), border, evaluator.factor(u, border))]
+                fresh_at = k
+            return anchors[0].system.solve(-r, 0.0)
 
-        correction = iterate(
-            evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction
+        # Newton's own factors are those of the iterate before the last: not offered where none is to serve twice.
+        offered = anchors if self.reuse > 0.0 else ()
+        return iterate(
+            evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction, offered
         )
-        return evolve(correction, anchor=anchor if self.reuse > 0.0 else None)
 
 
 @frozen

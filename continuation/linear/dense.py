@@ -7,8 +7,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 
-from continuation.arrays import Array
-from continuation.linear.entries import finite
+from continuation.arrays import Array, finite
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1

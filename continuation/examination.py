@@ -1,0 +1,100 @@
+"""An arc that the controller accepts, examined before it counts: orientation, connectedness, end, events."""
+
+from __future__ import annotations
+
+import math
+
+from attrs import evolve, frozen
+
+from continuation import guards
+from continuation.arcs import angle_between, length_between, segment_between
+from continuation.arrays import Array, largest
+from continuation.arrival import cut, occurrences, position, stop
+from continuation.attempt import Trial
+from continuation.branch import passed
+from continuation.ends import Ending, Ends
+from continuation.evaluation import EvaluationError, Evaluator
+from continuation.linearization import Linearization
+from continuation.location import Arc
+from continuation.path import Kind, LocatedEvent
+from continuation.predictors import Prediction
+from continuation.settings import Settings
+from continuation.state import State
+from continuation.status import Status
+
+
+@frozen(eq=False)
+class Accepted:
+    """An accepted arc after examination: how it ends, the events on it, and what the state after it is made of."""
+
+    ending: Ending
+    trial: Trial
+    rejections: int
+    state: State
+    events: list[LocatedEvent]
+    monitors: tuple[float, ...]
+    occurrences: tuple[int, ...]
+
+
+def residual_norm(evaluator: Evaluator, u: Array) -> float:
+    """The largest component of the residual; nan where there is none."""
+    try:
+        return largest(evaluator.residual(u))
+    except EvaluationError:
+        return math.nan
+
+
+@frozen(eq=False)
+class Examiner:
+    """What an examination needs."""
+
+    evaluator: Evaluator
+    settings: Settings
+    ends: Ends
+
+    def examine(
+        self, point: Linearization, state: State, trial: Trial, rejections: int, prediction: Prediction
+    ) -> Accepted | None:
+        """The arc from `point` to the trial's arrival; None if it does not hold."""
+        arrival = trial.arrival
+        assert arrival is not None
+        evaluator, tolerance, events = self.evaluator, self.settings.tolerance, self.settings.events
+        arc = Arc(point, arrival, point.border, segment_between(point, arrival, prediction))
+        branch = None
+        if arrival.orientation not in (0, state.orientation):
+            branch = passed(evaluator, point, arrival, tolerance)
+            if branch is None:
+                return None
+            state = evolve(state, orientation=arrival.orientation)
+        try:
+            if not guards.connected(evaluator, arc, tolerance):
+                return None
+            ending = Ending(arc, Kind.TARGET, Status.REACHED_TARGET) if trial.landed else self.ends.on(arc, state)
+            found, monitors = occurrences(evaluator, events, state.monitors, ending.arc, tolerance)
+        except EvaluationError:
+            return None
+        if branch is not None and position(arc, branch.u) <= position(arc, ending.arc.b.u):
+            found.append((self.settings.branch_index, branch))
+            found.sort(key=lambda pair: position(arc, pair[1].u))
+        last, occurred = stop(events, state.occurrences, found)
+        if last is not None:
+            i, stopping = found[last]
+            ending = Ending(cut(ending.arc, stopping), events[i].kind, Status.STOPPED_AT_EVENT)
+            found = found[: last + 1]
+        located = [self.located(i, event, point, state) for i, event in found]
+        return Accepted(ending, trial, rejections, state, located, monitors, occurred)
+
+    def located(self, i: int, at: Linearization, begin: Linearization, state: State) -> LocatedEvent:
+        """The i-th event, found at a point of the arc that begins at another."""
+        event = self.settings.events[i]
+        return LocatedEvent(
+            name=event.name,
+            kind=event.kind,
+            arclength=state.here.arclength + length_between(begin, at, angle_between(begin, at)),
+            u=at.u,
+            tangent=at.tangent,
+            residual_norm=residual_norm(self.evaluator, at.u),
+            monitor=event.monitor(at.u, at.tangent),
+            orientation=at.orientation,
+            step=state.index,
+        )
