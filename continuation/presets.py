@@ -22,10 +22,10 @@ class Preset:
 
 FAST = Preset(
     "FAST",
-    "long steps and one factorisation for several increments; for smooth paths whose shape is known",
+    "steps that aim at a turn of 26 degrees and one factorisation for several increments; for smooth paths",
     Hermite(),
-    BorderedNewton(reuse=0.3),
-    AllgowerGeorg(contraction=0.5, distance=0.3, angle=0.5),
+    BorderedNewton(reuse=0.5),
+    AllgowerGeorg(contraction=0.5, distance=0.2, angle=0.45, deceleration=2.0),
 )
 DEFAULT = Preset(
     "DEFAULT",

@@ -48,7 +48,7 @@ def test_the_circle_stops_where_it_is_told():
 
 
 @every_preset
-@pytest.mark.parametrize("splitting", [1.0, 0.01, 30.0])
+@pytest.mark.parametrize("splitting", [1.0, 0.003, 0.01, 0.0324, 0.07, 30.0])
 def test_both_folds_of_the_cusp(preset, splitting):
     path = trace(Cusp(splitting), preset=preset)
     x = np.sqrt(splitting / 3.0)
