@@ -64,9 +64,16 @@ class CountedSystem:
 
     def solve(self, r: Array, rho: float) -> Array:
         """The bordered solve; EvaluationError where the answer is not finite."""
+        return self._counted(self.system.solve, r, rho)
+
+    def approximate(self, r: Array, rho: float) -> Array:
+        """The same for an iteration that measures its own residual: not refined where the structure can do without."""
+        return self._counted(getattr(self.system, "approximate", self.system.solve), r, rho)
+
+    def _counted(self, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
         self.counts.solves += 1
         try:
-            z = self.system.solve(r, rho)
+            z = solve(r, rho)
         except SingularError as error:
             raise EvaluationError(str(error)) from error
         if not finite(z):

@@ -143,7 +143,7 @@ def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array) -> A
     system, border = anchor.system, anchor.border
     v, before = guess, np.inf
     for _ in range(14):
-        increment = system.solve(-apply(v), 1.0 - float(np.dot(border, v)))
+        increment = system.approximate(-apply(v), 1.0 - float(np.dot(border, v)))
         size = largest(increment)
         if size > 0.3 * before:
             # At round-off the increments no longer shrink: that is the end of a refinement that has worked.

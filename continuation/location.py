@@ -64,7 +64,7 @@ def settle(
 
 
 def _against(system: CountedSystem, r: Array) -> Array:
-    return system.solve(r, 0.0)
+    return system.approximate(r, 0.0)
 
 
 def _polished(

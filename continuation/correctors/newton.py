@@ -52,7 +52,7 @@ class BorderedNewton:
             if not anchors or self.reuse == 0.0 or (contraction > self.reuse and k > fresh_at + 1):
                 anchors[:] = [Anchor(u.copy(), border, evaluator.factor(u, border))]
                 fresh_at = k
-            return anchors[0].system.solve(-r, 0.0)
+            return anchors[0].system.approximate(-r, 0.0)
 
         # Newton's own factors are those of the iterate before the last: not offered where none is to serve twice.
         offered = anchors if self.reuse > 0.0 else ()

@@ -136,6 +136,10 @@ class BlockElimination:
         z, accurate = refined(self.bordered, self._eliminate, join(r, rho))
         return z if accurate else self._whole.solve(r, rho)
 
+    def approximate(self, r: Array, rho: float) -> Array:
+        """The same without measuring the residual: for an iteration that measures its own."""
+        return self._eliminate(join(r, rho))
+
     def _eliminate(self, rhs: Array) -> Array:
         x = self.factor.solve(rhs[:-1])
         lam: float = (rhs[-1] - self.bordered.row[:-1] @ x) / self.schur

@@ -12,7 +12,10 @@ class SingularError(ArithmeticError):
 
 
 class BorderedSystem(Protocol):
-    """A factorisation of the bordered matrix ``[[H_y, H_lam], [border']]`` of order N + 1."""
+    """A factorisation of the bordered matrix ``[[H_y, H_lam], [border']]`` of order N + 1.
+
+    A structure whose `solve` refines its answer may offer `approximate`, with the same arguments, which does not.
+    """
 
     @property
     def sign(self) -> int:

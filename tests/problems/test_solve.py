@@ -262,7 +262,7 @@ def test_the_archive_holds_the_path(tmp_path):
         np.testing.assert_array_equal(archive[0].y, solution.path.y)
 
 
-SMOKE = 2_000
+SMOKE = 500
 
 
 def test_no_false_claim_on_random_small_problems():
