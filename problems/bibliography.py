@@ -2,14 +2,6 @@
 
 from __future__ import annotations
 
-ALLGOWER_GEORG = """@book{AllgowerGeorg2003,
-  author = {Allgower, Eugene L. and Georg, Kurt},
-  title = {Introduction to Numerical Continuation Methods},
-  publisher = {SIAM},
-  year = {2003},
-  doi = {10.1137/1.9780898719154},
-}"""
-
 BRATU = """@article{Bratu1914,
   author = {Bratu, G.},
   title = {Sur les {\\'e}quations int{\\'e}grales non lin{\\'e}aires},

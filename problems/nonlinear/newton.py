@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from problems.bibliography import ALLGOWER_GEORG, KELLER
+from continuation.bibliography import ALLGOWER_GEORG
+from problems.bibliography import KELLER
 from problems.nonlinear.differentiable import Differentiable
 from problems.nonlinear.door import Function, Jacobian, start_vector, value_at
 from problems.options import quiet
