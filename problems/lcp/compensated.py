@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,9 @@ from problems.lcp.problem import LCP
 _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.int64(~0x7FFFFFF)
 """Keeps the leading 26 bits of a double: the product of two such numbers is exact."""
+
+_BLOCK = 2**15
+"""Entries of A in a block of rows."""
 
 
 def accurate_w(problem: LCP, x: Array) -> tuple[Array, Array]:
@@ -36,18 +38,8 @@ def accurate_w(problem: LCP, x: Array) -> tuple[Array, Array]:
     ----------
     Ogita, Rump and Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26, 2005 (Dot2, Proposition 5.5).
     """
-    total = problem.q.copy()
-    lost = np.zeros(problem.n)
-    size = np.abs(problem.q)
-    terms = 1
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
-        for rows, entries, factors in _terms(problem, x):
-            product, error = _two_product(entries, factors)
-            summed, rounding = _two_sum(total[rows], product)
-            total[rows] = summed
-            lost[rows] += error + rounding
-            size[rows] += np.abs(product)
-            terms += 1
+        total, lost, size, terms = _sparse_sums(problem, x) if problem.sparse else _dense_sums(problem, x)
         w = total + lost
         gamma = 4.0 * (terms + 2) * _UNIT
         bound = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
@@ -55,12 +47,32 @@ def accurate_w(problem: LCP, x: Array) -> tuple[Array, Array]:
     return np.where(overflowed, np.inf, w), np.where(overflowed, np.inf, bound)
 
 
-def _terms(problem: LCP, x: Array) -> Iterator[tuple[Any, Array, Array]]:
-    """(rows, entries of A, entries of x), no row twice in one term: a column of A, or the k-th entry of each row."""
-    if not problem.sparse:
-        for j in np.flatnonzero(x):
-            yield slice(None), problem.A[:, j], np.full(problem.n, x[j])
-        return
+def _dense_sums(problem: LCP, x: Array) -> tuple[Array, Array, Array, int]:
+    """(sum, what it lost, sum of magnitudes, number of terms) of each row, by blocks of rows that stay in the cache."""
+    support = np.flatnonzero(x)
+    factors, everywhere = x[support], support.size == problem.n
+    total, lost, size = problem.q.copy(), np.zeros(problem.n), np.abs(problem.q)
+    step = max(_BLOCK // max(support.size, 1), 1)
+    for begin in range(0, problem.n if support.size else 0, step):
+        rows = slice(begin, begin + step)
+        entries = problem.A[rows] if everywhere else problem.A[rows][:, support]
+        product, error = _two_product(entries, factors)
+        lost[rows] += error.sum(axis=1)
+        size[rows] += np.abs(product).sum(axis=1)
+        # In halves: a row of k terms is summed in log2(k) passes over arrays, and every rounding error is kept.
+        while product.shape[1] > 1:
+            half = product.shape[1] // 2
+            summed, rounding = _two_sum(product[:, :half], product[:, half : 2 * half])
+            lost[rows] += rounding.sum(axis=1)
+            product = summed if 2 * half == product.shape[1] else np.hstack([summed, product[:, -1:]])
+        total[rows], rounding = _two_sum(total[rows], product[:, 0])
+        lost[rows] += rounding
+    return total, lost, size, support.size + 1
+
+
+def _sparse_sums(problem: LCP, x: Array) -> tuple[Array, Array, Array, int]:
+    """The same for a sparse matrix: the k-th stored entry of each row together."""
+    total, lost, size = problem.q.copy(), np.zeros(problem.n), np.abs(problem.q)
     stored = sp.csr_array(problem.A)
     lengths: NDArray[Any] = np.diff(stored.indptr)
     longest_first = np.argsort(-lengths, kind="stable")
@@ -68,7 +80,11 @@ def _terms(problem: LCP, x: Array) -> Iterator[tuple[Any, Array, Array]]:
     for k in range(int(ordered[0])):
         rows = longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
         position = stored.indptr[rows] + k
-        yield rows, stored.data[position], x[stored.indices[position]]
+        product, error = _two_product(stored.data[position], x[stored.indices[position]])
+        total[rows], rounding = _two_sum(total[rows], product)
+        lost[rows] += error + rounding
+        size[rows] += np.abs(product)
+    return total, lost, size, int(ordered[0]) + 1
 
 
 def _two_sum(a: Array, b: Array) -> tuple[Array, Array]:

@@ -22,6 +22,11 @@ Solver = Callable[[Array], Array]
 SINGULAR = 1e-14
 """Reciprocal condition below which a face counts as singular."""
 
+DOUBTFUL = 1e-6
+"""Ratio of the smallest to the largest pivot below which the condition is estimated."""
+
+EPS = float(np.finfo(float).eps)
+
 SHIFT = 1e-8
 """Shift of the diagonal, relative to the largest entry, with which the equations of a singular face are solved."""
 
@@ -56,8 +61,9 @@ class Face:
         """
         x = np.zeros_like(near) if self.exact else np.where(self.active, near, 0.0)
         with np.errstate(over="ignore", invalid="ignore"):
+            # From zero, where w = q, one solve is all that exact factors need.
             for _ in range(1 if self.exact else CORRECTIONS):
-                x = self._corrected(x, self.problem.w(x))
+                x = self._corrected(x, self.problem.q if self.exact else self.problem.w(x))
             w = self.problem.w(x)
         if not (np.isfinite(x).all() and np.isfinite(w).all()):
             return None
@@ -93,32 +99,32 @@ class Faces:
         """The problem."""
         return self.structure.problem
 
-    def face(self, active: Mask) -> Face | None:
-        """The face of an active set, factored; None where that is impossible."""
+    def face(self, active: Mask, shift: float = 0.0) -> Face | None:
+        """The face of an active set, factored, with `shift` added to the diagonal; None where that is impossible."""
         inside = np.flatnonzero(active)
         if inside.size == 0:
             return Face(self.problem, active, lambda r: r, True)
         if self.structure.band is not None:
-            solver, exact = self._banded(active), True
+            solver, exact = self._banded(active, shift), True
         elif self.problem.sparse:
-            solver, exact = _sparse(self.problem.A[inside][:, inside])
+            solver, exact = _sparse(self.problem.A[inside][:, inside], shift)
         else:
-            solver, exact = self._dense(inside)
+            solver, exact = self._dense(inside, shift)
         return None if solver is None else Face(self.problem, active, solver, exact)
 
-    def _dense(self, inside: NDArray[np.intp]) -> tuple[Solver | None, bool]:
-        block = self.problem.A[np.ix_(inside, inside)] if inside.size < self.problem.n else self.problem.A
-        symmetric = self.structure.symmetric and self.structure.semidefinite
-        norm = float(np.abs(block).sum(axis=0).max())
-        for exact in (True, False):
-            if not exact:
-                block = block + SHIFT * max(norm, 1e-300) * np.eye(inside.size)
-            solver = _cholesky(block, norm) if symmetric else _lu(block, norm)
-            if solver is not None:
-                return solver, exact
-        return None, False
+    def _dense(self, inside: NDArray[np.intp], shift: float) -> tuple[Solver | None, bool]:
+        block = self.problem.A.take(inside, 0).take(inside, 1)
+        block[np.diag_indices(inside.size)] += shift
+        if self.structure.symmetric and (solver := _cholesky(block)) is not None:
+            return solver, True
+        # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
+        definite = self.structure.symmetric and self.structure.semidefinite
+        if not definite and (solver := _lu(block)) is not None:
+            return solver, True
+        block[np.diag_indices(inside.size)] += SHIFT * max(_norm(block), 1e-300)
+        return (_cholesky if definite else _lu)(block), False
 
-    def _banded(self, active: Mask) -> Solver | None:
+    def _banded(self, active: Mask, shift: float) -> Solver | None:
         """In the band of the whole matrix, with unit rows off the face: no index is moved."""
         band = self.structure.band
         assert band is not None
@@ -127,6 +133,7 @@ class Faces:
         for k in range(-lower, upper + 1):
             begin, end = max(0, -k), min(n, n - k)
             room[lower + upper - k, begin + k : end + k] = (active * band.rows[lower + k])[begin:end]
+        room[lower + upper] += shift
         room[lower + upper, ~active] = 1.0
         lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
 
@@ -139,23 +146,33 @@ class Faces:
         return solve if info == 0 else None
 
 
-def _cholesky(block: Array, norm: float) -> Solver | None:
+def _norm(block: Array) -> float:
+    return float(np.abs(block).sum(axis=0).max())
+
+
+def _cholesky(block: Array) -> Solver | None:
     factor, info = dpotrf(block.T, lower=1, clean=0)
-    if info != 0 or float(factor.diagonal().min()) ** 2 < SINGULAR * norm:
+    if info != 0 or factor.diagonal().min() ** 2 < EPS * block.shape[0] * block.diagonal().max():
         return None
     return lambda right: np.asarray(dpotrs(factor, right, lower=1)[0]).ravel()
 
 
-def _lu(block: Array, norm: float) -> Solver | None:
+def _lu(block: Array) -> Solver | None:
     # The transpose is Fortran-ordered as LAPACK wants it; the factors then solve with their transpose.
     factors, swaps, info = dgetrf(block.T)
-    if info != 0 or dgecon(factors, norm)[0] < SINGULAR:
+    if info != 0:
+        return None
+    pivots = np.abs(factors.diagonal())
+    # The condition is estimated only where the pivots make it doubtful: at these orders it costs half a factorisation.
+    if pivots.min() < DOUBTFUL * pivots.max() and dgecon(factors, _norm(block))[0] < SINGULAR:
         return None
     return lambda right: np.asarray(dgetrs(factors, swaps, right, trans=1)[0]).ravel()
 
 
-def _sparse(block: Matrix) -> tuple[Solver | None, bool]:
+def _sparse(block: Matrix, shift: float) -> tuple[Solver | None, bool]:
     block = sp.csc_array(block)
+    if shift:
+        block = sp.csc_array(block + shift * sp.eye_array(block.shape[0]))
     try:
         return splu(block, permc_spec="MMD_AT_PLUS_A").solve, True
     except RuntimeError:  # SuperLU's word for an exact zero pivot

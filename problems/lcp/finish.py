@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.evaluation import Counts
-from problems.lcp.certificate import certify
+from continuation.linear import BorderedSystem
+from problems.lcp.certificate import Certificate, certify
 from problems.lcp.faces import Face, Faces
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.problem import LCP
@@ -41,6 +42,18 @@ SPACING = 0.4
 STEPS = 4
 """Corrections of the guess at each try on a path."""
 
+PATIENCE = 3
+"""So many corrections in a row that do not bring the number of changed indices to a new low are going in circles."""
+
+SHIFTS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+"""Of the diagonal, in units of its mean, in the rounds of the proximal method."""
+
+ROUND_STEPS = 25
+"""Corrections in one of its rounds."""
+
+ROUND_PATIENCE = 5
+"""The patience in its rounds: what is solved there has one solution, and mostly a way to it."""
+
 
 @define(eq=False)
 class Finish:
@@ -54,19 +67,25 @@ class Finish:
         What `Certificate.solves` is asked.
     counts : Counts
         Where factorisations are added up.
+    certificate : Certificate or None
+        Of the last solution found.
     """
 
     faces: Faces
     tolerance: float
     counts: Counts = field(factory=Counts)
+    certificate: Certificate | None = field(default=None, init=False)
     _tried: set[bytes] = field(factory=set, init=False)
+    _last: Mask | None = field(default=None, init=False)
 
     @property
     def problem(self) -> LCP:
         """The problem."""
         return self.faces.problem
 
-    def settle(self, active: Mask, steps: int, near: Array | None = None) -> Array | None:
+    def settle(
+        self, active: Mask, steps: int, near: Array | None = None, patience: int | None = None
+    ) -> Array | None:
         """The solution on the face {x_i = 0 off `active`, w_i = 0 on it}, or on one of `steps` corrected faces.
 
         Parameters
@@ -76,13 +95,17 @@ class Finish:
         steps : int
         near : Array, optional
             Where a face holds many points, the one nearest to this is taken; zero by default.
+        patience : int, optional
+            Corrections in a row without a new low of the changes after which it is given up; see `PATIENCE`.
         """
         x = np.zeros(self.problem.n) if near is None else near
+        changes: list[int] = []
         for _ in range(steps + 1):
             key = np.packbits(active).tobytes()
             if key in self._tried:
                 return None
             self._tried.add(key)
+            self._last = active
             self.counts.factorizations += 1
             face = self.faces.face(active)
             point = None if face is None else face.point(x)
@@ -94,25 +117,85 @@ class Finish:
                 if solved:
                     return x
                 w = self.problem.w(x)
-            active = np.where(active, x > 0.0, w < 0.0)
+            following = np.where(active, x > 0.0, w < 0.0)
+            changes.append(int(np.count_nonzero(following != active)))
+            if patience is not None and _circling(changes, patience):
+                return None
+            active = following
         return None
+
+    def settle_nearby(self, active: Mask | None = None) -> Array | None:
+        """The solution by the proximal method: for a positive semidefinite A, singular or nearly.
+
+        Each round solves the LCP of A + shift I, whose point x is unique, near the point of the round before, and then
+        tries the active set that comes out on A itself.
+
+        Parameters
+        ----------
+        active : Mask, optional
+            The guess. Default: the last that was tried.
+        """
+        active = self._last if active is None else active
+        if active is None:
+            return None
+        x = np.zeros(self.problem.n)
+        unit = float(np.mean(self.problem.A.diagonal()))
+        for shift in SHIFTS:
+            moved = self._moved(active, shift * unit, x)
+            if moved is None:
+                return None
+            active, x = moved
+            solved = self.settle(active, 1, x)
+            if solved is not None:
+                return solved
+        return None
+
+    def _moved(self, active: Mask, shift: float, centre: Array) -> tuple[Mask, Array] | None:
+        """The solution of the LCP of A + shift I and q - shift centre, with its active set, or as near as it gets."""
+        q = self.problem.q - shift * centre
+        x = centre
+        changes: list[int] = []
+        for _ in range(ROUND_STEPS):
+            self.counts.factorizations += 1
+            face = self.faces.face(active, shift)
+            if face is None:
+                return None
+            x = np.zeros_like(q)
+            x[active] = face.inverse(-q[active])
+            if not np.isfinite(x).all():
+                return None
+            following = np.where(active, x > 0.0, self.problem.A @ x + q < 0.0)
+            changes.append(int(np.count_nonzero(following != active)))
+            if changes[-1] == 0:
+                break
+            if _circling(changes, ROUND_PATIENCE):
+                return None
+            active = following
+        return active, np.maximum(x, 0.0)
 
     def _plausible(self, x: Array, w: Array) -> bool:
         """Whether the signs are right to about the tolerance, so that a certificate is worth its cost."""
-        lowest = -self.tolerance * self.problem.scale(x)
-        return float(x.min()) >= lowest and float(w.min()) >= lowest
+        lowest = min(float(x.min()), float(w.min()))
+        return lowest >= 0.0 or lowest >= -self.tolerance * self.problem.scale(x)
 
     def _certified(self, face: Face, x: Array) -> tuple[Array, bool]:
         """The point, clipped to x >= 0 and certified; else corrected in twice the working precision, for its signs."""
         for _ in range(CORRECTIONS):
             clipped = np.maximum(x, 0.0)
-            if certify(self.problem, clipped).solves(self.tolerance):
+            certificate = certify(self.problem, clipped)
+            if certificate.solves(self.tolerance):
+                self.certificate = certificate
                 return clipped, True
             better = face.refined(x)
             if not np.isfinite(better).all():
                 break
             x = better
         return x, False
+
+
+def _circling(changes: list[int], patience: int) -> bool:
+    """Whether the last `patience` numbers are no lower than the lowest before them."""
+    return len(changes) > patience and min(changes[-patience:]) >= min(changes[:-patience])
 
 
 def smallest_parameter(homotopy: Any, product: float) -> float:
@@ -133,12 +216,15 @@ class Finishing:
         Its first n unknowns are x.
     attempt : Finish or None
         None in a homotopy read from an archive, which is traced without a finish.
+    rough : bool
+        Whether solves stay unrefined, which takes a third off the time of a path: enough for a loose tolerance.
     next_lam : float
         The finish is tried when the parameter has fallen to this.
     """
 
     homotopy: Any
     attempt: Finish | None = None
+    rough: bool = False
     next_lam: float = field(default=LATEST_START, init=False)
 
     def __attrs_post_init__(self) -> None:
@@ -146,6 +232,14 @@ class Finishing:
         # As attributes of the object itself: a call costs nothing more, and a capability is found by its presence.
         for name in CAPABILITIES:
             setattr(self, name, getattr(self.homotopy, name))
+        if self.rough:
+            self.bordered = self._roughly_bordered
+
+    def _roughly_bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
+        """The quick core of the homotopy's own system, where there is one."""
+        system = self.homotopy.bordered(y, lam, border)
+        core: BorderedSystem | None = system.quick
+        return system if core is None else core
 
     def archive_data(self) -> dict[str, Any]:
         """The homotopy alone: what was tried is no part of the problem."""

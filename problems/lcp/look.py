@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from problems.lcp.homotopies import Structure
 from problems.lcp.problem import LCP
@@ -15,8 +15,9 @@ class Look:
 
     Attributes
     ----------
-    symmetric, semidefinite : bool
-        Semidefinite: x'Ax >= 0 for all x, to working precision. Then a feasible problem has a solution.
+    symmetric : bool
+    semidefinite : bool or None
+        x'Ax >= 0 for all x, to working precision. Then a feasible problem has a solution. None where not asked.
     z_matrix : bool
         No positive entry off the diagonal: the active-set method from x = 0 ends within n steps at the least element
         of the feasible set, or proves nothing.
@@ -27,7 +28,7 @@ class Look:
     """
 
     symmetric: bool
-    semidefinite: bool
+    semidefinite: bool | None
     z_matrix: bool
     negative_diagonal: bool
     nonnegative: bool
@@ -40,10 +41,9 @@ class Look:
         return ("wang", "kkt")
 
     def __str__(self) -> str:
-        parts = [
-            "symmetric" if self.symmetric else "not symmetric",
-            "positive semidefinite" if self.semidefinite else "not known to be positive semidefinite",
-        ]
+        parts = ["symmetric" if self.symmetric else "not symmetric"]
+        if self.semidefinite is not None:
+            parts.append("positive semidefinite" if self.semidefinite else "not known to be positive semidefinite")
         if self.z_matrix:
             parts.append("Z")
         if self.nonnegative:
@@ -53,18 +53,23 @@ class Look:
         return ", ".join(parts)
 
 
-def look(structure: Structure) -> Look:
-    """Look at A: O(n^2), and one Cholesky factorisation if it is dense with a nonnegative diagonal."""
+def glance(structure: Structure) -> Look:
+    """Look at the entries of A, which costs O(n^2) at most."""
     A = structure.problem.A
     diagonal = A.diagonal()
     off = _off_diagonal(structure.problem)
     return Look(
         symmetric=structure.symmetric,
-        semidefinite=structure.semidefinite,
+        semidefinite=None,
         z_matrix=off[1] <= 0.0,
         negative_diagonal=bool((diagonal < 0.0).any()),
         nonnegative=off[0] >= 0.0 and bool((diagonal >= 0.0).all()),
     )
+
+
+def look(structure: Structure) -> Look:
+    """The same, and one Cholesky factorisation if A is dense with a nonnegative diagonal."""
+    return evolve(glance(structure), semidefinite=structure.semidefinite)
 
 
 def _off_diagonal(problem: LCP) -> tuple[float, float]:

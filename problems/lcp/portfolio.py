@@ -106,20 +106,27 @@ class Search:
         """Whether the last end is a solution."""
         return bool(self.ends) and self.ends[-1].certificate.solves(self.tolerance)
 
-    def accept(self, x: Array) -> None:
+    def accept(self, certificate: Certificate) -> None:
         """Take a point that no path led to into account."""
-        self.ends.append(End(certify(self.problem, x), -1, False))
+        self.ends.append(End(certificate, -1, False))
 
-    def finish_from(self, active: Mask, steps: int) -> bool:
+    def finish_from(self, active: Mask, steps: int, patience: int | None = None) -> bool:
         """The finish alone, from a guess of the active set."""
+        return self._finished(lambda attempt: attempt.settle(active, steps, patience=patience))
+
+    def finish_nearby(self, active: Mask | None = None) -> bool:
+        """The finish by the proximal method, from a guess of the active set or from the last one tried."""
+        return self._finished(lambda attempt: attempt.settle_nearby(active))
+
+    def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.attempt is None:
             return False
         before = self.attempt.counts.factorizations
-        x = self.attempt.settle(active, steps)
+        found = method(self.attempt) is not None
         self.counts.factorizations += self.attempt.counts.factorizations - before
-        if x is not None:
-            self.accept(x)
-        return x is not None
+        if found and self.attempt.certificate is not None:
+            self.accept(self.attempt.certificate)
+        return found
 
     def follow(self, homotopy: Any, **options: Any) -> bool:
         """Trace one path to its end; whether that is a solution."""
@@ -160,7 +167,7 @@ class Search:
         before = self.attempt.counts.factorizations
         polished = self.attempt.settle(x > end.w, 0, x)
         self.counts.factorizations += self.attempt.counts.factorizations - before
-        return end if polished is None else certify(self.problem, polished)
+        return self.attempt.certificate if polished is not None and self.attempt.certificate is not None else end
 
     def restart(
         self, name: str, seed: int, count: int, executor: Executor | None, bands: tuple[Band, ...] = FAR

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -89,8 +90,12 @@ class LCP:
 
     def scale(self, x: Array) -> float:
         """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative."""
-        rows = abs(self.A).sum(axis=1)
-        return 1.0 + max(float(np.abs(self.q).max()), float(np.max(rows)) * float(np.abs(x).max()))
+        return 1.0 + max(float(np.abs(self.q).max()), self._norm * float(np.abs(x).max()))
+
+    @cached_property
+    def _norm(self) -> float:
+        """|A|_inf: asked for with every point that is judged."""
+        return float(np.max(abs(self.A).sum(axis=1)))
 
     def relative_residual(self, x: Array) -> float:
         """The natural residual divided by `scale`."""

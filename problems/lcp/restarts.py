@@ -1,7 +1,7 @@
 """Paths from random starts: where they begin, the parts that make them quick, and when one is given up.
 
 A path of the KKT homotopy may end at a stationary point that does not solve the problem; another start leads elsewhere.
-Measured on random nonmonotone problems (docs/benchmarks/lcp.md): starts far out, of uniform products, solve several
+Measured on random nonmonotone problems (docs/lcp_benchmark.md): starts far out, of uniform products, solve several
 times as often as starts near the solution; what tells them apart is the weight of one multiplier against the other.
 """
 
@@ -39,7 +39,7 @@ from problems.lcp.problem import LCP
 Band = tuple[float, float]
 
 FAR: tuple[Band, ...] = ((0.7, 1.5), (1.5, 2.5), (0.7, 1.5), (-0.3, 0.5))
-NEAR: tuple[Band, ...] = ((-0.5, 0.0),)
+NEAR: tuple[Band, ...] = ((-0.5, 0.0), (0.0, 0.5))
 """Ten to a power from these intervals, in turn, is the distance of a start in natural units.
 
 Starts far out solve most, and each band solves problems that the others do not; for A >= 0 only near ones do well.
@@ -57,8 +57,12 @@ LONGEST = 100
 LARGEST_FRESH = 150
 """Up to this order a factorisation costs no more than the solves by which an old one is refined."""
 
-TRACE_TOLERANCE = 1e-4
-"""Of the corrector: the end is exact by the finish, on the way it is enough not to lose the path."""
+TRACE_TOLERANCE = 1e-2
+"""Of the last increment; with Newton's method the error is near its square. The end is exact by the finish."""
+
+
+PURE_TOLERANCE = 1e-4
+"""Of the last increment on a restart without the finish."""
 
 
 def search_preset(n: int) -> Preset:
@@ -138,9 +142,11 @@ class Restart:
         """The path, to its end or until it is given up; its counts hold those of the finish too."""
         homotopy = self.homotopy()
         n = self.structure.n
-        options = {"preset": search_preset(n), "tolerance": TRACE_TOLERANCE, **self.options}
         finish = None if self.tolerance is None else Finish(Faces(self.structure), self.tolerance)
-        traced = homotopy if finish is None else Finishing(homotopy, finish)
+        # A pure path is its own end, so it is traced in earnest.
+        traced = homotopy if finish is None else Finishing(homotopy, finish, rough=True)
+        tolerance = PURE_TOLERANCE if finish is None else TRACE_TOLERANCE
+        options = {"preset": search_preset(n), "tolerance": tolerance, **self.options}
         tracer = Tracer(traced, budget=budget, observers=observers, **options)
         with closing(_reasons(tracer, homotopy, finish is not None)) as reasons:
             reason = next(reasons, "")

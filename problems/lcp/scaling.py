@@ -42,6 +42,8 @@ def balanced(problem: LCP) -> Scaled | None:
     A symmetric scaling r = c = sqrt(diag A), which keeps definiteness and symmetry, where that does; else rows of
     [A, q] and then columns of A get maximum 1.
     """
+    if _alike(problem):
+        return None
     rows, columns = scales(problem)
     if max(_spread(rows), _spread(columns)) <= SPREAD:
         return None
@@ -52,6 +54,19 @@ def balanced(problem: LCP) -> Scaled | None:
         if max(map(_spread, scales(alike))) <= SPREAD:
             return Scaled(alike, root)
     return Scaled(LCP(*scaled_data(problem, rows, columns)), columns)
+
+
+def _alike(problem: LCP) -> bool:
+    """Whether sizes alone, which are quickly found, exclude that `scales` spread too far; for a dense matrix."""
+    if problem.sparse:
+        return False
+    A = problem.A
+    columns = np.maximum(A.max(axis=0), -A.min(axis=0))
+    rows = np.maximum(np.maximum(A.max(axis=1), -A.min(axis=1)), np.abs(problem.q))
+    if rows.min() <= 0.0 or columns.min() <= 0.0:
+        return False
+    # Powers of two are off by a factor 2 at most, and a row's scale changes a column's maximum by that of the rows.
+    return 4.0 * _spread(rows) * _spread(columns) <= SPREAD
 
 
 def _spread(values: Array) -> float:

@@ -22,11 +22,11 @@ from problems.lcp.cascade import guess, suitable
 from problems.lcp.certificate import certify
 from problems.lcp.faces import Faces
 from problems.lcp.feasible import NoStrictlyFeasiblePoint
-from problems.lcp.finish import Finish
+from problems.lcp.finish import PATIENCE, Finish
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.starts import positive_vector
 from problems.lcp.infeasible import Farkas, farkas
-from problems.lcp.look import Look, look
+from problems.lcp.look import Look, glance, look
 from problems.lcp.outcome import Outcome, Solution
 from problems.lcp.portfolio import MAKERS, Search
 from problems.lcp.problem import LCP
@@ -171,12 +171,15 @@ def _automatic(search: Search, x0: Array | None, restarts: int, seed: int, execu
     """The portfolio: what is cheap and cannot mislead first."""
     problem = search.problem
     if (problem.q >= 0.0).all():
-        search.accept(np.zeros(problem.n))
+        search.accept(certify(problem, np.zeros(problem.n)))
         return _answer(search, "q >= 0, so x = 0 is a solution.")
+    known = glance(search.structure)
+    if search.log is None and _finished_first(search, known, x0):
+        return _answer(search, f"A is {known}. Solved by active sets alone, before any path.")
     known = look(search.structure)
     said = f"A is {known}."
-    if search.log is None and _finished_first(search, known, x0):
-        return _answer(search, f"{said} Solved by active sets alone, before any path.")
+    if search.log is None and known.semidefinite and not known.symmetric and search.finish_nearby():
+        return _answer(search, f"{said} Solved by active sets of A + shift I, before any path.")
     early = problem.n <= LARGEST_EARLY_PROOF
     for name in known.names:
         first = name == known.names[0]
@@ -195,12 +198,15 @@ def _automatic(search: Search, x0: Array | None, restarts: int, seed: int, execu
 
 
 def _finished_first(search: Search, known: Look, x0: Array | None) -> bool:
-    """Active sets alone: from coarser problems where A is of that kind, from x = 0, from x0."""
+    """Active sets alone: from coarser problems or of A + shift I where A is of that kind, from x = 0, from x0."""
     problem = search.problem
     if suitable(search.structure) and search.finish_from(guess(problem) > 0.0, FIRST_STEPS):
         return True
-    steps = min(problem.n, LEAST_STEPS) if known.z_matrix else FIRST_STEPS
-    if search.finish_from(problem.q < 0.0, steps):
+    definite_perhaps = known.symmetric and not known.z_matrix and not known.negative_diagonal
+    if definite_perhaps and search.finish_nearby(problem.q < 0.0):
+        return True
+    steps, patience = (min(problem.n, LEAST_STEPS), None) if known.z_matrix else (FIRST_STEPS, PATIENCE)
+    if search.finish_from(problem.q < 0.0, steps, patience):
         return True
     return x0 is not None and search.finish_from(x0 > problem.w(x0), FIRST_STEPS)
 

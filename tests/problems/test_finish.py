@@ -146,3 +146,29 @@ def test_a_finishing_homotopy_read_back_has_no_finish_but_the_same_path():
     again = Finishing.from_archive(wrapped.archive_data())
     assert again.finish(np.zeros(6), 1e-9) is None
     np.testing.assert_array_equal(again.start()[0], wrapped.start()[0])
+
+
+def test_the_proximal_method_solves_rank_deficient_problems():
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        M = rng.standard_normal((40, 20))
+        A = M @ M.T / 40
+        x = np.maximum(rng.standard_normal(40), 0.0)
+        w = np.where(x == 0.0, np.abs(rng.standard_normal(40)), 0.0)
+        problem = LCP(A, w - A @ x)
+        finish = Finish(Faces(Structure(problem)), 1e-12)
+        found = finish.settle_nearby(problem.q < 0.0)
+        assert found is not None
+        assert certify(problem, found).solves(1e-12)
+        assert finish.certificate.solves(1e-12)
+    assert Finish(Faces(Structure(problem)), 1e-12).settle_nearby() is None
+
+
+def test_corrections_that_go_in_circles_are_given_up():
+    # On Murty's matrix the changes do not become fewer for long; patience ends that.
+    n = 64
+    problem = LCP(np.eye(n) + np.triu(np.full((n, n), 2.0), 1), -np.ones(n))
+    patient, impatient = (Finish(Faces(Structure(problem)), 1e-12) for _ in range(2))
+    assert patient.settle(problem.q < 0.0, n) is not None
+    assert impatient.settle(problem.q < 0.0, n, patience=3) is None
+    assert 2 * impatient.counts.factorizations < patient.counts.factorizations

@@ -113,10 +113,10 @@ def available(*names: str) -> dict[str, Solver]:
 
 def ten(seeds: int) -> list[Row]:
     """The paper's examples from the paper's starts: with finish, pure, and the portfolio."""
-    series = {"preset": continuation.SERIES, "predictor": Taylor(order=36, accuracy=1e-5, rational=True)}
+    series = {"preset": continuation.SERIES, "predictor": Taylor(order=60, accuracy=1e-5, rational=True)}
     rows = []
     for title, settings in (
-        ("kkt path, series of order 36, finish", {"homotopy": "kkt", **series}),
+        ("kkt path, series of order 60, finish", {"homotopy": "kkt", **series}),
         ("the same, pure", {"homotopy": "kkt", "finish": False, **series}),
         ("kkt path, default parts, finish", {"homotopy": "kkt"}),
         ("auto", {}),
