@@ -49,7 +49,7 @@ $(STUDIES:%=chart-%): chart-%: $(VENV)/.chart
 	$(TESTENV) $(BIN)/continuation chart $* --output build/chart
 
 docs: $(VENV)/.docs
-	$(BIN)/python -m sphinx -b html -W --keep-going docs build/docs
+	$(TESTENV) $(BIN)/python -m sphinx -b html -W --keep-going docs build/docs
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

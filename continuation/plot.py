@@ -20,7 +20,10 @@ TURN = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgec
 """How a turning point is marked, above every line."""
 
 SMOOTHNESS = 12
-"""Points of the curve for every step, where the path has dense output."""
+"""Points of the curve for every step, ..."""
+
+SAMPLES = 600
+"""... but no more than this in all: a path of many steps is smooth without, and dense output takes its time."""
 
 MOST_COMPONENTS = 12
 """More curves than this cannot be told apart in one picture."""
@@ -73,20 +76,50 @@ class Curve(Protocol):
 
 @frozen(eq=False)
 class Drawing:
-    """A curve as lines to draw: dense output where there is some, else the stored points."""
+    """A curve as lines to draw: dense output where there is some, else cubics through the stored points."""
 
     s: Array
     u: Array
 
     @classmethod
     def of(cls, curve: Curve) -> Drawing:
-        """Sample the curve, between its points too if it can be called."""
-        knots = np.asarray(curve.arclength, dtype=float)
-        if not callable(curve) or len(knots) < 2:
-            return cls(knots, np.column_stack([curve.y, curve.lam]))
-        pieces = [np.linspace(a, b, SMOOTHNESS, endpoint=False) for a, b in pairwise(knots)]
-        s = np.append(np.concatenate(pieces), knots[-1])
-        return cls(s, np.asarray(curve(s)))
+        """Sample the curve, between its points too."""
+        s, u = np.asarray(curve.arclength, dtype=float), np.column_stack([curve.y, curve.lam])
+        if len(s) < 2:
+            return cls(s, u)
+        if callable(curve) and all(step.segment is not None for step in getattr(curve, "steps", ())[1:]):
+            s = _between(s)
+            return cls(s, np.asarray(curve(s)))
+        return cls._through(*_with_turns(s, u, curve.turning_points))
+
+    @classmethod
+    def _through(cls, s: Array, u: Array) -> Drawing:
+        """Through points without tangents, by monotone cubics: they have no extremum that the points have not."""
+        from scipy.interpolate import PchipInterpolator
+
+        fine = _between(s)
+        drawn = np.full((fine.size, u.shape[1]), np.nan)
+        known = np.isfinite(u).all(axis=0)
+        drawn[:, known] = PchipInterpolator(s, u[:, known])(fine)
+        return cls(fine, drawn)
+
+
+def _between(knots: Array) -> Array:
+    """The knots, and places between them."""
+    count = int(np.clip(SAMPLES // (len(knots) - 1), 1, SMOOTHNESS))
+    pieces = [np.linspace(a, b, count, endpoint=False) for a, b in pairwise(knots)]
+    return np.append(np.concatenate(pieces), knots[-1])
+
+
+def _with_turns(s: Array, u: Array, turns: Sequence[Event]) -> tuple[Array, Array]:
+    """The points with the located turning points among them; of points in one place, the first."""
+    located = [np.append(turn.y, turn.lam) for turn in turns]
+    every = np.concatenate([s, [turn.arclength for turn in turns]])
+    points = np.vstack([u, *located])
+    order = np.argsort(every, kind="stable")
+    every, points = every[order], points[order]
+    apart = np.append(True, np.diff(every) > 1e-9 * every[-1])
+    return every[apart], points[apart]
 
 
 def plot_components(
@@ -109,7 +142,7 @@ def plot_components(
     names : sequence of str, optional
         One a component drawn; ``y_1``, ... by default.
     components : iterable of int, optional
-        Which components; all of them by default, but at most the first twelve.
+        Which components; by default all of them, or twelve at even distances where there are more.
     legend : bool
         Whether to name the curves.
 
@@ -126,6 +159,7 @@ def plot_components(
     """
     drawing = _drawing(path)
     chosen = _components(components, drawing.u[:, :-1])
+    unknowns = int(np.isfinite(drawing.u[:, :-1]).any(axis=0).sum())
     labels = [f"$y_{{{i + 1}}}$" for i in chosen] if names is None else list(names)
     if len(labels) != len(chosen):
         raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
@@ -140,7 +174,8 @@ def plot_components(
     if len(chosen) == 1:
         axes.set_ylabel(labels[0])
     elif legend:
-        axes.legend(fontsize="small", frameon=False, ncols=1 + len(chosen) // 5)
+        some = f"{len(chosen)} of {unknowns} components" if components is None and len(chosen) < unknowns else None
+        axes.legend(title=some, title_fontsize="small", fontsize="small", frameon=False, ncols=1 + len(chosen) // 5)
     return _tidy(axes)
 
 
@@ -206,8 +241,7 @@ def plot_steps(path: Curve, axes: Axes | None = None) -> Axes:
     lengths = np.diff(s)
     # An event stored with the points may lie on one of them; a length of zero has no logarithm.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
-    # Within one decade the labels of minor ticks would lie on top of each other.
-    axes.yaxis.set_minor_formatter("")
+    _label_decades(axes, lengths[lengths > 0])
     for event in path.turning_points:
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)
     axes.set_xlabel(_LABELS["arclength"])
@@ -243,7 +277,10 @@ def _components(components: Iterable[int] | None, y: Array) -> list[int]:
     n = y.shape[1]
     if components is None:
         # An archive of paths with different numbers of unknowns fills the shorter ones up with NaN.
-        return [i for i in range(n) if np.isfinite(y[:, i]).any()][:MOST_COMPONENTS]
+        filled = np.flatnonzero(np.isfinite(y).any(axis=0))
+        if len(filled) > MOST_COMPONENTS:
+            filled = filled[np.linspace(0, len(filled) - 1, MOST_COMPONENTS).round().astype(int)]
+        return [int(i) for i in filled]
     chosen = list(components)
     outside = [i for i in chosen if not 0 <= i < n]
     if outside:
@@ -264,6 +301,16 @@ def _axes(axes: Axes | None) -> Axes:
     from matplotlib import pyplot
 
     return pyplot.subplots(layout="constrained")[1]
+
+
+def _label_decades(axes: Axes, values: Array) -> None:
+    """Ticks of a logarithmic axis: decades, or 1, 2 and 5 where decades would leave one label or two."""
+    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+
+    if values.size and values.max() < 100.0 * values.min():
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axes.yaxis.set_minor_formatter(NullFormatter())
 
 
 def _line(k: int) -> dict[str, Any]:

@@ -5,6 +5,7 @@ import shutil
 import sys
 from pathlib import Path
 
+import attrs
 from sphinx import addnodes
 
 HERE = Path(__file__).parent
@@ -17,9 +18,30 @@ import continuation  # noqa: E402
 project = "continuation"
 author = "The continuation developers"
 release = version = continuation.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx.ext.viewcode"]
-source_suffix = {".md": "markdown"}
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.viewcode",
+    "sphinx_gallery.gen_gallery",
+]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["_build", "generated"]
+# The scripts are run by the build, in the order of their names; a failure of one fails the build.
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples/gallery",
+    "gallery_dirs": "gallery",
+    "within_subsection_order": "FileNameSortKey",
+    "abort_on_example_error": True,
+    "capture_repr": (),
+    "download_all_examples": False,
+    "min_reported_time": 3600,
+    "write_computation_times": False,
+    "notebook_extensions": set(),
+    "show_signature": False,
+    "image_srcset": ["2x"],
+}
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 html_theme = "furo"
@@ -62,12 +84,37 @@ def plain_signs(app, what, name, obj, options, lines):
         lines[number] = "``".join(parts)
 
 
+def whole_sentences(app, what, name, obj, options, lines):
+    """Napoleon takes what precedes a colon for a type, and the first of two names as well: neither is meant here."""
+    for number, line in enumerate(lines):
+        lines[number] = _TWO_NAMES.sub(lambda found: found.group().replace(", ", ","), line)
+    if what in ("property", "attribute") and lines and lines[-1].startswith(":type: "):
+        lines[0] = f"{lines.pop().removeprefix(':type: ')}: {lines[0]}"
+
+
+_TWO_NAMES = re.compile(r"^\s*:(?:ivar|vartype) [\w, ]+:")
 _LONE_STAR = re.compile(r"(?<![\w*\\])\*(?=\w)(?![^*]*\*)")
 
 
-def no_protocol_arguments(app, what, name, obj, options, signature, returns):
-    """A protocol is not called; the arguments that Python shows for it mean nothing."""
-    return ("", None) if getattr(obj, "_is_protocol", False) and what == "class" else None
+def arguments_as_written(app, what, name, obj, options, signature, returns):
+    """None for a protocol, which is not called; for an attrs class the defaults, not the code that makes them."""
+    if what != "class":
+        return None
+    if getattr(obj, "_is_protocol", False):
+        return "", None
+    if not attrs.has(obj) or "attrs generated" not in obj.__init__.__code__.co_filename:
+        return None
+    fields = sorted((field for field in attrs.fields(obj) if field.init), key=lambda field: field.kw_only)
+    positional = [_argument(field) for field in fields if not field.kw_only]
+    keywords = [_argument(field) for field in fields if field.kw_only]
+    return f"({', '.join([*positional, *(['*'] if keywords else []), *keywords])})", None
+
+
+def _argument(field):
+    if field.default is attrs.NOTHING:
+        return field.alias
+    made = isinstance(field.default, attrs.Factory)
+    return f"{field.alias}={'...' if made else repr(field.default)}"
 
 
 def words_are_words(app, doctree):
@@ -80,6 +127,7 @@ def words_are_words(app, doctree):
 def setup(app):
     """Connect the functions above; Sphinx calls it."""
     app.connect("source-read", show_results)
+    app.connect("autodoc-process-docstring", whole_sentences, priority=800)
     app.connect("autodoc-process-docstring", plain_signs, priority=900)
-    app.connect("autodoc-process-signature", no_protocol_arguments)
+    app.connect("autodoc-process-signature", arguments_as_written)
     app.connect("doctree-read", words_are_words)

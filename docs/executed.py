@@ -19,6 +19,7 @@ from unittest.mock import patch
 
 _BLOCK = re.compile(r"^```python\n(.*?)^```\n?", re.MULTILINE | re.DOTALL)
 _PICTURES = (".png", ".svg")
+_COLUMNS = re.compile(r"^.*\S {2,}\S", re.MULTILINE)
 
 
 class Shown(NamedTuple):
@@ -71,7 +72,9 @@ def with_results(text: str, folder: Path, name: str, where: str) -> str:
         if shown.output.startswith("|"):
             parts.append(f"\n{shown.output}\n")
         elif shown.output.strip():
-            parts.append(f"\n```{{code-block}} text\n:class: printed\n\n{shown.output.rstrip()}\n```\n")
+            # Sentences may be wrapped on a narrow screen, columns may not.
+            looks = "printed aligned" if len(_COLUMNS.findall(shown.output)) > 1 else "printed"
+            parts.append(f"\n```{{code-block}} text\n:class: {looks}\n\n{shown.output.rstrip()}\n```\n")
         parts += [f"\n![{picture.stem.replace('_', ' ')}]({where}/{picture.name})\n" for picture in shown.pictures]
         done = shown.end
     return "".join([*parts, text[done:]])

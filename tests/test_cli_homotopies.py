@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from continuation import chart
 from continuation.archive import open_archive
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, main
 from problems.bifurcation.truth import bratu
@@ -79,6 +80,40 @@ def test_trace_by_name_with_archive_and_plot(run, tmp_path):
     with open_archive(archive) as stored:
         assert stored.attributes["homotopy_entry_point"] == "bratu-1d"
         assert stored.path(0).endpoint.lam == pytest.approx(bratu.FOLD_1D[100][0], abs=1e-10)
+
+
+def test_a_chart_of_the_presets_on_the_path(run, tmp_path):
+    folder = tmp_path / "chart"
+    status, out, _ = run("trace", "freudenstein-roth", "--chart", folder, "--chart-tolerances", "1e-4,1e-8")
+    assert status == SUCCESS
+    assert "REACHED_TARGET" in out
+    names = {file.name.removeprefix("freudenstein-roth") for file in folder.iterdir()}
+    errors, works = ("end_point", "turning_points"), ("factorizations", "seconds")
+    assert names == {".h5", ".csv", ".md", *(f"-{error}-{work}.png" for error in errors for work in works)}
+    results = chart.read(folder / "freudenstein-roth.h5")
+    assert set(results.methods) == {"FAST", "DEFAULT", "CONSERVATIVE", "SERIES"}
+    assert len(results.rows) == 8
+    for row in results.rows:
+        assert row.failure == ""
+        assert max(row.errors.values()) <= 10 * row.rung
+    for method in results.methods:
+        assert method in out
+
+
+def test_a_chart_of_a_homotopy_of_ones_own_beside_json(run, home):
+    status, out, err = run("trace", "my_homotopies:Root", "--chart", "chart", "--chart-tolerances", "1e-6", "--json")
+    assert status == SUCCESS
+    json.loads(out)
+    assert "my_homotopies-Root-end_point-factorizations.png" in err
+    assert (home / "chart" / "my_homotopies-Root.md").exists()
+
+
+def test_a_path_that_does_not_arrive_has_no_chart(run, tmp_path):
+    status, out, err = run("trace", "circle", "--budget-steps", 3, "--chart", tmp_path / "chart")
+    assert status == FAILURE
+    assert "BUDGET_EXHAUSTED" in out
+    assert "no chart: a path that does not arrive" in err
+    assert list((tmp_path / "chart").iterdir()) == []
 
 
 def test_trace_as_json_with_another_target(run):
@@ -158,6 +193,8 @@ def test_bad_input_is_one_line(run, home):
         (("trace", "my_homotopies:Gone"), "my_homotopies:Gone: cannot be loaded: AttributeError"),
         (("trace", "circle", "--target", "soon"), "--target: expected a finite number or none, found 'soon'"),
         (("trace", "circle", "--tolerance", "0"), "--tolerance: expected a positive number"),
+        (("trace", "circle", "--chart-tolerances", "1e-6,0"), "--chart-tolerances: expected a positive number"),
+        (("trace", "circle", "--chart", home / "my_homotopies.py"), "--chart: expected a directory"),
         (("trace", "circle", "--plot", "path.txt"), "--plot: expected a name in .png"),
         (("trace", "circle", "--archive", home / "my_homotopies.py"), "--archive: "),
         (("check", "circle", "radius=2"), "radius: expected an option of circle (none)"),

@@ -1,7 +1,11 @@
-"""Every Python block of the README and the documentation runs, every command exists, every page is reachable."""
+"""Every Python block of the README and the documentation runs, every command exists, every page is reachable.
+
+The pages themselves are made by `make docs`, warnings as errors, which CI runs too.
+"""
 
 import importlib.util
 import re
+import runpy
 import shlex
 from fnmatch import fnmatch
 from pathlib import Path
@@ -14,6 +18,7 @@ from continuation.cli.parser import Parser
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.parts)]
+SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("plot_*.py"))
 NAMES = [str(path.relative_to(ROOT)) for path in PAGES]
 _SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _TREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -34,6 +39,19 @@ def test_the_blocks_of_a_page_run(page, tmp_path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "Agg")
     for shown in executed.run(page.read_text(encoding="utf-8"), tmp_path, page.name):
         assert "Traceback" not in shown.output
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_the_scripts_of_the_gallery_run(script, tmp_path, monkeypatch):
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    monkeypatch.chdir(tmp_path)
+    from matplotlib import pyplot
+
+    runpy.run_path(str(script), run_name="__main__")
+    drawn = pyplot.get_fignums()
+    pyplot.close("all")
+    assert drawn
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)

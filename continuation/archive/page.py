@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -17,10 +18,13 @@ from continuation.status import Status
 _DETAILED = 3
 _LISTED = 12
 _SHOWN = 4
+_WIDTH = 92
+_MOST_LINES = 5
+_UNBROKEN = "\N{NO-BREAK SPACE}"
 
 
 def describe(archive: Archive) -> str:
-    """The page, about 80 columns wide: one section a path where there are few, an overview where there are many."""
+    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many."""
     parts = [_head(archive)]
     if not len(archive):
         parts.append("No path was begun.")
@@ -57,7 +61,7 @@ def _head(archive: Archive) -> str:
         ("parent", str(about.get("parent", ""))),
         *(("history" if i == 0 else "", line) for i, line in enumerate(str(about.get("history", "")).splitlines())),
     ]
-    body = "\n".join(f"  {name:<11}{text}" for name, text in lines if text)
+    body = "\n".join(_wrapped(f"  {name:<11}", text) for name, text in lines if text)
     return f"{title}\n{'=' * len(title)}\n{body}"
 
 
@@ -102,7 +106,8 @@ def _one_path(archive: Archive, number: int) -> str:
     if path.steps:
         lines += _course(path)
         lines += _events(path)
-    lines += ["", f"  work: {_work({name: int(row[name]) for name in COUNT_NAMES.values()})}; {row['wall_time']:.3g} s"]
+    work = _work({name: int(row[name]) for name in COUNT_NAMES.values()})
+    lines += ["", _wrapped("  work: ", f"{work}; {row['wall_time']:.3g} s")]
     return "\n".join(lines)
 
 
@@ -154,7 +159,7 @@ def _many_paths(archive: Archive) -> str:
     if not (kinds > Kind.TARGET).any():
         lines.append("  none")
     totals = {name: int(archive.paths[name].sum()) for name in COUNT_NAMES.values()}
-    lines += ["", "Work", "----", f"  {_work(totals)}; {times.sum():.3g} s"]
+    lines += ["", "Work", "----", _wrapped("  ", f"{_work(totals)}; {times.sum():.3g} s")]
     lines.append(f"  steps a path: {_spread(steps)}; seconds a path: {_spread(times)}")
     return "\n".join([*lines, *_failures(archive)])
 
@@ -185,8 +190,23 @@ def _hint(archive: Archive) -> str:
 # -- words ----------------------------------------------------------------------------------------------------
 
 
+def _wrapped(name: str, text: str) -> str:
+    """The text after its name, in lines of the page's width; a matrix that would fill the page is cut."""
+    filled = textwrap.fill(
+        text,
+        _WIDTH,
+        initial_indent=name,
+        subsequent_indent=" " * len(name),
+        max_lines=_MOST_LINES,
+        placeholder=" ...",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return filled.replace(_UNBROKEN, " ")
+
+
 def _work(counts: Mapping[str, int]) -> str:
-    return ", ".join(f"{value} {name}" for name, value in counts.items())
+    return ", ".join(f"{value}{_UNBROKEN}{name}" for name, value in counts.items())
 
 
 def _spread(values: Any) -> str:

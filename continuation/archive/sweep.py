@@ -183,6 +183,8 @@ def _silent(done: int, total: int) -> None:
 def _spread(
     executor: Executor, tasks: list[Any], target: File | None, report: Progress, options: dict[str, Any]
 ) -> _Result:
+    # A worker may run in another directory, on another machine.
+    target = None if target is None else target.absolute()
     batches = _batches(tasks, _parts(executor, len(tasks)), target, options)
     futures: dict[Future[_Result], int] = {}
     stopped, done = False, 0

@@ -1,11 +1,13 @@
-"""``continuation chart``: ready studies of speed against accuracy, as tables, files and figures."""
+"""``continuation chart``: ready studies of speed against accuracy, as tables, files and figures; and one path's own."""
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TextIO
 
 from continuation.cli.parser import SUCCESS, Subparsers, UsageError
 
@@ -50,21 +52,72 @@ def run(arguments: argparse.Namespace) -> int:
             raise ValueError(f"expected {EVERY} or one of {known}, found {arguments.name!r}")
     except ValueError as error:
         raise UsageError("NAME", error) from error
-    folder = _folder(arguments.output)
+    folder = new_folder("--output", arguments.output)
     for name in names if arguments.name == EVERY else [arguments.name]:
         for study in studies(name, arguments.size, arguments.compare):
-            _one(study, folder)
+            _one(study, folder, sys.stdout)
     return SUCCESS
 
 
-def _one(study: Study, folder: Path) -> None:
+def chart_presets(
+    homotopy: Any,
+    title: str,
+    course: Mapping[str, Any],
+    method: Mapping[str, Any],
+    rungs: Sequence[float],
+    folder: Path,
+    out: TextIO,
+) -> None:
+    """Chart the presets on the path of one homotopy, a ladder of tolerances each, against a reference.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    title : str
+        Its name and options.
+    course : mapping
+        What belongs to the path, as for `continuation.trace`: target, direction, events.
+    method : mapping
+        What every method has, as for `continuation.trace`: the budget.
+    rungs : sequence of float
+        Tolerances.
+    folder : pathlib.Path
+    out : text stream
+        For the tables.
+
+    Raises
+    ------
+    ArithmeticError
+        If the path at the reference's tolerance does not arrive.
+    """
+    from continuation import chart, presets
+
+    problem = chart.Problem(title, homotopy, chart.reference(homotopy, **course), course)
+    turns = problem.truth.turning_points
+    errors = (chart.END_POINT, chart.TURNING_POINTS) if turns is not None and len(turns) else (chart.END_POINT,)
+    study = chart.Study(
+        name=re.sub(r"[^\w.-]+", "-", title),
+        title=f"Tolerance against work: {title}",
+        problems=[problem],
+        methods=[
+            chart.traced(preset.name, preset=preset, **method)
+            for preset in (presets.FAST, presets.DEFAULT, presets.CONSERVATIVE, presets.SERIES)
+        ],
+        ladder=chart.tolerances(*rungs),
+        errors=errors,
+        figures=[chart.Precision(error.name, work) for error in errors for work in ("factorizations", "seconds")],
+    )
+    _one(study, folder, out)
+
+
+def _one(study: Study, folder: Path, out: TextIO) -> None:
     from continuation.chart import run as run_study
     from continuation.chart.report import report, tables
 
     results = run_study(study, _watch(study.name))
     for title, table in tables(study, results).items():
-        print(f"\n{results.title}: {title}\n{table.text()}")
-    print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}")
+        print(f"\n{results.title}: {title}\n{table.text()}", file=out)
+    print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}", file=out)
 
 
 def _watch(name: str) -> Watch | None:
@@ -79,11 +132,12 @@ def _watch(name: str) -> Watch | None:
     return show
 
 
-def _folder(output: str) -> Path:
-    folder = Path(output)
+def new_folder(option: str, name: str) -> Path:
+    """The directory that an option names, made if it is not there."""
+    folder = Path(name)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        complaint = f"expected a directory, or a new one, found {output!r} ({error.strerror})"
-        raise UsageError("--output", complaint) from error
+        complaint = f"expected a directory, or a new one, found {name!r} ({error.strerror})"
+        raise UsageError(option, complaint) from error
     return folder

@@ -17,10 +17,13 @@ from continuation.cli.archives import ARRIVED
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
 
 if TYPE_CHECKING:
+    from continuation.budget import Budget
     from continuation.path import Path
     from continuation.testing import Result
 
 PRESETS = ("fast", "default", "conservative", "series")
+
+CHART_TOLERANCES = (1e-3, 1e-6, 1e-9)
 
 MOST_COMPONENTS = 10
 """Unknowns printed; --json prints all."""
@@ -40,6 +43,14 @@ def register(subparsers: Subparsers) -> None:
     _add_homotopy(parser)
     parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
     parser.add_argument("--plot", metavar="FILE", help="draw it (.png, .pdf, .svg); needs matplotlib")
+    parser.add_argument("--chart", metavar="DIR", help="chart speed against accuracy on it, presets and tolerances")
+    parser.add_argument(
+        "--chart-tolerances",
+        metavar="EPS,...",
+        type=_tolerances,
+        default=CHART_TOLERANCES,
+        help="of the chart; default: 1e-3,1e-6,1e-9",
+    )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.add_argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller")
     parser.add_argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none")
@@ -113,8 +124,6 @@ def _full(described: plugins.Description) -> Iterator[str]:
 def _trace(arguments: argparse.Namespace) -> int:
     from continuation import presets
     from continuation.archive import ArchiveError, PathLog
-    from continuation.budget import Budget
-    from continuation.events import TurningPoint
     from continuation.trace import trace
 
     homotopy, values = _homotopy(arguments)
@@ -126,28 +135,65 @@ def _trace(arguments: argparse.Namespace) -> int:
         log = None if arguments.archive is None else PathLog(arguments.archive)
     except ArchiveError as error:
         raise UsageError("--archive", error) from error
-    given: dict[str, Any] = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
-    options: dict[str, Any] = {
-        "preset": getattr(presets, arguments.preset.upper()),
-        "tolerance": arguments.tolerance,
-        "budget": Budget(**{name: value for name, value in given.items() if value is not None}),
-        "direction": arguments.direction or 0,
-    }
-    if arguments.target is not None:
-        options["target"] = None if math.isnan(arguments.target) else arguments.target
-    if arguments.turning_points is not None:
-        options["events"] = [TurningPoint(terminal=arguments.turning_points)]
+    folder = None
+    if arguments.chart is not None:
+        from continuation.cli.charts import new_folder
+
+        folder = new_folder("--chart", arguments.chart)
+    course, budget = _course(arguments), _budget(arguments)
+    preset = getattr(presets, arguments.preset.upper())
     with _refused(arguments.name):
-        path = trace(homotopy, archive=log, progress=arguments.progress, **options)
+        path = trace(
+            homotopy,
+            archive=log,
+            progress=arguments.progress,
+            preset=preset,
+            tolerance=arguments.tolerance,
+            budget=budget,
+            **course,
+        )
     title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
     print(json.dumps(_as_json(title, path)) if arguments.json else "\n".join(_as_text(title, path)))
+    # The one JSON object has stdout for itself.
+    out = sys.stderr if arguments.json else sys.stdout
     if arguments.cite:
         from continuation.citation import cite
 
-        print(f"\n{cite(path)}", file=sys.stderr if arguments.json else sys.stdout)
+        print(f"\n{cite(path)}", file=out)
     if arguments.plot is not None:
         _draw(path, title, arguments.plot)
-    return SUCCESS if path.status in ARRIVED else FAILURE
+    arrived = path.status in ARRIVED
+    if folder is not None:
+        if not arrived:
+            print("continuation: no chart: a path that does not arrive has no end to measure", file=sys.stderr)
+            return FAILURE
+        from continuation.cli.charts import chart_presets
+
+        try:
+            chart_presets(homotopy, title, course, {"budget": budget}, arguments.chart_tolerances, folder, out)
+        except ArithmeticError as error:
+            print(f"continuation: no chart: {error}", file=sys.stderr)
+            return FAILURE
+    return SUCCESS if arrived else FAILURE
+
+
+def _course(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Which path: the options of `continuation.trace` that say where it goes and ends."""
+    from continuation.events import TurningPoint
+
+    course: dict[str, Any] = {"direction": arguments.direction or 0}
+    if arguments.target is not None:
+        course["target"] = None if math.isnan(arguments.target) else arguments.target
+    if arguments.turning_points is not None:
+        course["events"] = [TurningPoint(terminal=arguments.turning_points)]
+    return course
+
+
+def _budget(arguments: argparse.Namespace) -> Budget:
+    from continuation.budget import Budget
+
+    given = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
+    return Budget(**{name: value for name, value in given.items() if value is not None})
 
 
 def _as_text(title: str, path: Path) -> Iterator[str]:
@@ -283,6 +329,10 @@ def _number_or_none(text: str) -> float:
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"expected a finite number or none, found {text!r}")
     return value
+
+
+def _tolerances(text: str) -> tuple[float, ...]:
+    return tuple(_above_zero(part) for part in text.split(","))
 
 
 def _above_zero(text: str) -> float:

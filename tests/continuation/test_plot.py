@@ -86,6 +86,9 @@ def test_at_most_twelve_components_unless_asked(axes):
     path = continuation.trace(homotopy)
     plot_components(path, axes)
     assert len(lines(axes)) == 12
+    assert axes.get_legend().get_title().get_text() == "12 of 15 components"
+    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert (names[0], names[-1]) == ("$y_{1}$", "$y_{15}$")
 
 
 def test_the_bifurcation_diagram_shows_the_norm_or_a_component(path, axes):
@@ -96,6 +99,25 @@ def test_the_bifurcation_diagram_shows_the_norm_or_a_component(path, axes):
     plot_bifurcation(path, axes, component=1)
     assert lines(axes)[1].get_ydata()[0] == -1
     assert axes.get_ylabel() == "$y_{2}$"
+
+
+def test_a_stored_path_without_tangents_is_smooth_and_turns_where_the_turning_point_is(path, axes):
+    stored = continuation.Path([evolve(step, segment=None) for step in path.steps], path.events)
+    plot_components(stored, axes, components=[0])
+    lam, y = lines(axes)[0].get_data()
+    (turn,) = path.turning_points
+    assert len(lam) > 3 * len(path)
+    assert lam.max() == turn.lam
+    np.testing.assert_allclose(lam, 1 - y**2, atol=2e-2)
+
+
+def test_a_path_of_many_steps_is_not_sampled_between_them(axes):
+    homotopy = continuation.from_functions(lambda y, lam: y - lam, start=(np.ones(1), 1.0))
+    path = continuation.trace(homotopy)
+    (first, last) = (path.steps[0], path.steps[-1])
+    points = [evolve(first, u=u, arclength=s) for s, u in enumerate(np.linspace(first.u, last.u, 2000))]
+    plot_components(continuation.Path(points), axes)
+    assert len(lines(axes)[0].get_xdata()) == 2000
 
 
 def test_steps_are_the_differences_of_arclength(path, axes):
