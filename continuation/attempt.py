@@ -11,7 +11,7 @@ from attrs import frozen
 from continuation.arrays import Array, finite
 from continuation.correctors import BorderedNewton, Correction, Corrector
 from continuation.evaluation import EvaluationError, Evaluator, NotFiniteError
-from continuation.linearization import Linearization, linearize, relinearize
+from continuation.linearization import ROUND_OFF, Linearization, linearize, relinearize
 from continuation.metric import inner
 from continuation.predictors import Prediction
 from continuation.tolerance import Tolerance
@@ -22,6 +22,9 @@ LOW_ORDER_FRACTION, HIGH_ORDER_FRACTION = 0.9, 0.9999
 """How much of the way to the boundary a prediction may go: the usual fraction of interior methods for a prediction
 of low order, nearly all of it for one whose error is far below its distance to the boundary."""
 
+
+TANGENT = 1e-6
+"""How accurate a step's tangent has to be, in units of the relative tolerance: refining further buys nothing."""
 
 LANDING_DISTANCE = 0.3
 """A landing that corrects the prediction by more than this fraction of the step has landed on another branch."""
@@ -109,7 +112,8 @@ class Stepper:
         try:
             anchor = correction.anchor
             if anchor is not None:
-                arrival = relinearize(self.evaluator, correction.u, point.weights, anchor, border, signed=True)
+                accuracy = max(ROUND_OFF, TANGENT * self.tolerance.relative)
+                arrival = relinearize(self.evaluator, correction.u, point.weights, anchor, border, True, accuracy)
             else:
                 arrival = linearize(self.evaluator, correction.u, point.weights, border, 0)
         except EvaluationError as error:

@@ -15,7 +15,7 @@ import numpy as np
 from attrs import frozen
 from scipy.optimize import brentq
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from continuation.correctors import BorderedNewton
 from continuation.evaluation import EvaluationError, Evaluator
 from continuation.linearization import Linearization, linearize, relinearize
@@ -28,6 +28,15 @@ RATIO = 0.2
 
 ENOUGH = 1e-13
 """A relative error estimate at which no further point is taken: the estimate is the change by the last one."""
+
+ZERO = 1e-3
+"""The residual at the limit, relative to that of the first sample put on the target, at which the equations hold."""
+
+ULPS = 8.0
+"""Units in the last place by which a point is moved to see the round-off in H."""
+
+OUTWARD = 4
+"""How many samples are taken behind the point where those before it did not do."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
@@ -53,10 +62,11 @@ class End:
 
 @frozen(eq=False)
 class Sample:
-    """A point of the path, and dy/dlam there."""
+    """A point of the path, dy/dlam there, and how much round-off moves Newton's method about it."""
 
     u: Array
     slope: Array
+    noise: float = 0.0
 
 
 def endgame(
@@ -83,11 +93,12 @@ def endgame(
     here = point
     for k in range(1, samples + 1):
         lam = target + gap * RATIO**k
-        following = _track(evaluator, here, _guess(taken, target, lam, best), lam, tolerance, max_step)
-        if following is None:
+        known = best is not None and _within(tolerance, best)
+        tracked = _track(evaluator, here, _guess(taken, target, lam, best), lam, tolerance, max_step, not known)
+        if tracked is None:
             break
-        here = following
-        taken.append(_sample(here))
+        here, noise = tracked
+        taken.append(_sample(here, noise))
         if len(taken) < 3:
             continue
         end = _limit(taken, target)
@@ -97,13 +108,54 @@ def endgame(
             worse += 1
         if best.error <= ENOUGH * (1.0 + float(np.abs(best.u).max())) or worse >= 3:
             break
-    if best is None or not tolerance.measure(np.full_like(best.u, best.error), best.u) <= 1.0:
+    if best is None or not _within(tolerance, best):
+        taken = _farther(evaluator, point, target, tolerance, max_step)
+        best = _limit(taken, target) if len(taken) > 2 else None
+    if best is None or not _within(tolerance, best):
         return None
-    return best
+    return best if _holds(evaluator, best, taken, target) else None
 
 
-def _sample(point: Linearization) -> Sample:
-    return Sample(point.u, point.tangent / point.tangent[-1])
+def _farther(
+    evaluator: Evaluator,
+    point: Linearization,
+    target: float,
+    tolerance: Tolerance,
+    max_step: Callable[[Array, Array], float] | None,
+) -> list[Sample]:
+    """Samples behind the point, the farthest first: a long step may have led to where round-off leaves few digits."""
+    gap, here = point.lam - target, point
+    taken: list[Sample] = []
+    for k in range(1, OUTWARD + 1):
+        lam = target + gap / RATIO**k
+        guess = here.u + (lam - here.lam) * _sample(here).slope
+        tracked = _track(evaluator, here, guess, lam, tolerance, max_step, True)
+        if tracked is None:
+            break
+        here, noise = tracked
+        taken.insert(0, _sample(here, noise))
+    return taken
+
+
+def _sample(point: Linearization, noise: float = 0.0) -> Sample:
+    return Sample(point.u, point.tangent / point.tangent[-1], noise)
+
+
+def _within(tolerance: Tolerance, end: End) -> bool:
+    return tolerance.measure(np.full_like(end.u, end.error), end.u) <= 1.0
+
+
+def _holds(evaluator: Evaluator, end: End, taken: list[Sample], target: float) -> bool:
+    """Whether the equations hold at the limit: far better than at the first sample, put on the target, or to round-off.
+
+    Relative to that sample because the equations have units of their own.
+    """
+    try:
+        residual, round_off = (largest(evaluator.residual(u)) for u in (end.u, taken[-1].u))
+        moved = largest(evaluator.residual(np.append(taken[0].u[:-1], target)))
+    except EvaluationError:
+        return False
+    return residual <= ZERO * moved + 10.0 * round_off
 
 
 def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[float], Array], Array]:
@@ -115,15 +167,19 @@ def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[f
 
 
 def _limit(taken: list[Sample], target: float) -> End:
-    """The best limit over the winding numbers; the error is the change that the last sample made.
+    """The best limit over the winding numbers; the error is the change that a sample makes, and the noise.
 
     A multiple of the true winding number fits as well, a little later, so the smallest within a factor of ten wins.
     """
     ends = []
+    # The extrapolation multiplies errors of the samples and of their slopes by 3, 30, 300, ... for w = 1, 2, 3, ...
+    noise = max(sample.noise for sample in taken)
     for w in WINDING_NUMBERS:
         value = _polynomial(taken, target, w)[0](0.0)
-        before = _polynomial(taken[:-1], target, w)[0](0.0)
-        ends.append(End(np.append(value[:-1], target), float(np.abs(value - before)[:-1].max()), w))
+        # Without the last sample, the most accurate, and without the first, the least: a small change may be chance.
+        others = [_polynomial(some, target, w)[0](0.0) for some in (taken[:-1], taken[1:])]
+        error = max(largest((value - other)[:-1]) for other in others) + 0.3 * 10.0**w * noise
+        ends.append(End(np.append(value[:-1], target), error, w))
     least = min(end.error for end in ends)
     return next(end for end in ends if end.error <= 10.0 * least)
 
@@ -149,8 +205,13 @@ def _track(
     lam: float,
     tolerance: Tolerance,
     max_step: Callable[[Array, Array], float] | None,
-) -> Linearization | None:
-    """The point at a parameter value, by Newton at that value, with increments followed to round-off."""
+    noisy: bool,
+) -> tuple[Linearization, float] | None:
+    """The point at a parameter value, by Newton at that value, and its noise.
+
+    Increments are followed to a thousandth of the tolerance. Where H_y is so near singular that round-off in H alone
+    makes larger ones, and `noisy` points are wanted, one below the tolerance will do: it says what the point is worth.
+    """
     unit = np.zeros_like(guess)
     unit[-1] = 1.0
     if max_step is not None:
@@ -160,18 +221,40 @@ def _track(
             guess[-1] = lam
     fine = Tolerance(absolute=1e-3 * tolerance.absolute, relative=1e-3 * tolerance.relative)
     correction = BorderedNewton(max_iterations=12, max_contraction=0.9).correct(evaluator, here, guess, unit, fine)
-    if not correction.converged:
-        return None
-    if max_step is not None and not max_step(here.u, correction.u - here.u) > 1.0:
-        return None
-    correction.u[-1] = lam
-    along = here.border
+    u, anchor, noise = correction.u, correction.anchor, 0.0
     try:
-        if correction.anchor is not None:
-            return relinearize(evaluator, correction.u, here.weights, correction.anchor, along)
-        return linearize(evaluator, correction.u, here.weights, along, 0)
+        if not correction.converged:
+            if not noisy or anchor is None:
+                return None
+            increment = anchor.system.solve(-evaluator.residual(u), 0.0)
+            if tolerance.measure(increment, u) > 1.0:
+                return None
+            u, noise = u + increment, largest(increment)
+        if max_step is not None and not max_step(here.u, u - here.u) > 1.0:
+            return None
+        u[-1] = lam
+        if anchor is not None:
+            at = relinearize(evaluator, u, here.weights, anchor, here.border)
+        else:
+            at = linearize(evaluator, u, here.weights, here.border, 0)
+        return at, max(noise, _round_off(evaluator, at, unit))
     except EvaluationError:
         return None
+
+
+def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> float:
+    """How far round-off in H moves the point at its parameter value: where H repeats it, Newton's method cannot see it.
+
+    Measured: H a few units in the last place away, less what the derivative says of that, is round-off.
+    """
+    apply = evaluator.differential(at.u)
+    if apply is None:
+        return 0.0
+    nearby = at.u + ULPS * np.spacing(at.u) * np.sign(np.cos(1.0 + 1.7 * np.arange(float(at.u.size)) ** 2))
+    nearby[-1] = at.u[-1]
+    left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
+    # One look at something random: the largest of many is more than that.
+    return 2.0 * largest(at.solve(left, 0.0, unit))
 
 
 def touching(curve: Curve, point: Linearization, target: float) -> float | None:

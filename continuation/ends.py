@@ -6,14 +6,14 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation import guards
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from continuation.arrival import crossing, cut
 from continuation.attempt import Stepper, Trial
-from continuation.endgame import End, endgame, touching
-from continuation.evaluation import EvaluationError
+from continuation.endgame import ENOUGH, End, endgame, touching
+from continuation.evaluation import EvaluationError, Evaluator
 from continuation.linearization import Linearization
 from continuation.location import Arc
-from continuation.metric import share
+from continuation.metric import norm, share
 from continuation.path import Kind
 from continuation.predictors import Prediction, SupportsSegment
 from continuation.state import State
@@ -24,6 +24,24 @@ ENDGAME = 1e-2
 
 SINGULAR = 1e-10
 """Share of the parameter in the tangent below which an end counts as singular in the parameter."""
+
+
+def regular(evaluator: Evaluator, end: Linearization, near: Linearization) -> bool:
+    """Whether H' has full rank at a point that was corrected with the factorisation of `near`: if not, that is no end.
+
+    Where H_y vanishes at the target, as in lam F(y), anything solves H = 0 there. Refinement of a general right-hand
+    side contracts if H' is that of `near` but for a moderate change. If it does not, H' is factored at the point.
+    """
+    r = np.cos(1.0 + 1.7 * np.arange(end.u.size - 1.0) ** 2)
+    z = near.solve(r)
+    size = norm(near.weights, z)
+    apply = evaluator.differential(end.u)
+    if apply is None or norm(near.weights, near.solve(r - apply(z))) <= 0.5 * size:
+        return True
+    try:
+        return norm(near.weights, evaluator.factor(end.u, near.border).solve(r, 0.0)) <= size / SINGULAR
+    except EvaluationError:
+        return False
 
 
 @frozen(eq=False)
@@ -149,7 +167,7 @@ class Ends:
         for value, kind, status in ends:
             point = crossing(evaluator, arc, value, tolerance)
             if point is not None:
-                limit = self._limit(arc, point, value)
+                limit = self._limit(arc, point, value) if kind == Kind.TARGET else None
                 u: Array = np.append(point.u[:-1], value) if limit is None else limit.u
                 end = Linearization(u, point.weights, point.anchor, point.tangent, point.orientation)
                 return Ending(cut(arc, end), kind, status, limit)
@@ -161,17 +179,27 @@ class Ends:
         return Ending(arc)
 
     def _limit(self, arc: Arc, end: Linearization, value: float) -> End | None:
-        """The end of the arc where the parameter stands still on its value; None where it does not, or none is found.
+        """The end of the arc where it is singular; None where it is regular, or a fold about which no more can be said.
 
         In a simple fold the end is known to round-off. Where the parameter stands still to a higher order it is known
         to a root of round-off only, and the endgame says more. Which it is, is seen from the beginning of the arc:
         lam - value ~ sigma^w, so the ratio below is near 1/w.
         """
-        if share(end.weights, end.tangent) > SINGULAR:
-            return None
-        sigma = float(np.dot(arc.border, end.u - arc.a.u))
-        ratio = abs(arc.a.lam - value) / abs(sigma * arc.a.tangent[-1])
-        if (arc.a.lam - value) * (arc.b.lam - value) >= 0.0 and 0.4 < ratio < 0.8:
-            return End(np.append(end.u[:-1], value), abs(end.lam - value) ** 0.5, 2)
         stepper = self.stepper
-        return endgame(stepper.evaluator, arc.a, value, stepper.tolerance, stepper.max_step)
+        if share(end.weights, end.tangent) > SINGULAR:
+            if regular(stepper.evaluator, end, arc.a):
+                return None
+            limit = endgame(stepper.evaluator, arc.a, value, stepper.tolerance, stepper.max_step)
+            if limit is None:
+                raise EvaluationError("the end is singular, and its limit was not found")
+            return limit
+        sigma = float(np.dot(arc.border, end.u - arc.a.u))
+        gap, expected = abs(arc.a.lam - value), abs(sigma * arc.a.tangent[-1])
+        fold = None
+        if (arc.a.lam - value) * (arc.b.lam - value) >= 0.0 and 0.4 * expected < gap < 0.8 * expected:
+            # y ~ y* + c sqrt(lam - value), with c as at the beginning of the arc.
+            fold = End(np.append(end.u[:-1], value), (abs(end.lam - value) / gap) ** 0.5 * largest(arc.a.y - end.y), 2)
+            if fold.error <= ENOUGH * (1.0 + largest(end.u)):
+                return fold
+        limit = endgame(stepper.evaluator, arc.a, value, stepper.tolerance, stepper.max_step)
+        return fold if limit is None or (fold is not None and fold.error <= limit.error) else limit

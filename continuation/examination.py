@@ -60,11 +60,13 @@ class Examiner:
         assert arrival is not None
         evaluator, tolerance, events = self.evaluator, self.settings.tolerance, self.settings.events
         arc = Arc(point, arrival, point.border, segment_between(point, arrival, prediction))
-        branch = None
+        crossed: list[tuple[int, Linearization]] = []
         if arrival.orientation not in (0, state.orientation):
-            branch = passed(evaluator, point, arrival, tolerance)
-            if branch is None:
+            index = self.settings.branch_index
+            branch = None if index is None else passed(evaluator, point, arrival, tolerance)
+            if index is None or branch is None:
                 return None
+            crossed.append((index, branch))
             state = evolve(state, orientation=arrival.orientation)
         try:
             if not guards.connected(evaluator, arc, tolerance):
@@ -73,9 +75,8 @@ class Examiner:
             found, monitors = occurrences(evaluator, events, state.monitors, ending.arc, tolerance)
         except EvaluationError:
             return None
-        if branch is not None and position(arc, branch.u) <= position(arc, ending.arc.b.u):
-            found.append((self.settings.branch_index, branch))
-            found.sort(key=lambda pair: position(arc, pair[1].u))
+        if crossed and position(arc, crossed[0][1].u) <= position(arc, ending.arc.b.u):
+            found = sorted((*found, *crossed), key=lambda pair: position(arc, pair[1].u))
         last, occurred = stop(events, state.occurrences, found)
         if last is not None:
             i, stopping = found[last]

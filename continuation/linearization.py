@@ -12,6 +12,9 @@ from continuation.arrays import Array, largest
 from continuation.evaluation import CountedSystem, Counts, EvaluationError, Evaluator
 from continuation.metric import norm
 
+ROUND_OFF = 1e-14
+"""The last increment of a tangent that is refined as far as it goes, relative to its size."""
+
 
 @frozen(eq=False)
 class Anchor:
@@ -105,9 +108,15 @@ def linearize(evaluator: Evaluator, u: Array, weights: Array, reference: Array, 
 
 
 def relinearize(
-    evaluator: Evaluator, u: Array, weights: Array, anchor: Anchor, along: Array, signed: bool = False
+    evaluator: Evaluator,
+    u: Array,
+    weights: Array,
+    anchor: Anchor,
+    along: Array,
+    signed: bool = False,
+    accuracy: float = ROUND_OFF,
 ) -> Linearization:
-    """Linearize at u with a factorisation from nearby: the tangent is refined to round-off, and makes along . v > 0.
+    """Linearize at u with a factorisation from nearby: the tangent is refined to `accuracy`, and makes along . v > 0.
 
     Iterative refinement of M v = e_{N+1} with the factors of M~ multiplies the error by I - M~^{-1} M. It is believed
     only if it contracts by 0.3 or better, else u gets factors of its own. Where the determinant's sign counts
@@ -121,7 +130,7 @@ def relinearize(
             guess = _general(u.size) / np.sqrt(weights)
         else:
             guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
-        tangent = _refined(apply, anchor, guess)
+        tangent = _refined(apply, anchor, guess, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along, 0)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
@@ -138,18 +147,19 @@ def _general(n: int) -> Array:
     return vector
 
 
-def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array) -> Array | None:
-    """The solution v of M v = e_{N+1} at the point of `apply`, to round-off; None where refinement fails."""
+def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accuracy: float) -> Array | None:
+    """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails."""
     system, border = anchor.system, anchor.border
     v, before = guess, np.inf
-    for _ in range(14):
+    for k in range(20):
         increment = system.approximate(-apply(v), 1.0 - float(np.dot(border, v)))
         size = largest(increment)
-        if size > 0.3 * before:
+        # The first ratio compares unlike parts of an error in general position: it need only fall.
+        if size > (0.9 if k == 1 else 0.3) * before:
             # At round-off the increments no longer shrink: that is the end of a refinement that has worked.
-            return v if before <= 1e-11 * largest(v) else None
+            return v if before <= 1e3 * accuracy * largest(v) else None
         v = v + increment
-        if size <= 1e-14 * largest(v):
+        if size <= accuracy * largest(v):
             return v
         before = size
     return None

@@ -17,6 +17,9 @@ from continuation.linearization import Anchor, Linearization, relinearize
 from continuation.segment import Segment, hermite
 from continuation.tolerance import Tolerance
 
+JUMP = 1e-3
+"""A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
+
 
 @frozen(eq=False)
 class Arc:
@@ -117,7 +120,9 @@ def locate(
             found.append(right)
         else:
             series = None if divided else arc.segment
-            found.append(_root(evaluator, event, Arc(left, right, arc.border, arc.segment), series, gl, gr, tolerance))
+            part = Arc(left, right, arc.border, arc.segment)
+            root = _root(evaluator, event, part, series, gl, gr, tolerance)
+            found += [] if root is None else [root]
     return found
 
 
@@ -156,8 +161,8 @@ def _guess(event: Event, segment: Segment, ga: float, gb: float) -> float:
 
 def _root(
     evaluator: Evaluator, event: Event, arc: Arc, series: Segment | None, ga: float, gb: float, tolerance: Tolerance
-) -> Linearization:
-    """One zero: interpolate, correct, linearize, narrow.
+) -> Linearization | None:
+    """One zero: interpolate, correct, linearize, narrow; None where the monitor jumps instead, as a tangent may.
 
     The interpolant has the tangents of both ends, so each pass raises the error of the guess to about the fourth
     power of the bracket. A pass that does not halve the monitor is followed by a bisection, or is the last one if
@@ -187,7 +192,7 @@ def _root(
         width = float(np.dot(arc.border, b.u - a.u))
         if least <= 1e-15 * scale or (bisect and least <= 1e-10 * scale):
             break
-    return _on_value(evaluator, event, best, tolerance)
+    return _on_value(evaluator, event, best, tolerance) if least <= JUMP * scale else None
 
 
 def _on_value(evaluator: Evaluator, event: Event, point: Linearization, tolerance: Tolerance) -> Linearization:

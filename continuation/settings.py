@@ -50,6 +50,8 @@ class Settings:
     budget : Budget
     target : float or None
     direction : int
+    examine : bool
+        Whether turning points, branch points and singular ends are looked for.
     """
 
     predictor: Predictor
@@ -61,11 +63,12 @@ class Settings:
     budget: Budget
     target: float | None
     direction: int
+    examine: bool
 
     @property
-    def branch_index(self) -> int:
-        """Which of the events stands for branch points."""
-        return next(i for i, event in enumerate(self.events) if isinstance(event, BranchPoint))
+    def branch_index(self) -> int | None:
+        """Which of the events stands for branch points; None where they are not watched for."""
+        return next((i for i, event in enumerate(self.events) if isinstance(event, BranchPoint)), None)
 
 
 def settle_on(
@@ -80,6 +83,7 @@ def settle_on(
     budget: Budget | None,
     target: float | str | None,
     direction: int,
+    examine: bool,
 ) -> Settings:
     """Complete the arguments of a trace.
 
@@ -107,15 +111,16 @@ def settle_on(
             raise TypeError(f"{name}: expected {PARTS[name].kind}, found {value!r}, which has no `{missing[0]}`")
     return Settings(
         **given,
-        events=_events(homotopy, events),
+        events=_events(homotopy, events, examine),
         tolerance=as_tolerance(tolerance),
         budget=budget if budget is not None else Budget(),
         target=_target(homotopy, target),
         direction=direction,
+        examine=bool(examine),
     )
 
 
-def _events(homotopy: Any, events: Sequence[Event]) -> tuple[Event, ...]:
+def _events(homotopy: Any, events: Sequence[Event], examine: bool) -> tuple[Event, ...]:
     if not isinstance(events, Sequence):
         raise TypeError(f"events: expected a list of events, found {events!r}")
     own = tuple(homotopy.events) if isinstance(homotopy, SupportsEvents) else ()
@@ -123,6 +128,8 @@ def _events(homotopy: Any, events: Sequence[Event]) -> tuple[Event, ...]:
     for event in watched:
         if not hasattr(event, "monitor"):
             raise TypeError(f"events: expected events, found {event!r}; wrap a function in Monitor(function)")
+    if not examine:
+        return watched
     if not any(isinstance(event, TurningPoint) and event.component == -1 for event in watched):
         watched = (TurningPoint(), *watched)
     if not any(isinstance(event, BranchPoint) for event in watched):

@@ -84,6 +84,10 @@ class Tracer:
 
     check_jacobian : bool
         Compare the Jacobian with the residual at the start, and refuse a wrong one with a ValueError that says where.
+    examine : bool
+        Watch for turning points and branch points, and look for a singular end by the endgame. Without it the path is
+        only followed, at two thirds of the cost: a step over a branch point is refused, and an end must be regular, or
+        be found by the homotopy's own `finish`. For searches that trace many paths for their ends.
 
     Attributes
     ----------
@@ -113,6 +117,7 @@ class Tracer:
         start: tuple[Array, Array] | None = None,
         state: State | None = None,
         check_jacobian: bool = False,
+        examine: bool = True,
     ) -> None:
         self.homotopy = homotopy
         self.path = Path()
@@ -130,6 +135,7 @@ class Tracer:
             budget,
             target,
             direction,
+            examine,
         )
         self.observers = tuple(observers)
         self.state: State | None = state
@@ -277,7 +283,9 @@ class Tracer:
         except EvaluationError as error:
             self._end(Status.STEP_TOO_SMALL, f"{Status.STEP_TOO_SMALL} The predictor failed: {error}.")
             return None
-        end, state = self._ended(point, prediction, state)
+        end = None
+        if self.settings.examine:
+            end, state = self._ended(point, prediction, state)
         if end is not None:
             self._append_end(point, end.u, _ending(Status.REACHED_TARGET, end), end)
             return None
@@ -338,7 +346,7 @@ class Tracer:
             self._end(Status.BUDGET_EXHAUSTED, f"{Status.BUDGET_EXHAUSTED} Reached: {limit}.")
         elif h < self.settings.controller.bounds.minimum:
             status = Status.STEP_TOO_SMALL if trial.finite else Status.LEFT_DOMAIN
-            reason = trial.reason or "the controller refuses even the shortest step; is the Jacobian right?"
+            reason = trial.reason or "the controller refuses even the shortest step, as with a wrong Jacobian"
             self._end(status, f"{status} Last reason: {reason}.")
         else:
             return False

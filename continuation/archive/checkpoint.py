@@ -16,7 +16,10 @@ from continuation.state import State
 from continuation.tracer import Tracer
 
 _HEAD = struct.Struct("<QQI")
-OPTIONS = ("predictor", "corrector", "controller", "metric", "events", "tolerance", "budget", "target", "direction")
+OPTIONS = (
+    *("predictor", "corrector", "controller", "metric", "events"),
+    *("tolerance", "budget", "target", "direction", "examine"),
+)
 """The arguments of `continuation.Tracer` that determine a path, and are kept."""
 
 _INLINE_BYTES = 1 << 16

@@ -98,7 +98,7 @@ def _check_sign(place: Place, whole: Array, sign: int) -> None:
         expected, logarithm = np.linalg.slogdet(whole)
         if sign != expected:
             size = f"{expected * np.exp(logarithm):.3g}" if abs(logarithm) < 700 else f"of sign {expected:+.0f}"
-            fail(f"bordered: {place.where} the sign is {sign:+d}, but the determinant is {size}")
+            fail(f"bordered: {place.where} the sign is {int(sign):+d}, but the determinant is {size}")
 
 
 def taylor(subject: Subject) -> None:

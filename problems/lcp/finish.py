@@ -164,7 +164,8 @@ class Finish:
             x[active] = face.inverse(-q[active])
             if not np.isfinite(x).all():
                 return None
-            following = np.where(active, x > 0.0, self.problem.A @ x + q < 0.0)
+            with np.errstate(over="ignore", invalid="ignore"):
+                following = np.where(active, x > 0.0, self.problem.A @ x + q < 0.0)
             changes.append(int(np.count_nonzero(following != active)))
             if changes[-1] == 0:
                 break

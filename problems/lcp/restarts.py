@@ -146,7 +146,10 @@ class Restart:
         # A pure path is its own end, so it is traced in earnest.
         traced = homotopy if finish is None else Finishing(homotopy, finish, rough=True)
         tolerance = PURE_TOLERANCE if finish is None else TRACE_TOLERANCE
-        options = {"preset": search_preset(n), "tolerance": tolerance, **self.options}
+        # What counts is where the path ends, and that the finish finds.
+        options = {
+            "preset": search_preset(n), "tolerance": tolerance, "examine": finish is None, **self.options
+        }  # fmt: skip
         tracer = Tracer(traced, budget=budget, observers=observers, **options)
         with closing(_reasons(tracer, homotopy, finish is not None)) as reasons:
             reason = next(reasons, "")

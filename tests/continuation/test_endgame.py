@@ -67,3 +67,34 @@ def test_a_double_end_of_a_complementarity_problem(preset):
     assert path.winding_number == 2
     assert path.end_error is not None
     assert path.end_error <= 1e-8
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@pytest.mark.parametrize("size", [0.0, 1.0, 10.0, 100.0])
+def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_the_path(preset, size):
+    """H_y = lam^2: round-off of `size` 1e-16 in H leaves y 1e-6 at lam = 1e-4, and at the target any y solves H = 0.
+
+    So neither a landing nor a crossing there is an end; the limit is, to the tolerance.
+    """
+    homotopy = continuation.from_functions(
+        lambda y, lam: np.array([(lam**2 * (y[0] - np.exp(lam)) + size) - size]),
+        lambda y, lam: (np.array([[lam**2]]), np.array([2.0 * lam * (y[0] - np.exp(lam)) - lam**2 * np.exp(lam)])),
+        start=([np.e], 1.0),
+    )
+    path = continuation.trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.end_error is not None
+    assert path.end_error < 1e-8
+    assert abs(path.endpoint.y[0] - 1.0) <= 10.0 * path.end_error + 1e-14
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
+    """A homotopy that jumps at the target itself: the path has the limit 0, where H(0, 0) = -1."""
+    homotopy = continuation.from_functions(
+        lambda y, lam: np.array([y[0] - lam if lam > 0.0 else y[0] - 1.0]),
+        lambda y, lam: (np.array([[1.0]]), np.array([-1.0])),
+        start=([1.0], 1.0),
+    )
+    path = continuation.trace(homotopy, preset=preset)
+    assert path.status is not Status.REACHED_TARGET
