@@ -30,7 +30,7 @@ def trace(
     observers : tuple of Observer
     **options
         As for `continuation.Tracer`: predictor, corrector, controller, preset, metric, events, tolerance, budget,
-        target, direction, start.
+        target, direction, start, check_jacobian, examine.
 
     Returns
     -------

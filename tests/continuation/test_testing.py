@@ -116,7 +116,7 @@ class Flipped(Interior):
         system = super().bordered(y, lam, border)
 
         class Wrong:
-            sign = -system.sign
+            sign = -1.0 * system.sign
             solve = staticmethod(system.solve)
 
         return Wrong()

@@ -25,7 +25,7 @@ from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Ge
 from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
 from continuation.metric import Euclidean, Relative, RootMeanSquare, Weighted
 from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent
-from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
+from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth, Pitchfork
 
 PREDICTORS = [
     Tangent(),
@@ -329,3 +329,21 @@ def test_the_homotopys_target_can_be_overridden():
     assert trace(GOOD, target=3.0).endpoint.lam == 3.0
     assert trace(GOOD, target=-3.0).endpoint.lam == -3.0
     assert trace(GOOD, target=None, budget=Budget(steps=4)).status is Status.BUDGET_EXHAUSTED
+
+
+def test_an_unexamined_trace_follows_the_same_path_for_less():
+    """Steps are those of a full trace up to the end; no turning point is located, and that is what is saved."""
+    full, light = (trace(FreudensteinRoth(), examine=examine) for examine in (True, False))
+    assert light.status is full.status
+    assert light.events == []
+    assert len(full.turning_points) > 0
+    np.testing.assert_allclose(light.endpoint.u, full.endpoint.u, rtol=0, atol=1e-10)
+    assert len(light) == len(full)
+    assert light.counts.solves < full.counts.solves
+    assert light.counts.residuals < full.counts.residuals
+
+
+def test_an_unexamined_trace_does_not_cross_a_branch_point():
+    path = trace(Pitchfork(), examine=False)
+    assert path.status is Status.STEP_TOO_SMALL
+    assert path.events == []
