@@ -78,8 +78,10 @@ def _sparse_sums(problem: LCP, x: Array) -> tuple[Array, Array, Array, int]:
     longest_first = np.argsort(-lengths, kind="stable")
     ordered = lengths[longest_first]
     for k in range(int(ordered[0])):
-        rows = longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
-        position = stored.indptr[rows] + k
+        # Slices where every row has a k-th entry: gathering rows costs more than the sums do.
+        everywhere = k < ordered[-1]
+        rows = slice(None) if everywhere else longest_first[: int(np.searchsorted(-ordered, -k, side="left"))]
+        position = (stored.indptr[:-1] if everywhere else stored.indptr[rows]) + k
         product, error = _two_product(stored.data[position], x[stored.indices[position]])
         total[rows], rounding = _two_sum(total[rows], product)
         lost[rows] += error + rounding
