@@ -86,7 +86,7 @@ PARTS: dict[str, tuple[str, Parts]] = {
     "metrics": ("metrics, the parts as in DEFAULT", METRICS),
     "controllers": ("step controllers, the other parts as in DEFAULT", CONTROLLERS),
 }
-WORK = ("factorizations", "solves", "residuals", "seconds")
+COUNTED = ("factorizations", "solves", "residuals")
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
@@ -98,6 +98,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
         if name == "presets" and compare:
             methods.append(rivals.scipy_loop())
+        # Where no chart of times is drawn, the counts of one run are all there is to know.
+        timed = size == "full" or name == "presets"
         found.append(
             Study(
                 name=f"engine-{name}",
@@ -106,18 +108,13 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
                 methods=methods,
                 ladder=tolerances(*rungs),
                 errors=(END_POINT, TURNING_POINTS, *((ARCLENGTH,) if size == "full" else ())),
-                work=WORK,
-                figures=tuple(Precision("end_point", work) for work in ("factorizations", *_timed(name, size))),
-                repeats={"smoke": 0, "moderate": 1, "full": 3}[size],
+                work=(*COUNTED, "seconds") if timed else COUNTED,
+                figures=tuple(Precision("end_point", work) for work in ("factorizations", "seconds")[: 1 + timed]),
+                repeats={"smoke": 0, "moderate": 1, "full": 3}[size] if timed else 0,
             )
         )
     found.append(_steps(problems, size))
     return [*found, _combinations(problems)] if size == "full" else found
-
-
-def _timed(name: str, size: Size) -> tuple[str, ...]:
-    """Where a chart of times is drawn too: everywhere at full size, else for the presets alone."""
-    return ("seconds",) if size == "full" or name == "presets" else ()
 
 
 def _problems(size: Size) -> list[Problem]:
@@ -138,7 +135,7 @@ def _steps(problems: list[Problem], size: Size) -> Study:
         methods=methods,
         ladder=longest_steps(*steps),
         errors=(CURVE_DISTANCE, END_POINT),
-        work=WORK,
+        work=COUNTED,
         figures=(Precision("curve_distance", "factorizations"),),
         repeats=0,
     )
@@ -159,6 +156,6 @@ def _combinations(problems: Sequence[Problem]) -> Study:
         methods=methods,
         ladder=tolerances(1e-8),
         errors=(END_POINT, TURNING_POINTS),
-        work=WORK,
+        work=COUNTED,
         repeats=0,
     )
