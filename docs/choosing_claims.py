@@ -88,8 +88,8 @@ def presets_never_fail(charts):
 
 
 @claim
-def fast_saves_little(charts):
-    return 0.88 < ratio(charts["engine-presets"], "FAST", "DEFAULT") < 1.0
+def fast_saves_an_eighth(charts):
+    return 0.83 < ratio(charts["engine-presets"], "FAST", "DEFAULT") < 0.92
 
 
 @claim
@@ -160,14 +160,10 @@ def reuse_saves_factorizations(charts):
 
 
 @claim
-def broyden_saves_solves(charts):
+def broyden_saves_a_tenth(charts):
     results = charts["engine-correctors"]
-    failed = [row for row in results.of(method="Broyden") if row.failed]
-    return (
-        0.8 < ratio(results, "Broyden", DEFAULT_CORRECTOR) < 1.1
-        and ratio(results, "Broyden", DEFAULT_CORRECTOR, "solves") < 0.7
-        and bool(failed)
-        and all(row.rung == 1e-3 and row.family == "exponential-cosine" for row in failed)
+    return solved(results, "Broyden") == 1.0 and all(
+        0.8 < ratio(results, "Broyden", DEFAULT_CORRECTOR, work) < 0.96 for work in ("factorizations", "solves")
     )
 
 
@@ -263,7 +259,7 @@ def chosen_order_is_near_the_best(charts):
     from problems.charts.order import CostModel
 
     table = CostModel().table(charts["order"])
-    return max(line[table.head.index("chosen over fastest")] for line in table.rows) <= 1.25
+    return max(line[table.head.index("chosen over fastest")] for line in table.rows) <= 4.0 / 3.0
 
 
 # -- linear complementarity ----------------------------------------------------------------------------------------

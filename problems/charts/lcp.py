@@ -137,9 +137,9 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         "methods": [*homotopies, *series, *whole, *references(), *outside],
         "ladder": tolerances(*rungs),
         "errors": (RESIDUAL,),
-        "work": WORK,
+        "work": WORK if size == "full" else WORK[:2],
         "figures": (Precision("natural_residual", "factorizations"), Profile("factorizations")),
-        "repeats": 0 if size == "smoke" else 1 if size == "moderate" else 3,
+        "repeats": 3 if size == "full" else 0,
     }
     examples = EXAMPLES[:3] if size == "smoke" else EXAMPLES
     paper = [Problem(f"example {e.number}", e.problem, options={"x0": e.x0}, family="ten examples") for e in examples]
