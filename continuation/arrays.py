@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import isfinite
 from typing import Any, TypeAlias
 
@@ -27,3 +28,11 @@ def finite(entries: Array) -> bool:
 def largest(entries: Array) -> float:
     """The largest magnitude among finite `entries`, shape (N,), N > 0: one BLAS call and no array in between."""
     return abs(float(entries[idamax(entries)]))
+
+
+@lru_cache(maxsize=4)
+def general(n: int) -> Array:
+    """A vector of n components between -1 and 1 that has a part in every direction; the same each time, read-only."""
+    vector: Array = np.cos(1.0 + 1.7 * np.arange(float(n)) ** 2)
+    vector.flags.writeable = False
+    return vector

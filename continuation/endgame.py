@@ -15,7 +15,7 @@ import numpy as np
 from attrs import frozen
 from scipy.optimize import brentq
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, general, largest
 from continuation.correctors import BorderedNewton
 from continuation.evaluation import EvaluationError, Evaluator
 from continuation.linearization import Linearization, linearize, relinearize
@@ -250,7 +250,7 @@ def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> float:
     apply = evaluator.differential(at.u)
     if apply is None:
         return 0.0
-    nearby = at.u + ULPS * np.spacing(at.u) * np.sign(np.cos(1.0 + 1.7 * np.arange(float(at.u.size)) ** 2))
+    nearby = at.u + ULPS * np.spacing(at.u) * np.sign(general(at.u.size))
     nearby[-1] = at.u[-1]
     left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
     # One look at something random: the largest of many is more than that.

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation import guards
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, general, largest
 from continuation.arrival import crossing, cut
 from continuation.attempt import Stepper, Trial
 from continuation.endgame import ENOUGH, End, endgame, touching
@@ -32,7 +32,7 @@ def regular(evaluator: Evaluator, end: Linearization, near: Linearization) -> bo
     Where H_y vanishes at the target, as in lam F(y), anything solves H = 0 there. Refinement of a general right-hand
     side contracts if H' is that of `near` but for a moderate change. If it does not, H' is factored at the point.
     """
-    r = np.cos(1.0 + 1.7 * np.arange(end.u.size - 1.0) ** 2)
+    r = general(end.u.size - 1)
     z = near.solve(r)
     size = norm(near.weights, z)
     apply = evaluator.differential(end.u)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, general, largest
 from continuation.evaluation import CountedSystem, Counts, EvaluationError, Evaluator
 from continuation.metric import norm
 
@@ -127,7 +126,7 @@ def relinearize(
     tangent = None
     if apply is not None:
         if signed:
-            guess = _general(u.size) / np.sqrt(weights)
+            guess = general(u.size) / np.sqrt(weights)
         else:
             guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
         tangent = _refined(apply, anchor, guess, accuracy)
@@ -137,14 +136,6 @@ def relinearize(
     flip = float(np.dot(along, tangent)) < 0.0
     sign = anchor.system.sign
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
-
-
-@lru_cache(maxsize=4)
-def _general(n: int) -> Array:
-    """A vector of n components between -1 and 1 that has a part in every direction."""
-    vector: Array = np.cos(1.0 + 1.7 * np.arange(float(n)) ** 2)
-    vector.flags.writeable = False
-    return vector
 
 
 def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accuracy: float) -> Array | None:

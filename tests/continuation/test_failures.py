@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import LinearOperator
 
-from continuation import Budget, Kind, Status, TargetValue, Tolerance, Tracer, from_functions, trace
+from continuation import Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
 from continuation.checks import check_jacobian
 from continuation.controllers import Fixed
 from problems.bifurcation import (
@@ -543,10 +543,3 @@ def test_a_path_without_points_says_why():
     assert not path.steps
     with pytest.raises(IndexError, match="no point"):
         _ = path.endpoint
-
-
-def test_a_residual_that_never_gets_small_ends_the_path_with_a_reason():
-    line = scalar(lambda y, lam: np.array([y[0] - lam + 0.0 * lam]), lambda y, lam: (1.0, -1.0))
-    path = trace(line, tolerance=Tolerance(residual=1e-300))
-    assert path.status in (Status.REACHED_TARGET, Status.STEP_TOO_SMALL)
-    assert "." in path.message
