@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from attrs import evolve, frozen
+from scipy.optimize import brentq
 
 from continuation import guards
 from continuation.arrays import Array, general, largest
@@ -21,6 +22,9 @@ from continuation.status import Status
 
 ENDGAME = 1e-2
 """How near to the target, as a fraction of the whole way, a singular end is looked for."""
+
+RESOLUTION = 1e-9
+"""Of the step to the target, relative: Newton's method at the target's parameter value does the rest."""
 
 SINGULAR = 1e-10
 """Share of the parameter in the tangent below which an end counts as singular in the parameter."""
@@ -91,16 +95,11 @@ class Ends:
         if self.interior and abs(gap) > 0.3 * abs(tried - self.target):
             return None
         # An interior path creeps towards a target on its boundary, so there a longer jump is tried, now and then.
-        low, high = 0.0, min(prediction.reach, 10.0 * h if self.interior else h)
+        target, high = self.target, min(prediction.reach, 10.0 * h if self.interior else h)
         try:
-            if (prediction(high)[-1] - self.target) * gap < 0.0:
+            if not (prediction(high)[-1] - target) * gap >= 0.0:
                 return None
-            while high - low > 1e-12 * high:
-                middle = 0.5 * (low + high)
-                if (prediction(middle)[-1] - self.target) * gap < 0.0:
-                    low = middle
-                else:
-                    high = middle
+            high = float(brentq(lambda s: prediction(s)[-1] - target, 0.0, high, xtol=RESOLUTION * high))
             guess = prediction(high).copy()
         except EvaluationError:
             return None

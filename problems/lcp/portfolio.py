@@ -24,7 +24,7 @@ from problems.lcp.finish import Finish, Finishing
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.padded import Padded
 from problems.lcp.problem import LCP
-from problems.lcp.restarts import FAR, TWO_VECTOR, Band, Restart, light, trace_light
+from problems.lcp.restarts import FAR, TWO_VECTOR, Band, Restart, emphasized, light, trace_light
 
 MAKERS: dict[str, Callable[..., Any]] = {"kkt": KKTHomotopy, **TWO_VECTOR}
 """By the name that `solve` takes."""
@@ -36,7 +36,7 @@ STATIONARY = 1e-6
 """Relative to the data and the point: how well the optimality conditions hold at what is called stationary."""
 
 AHEAD = 64
-"""Restarts handed to an executor before the first of them must have come back."""
+"""Restarts handed to an executor before the first of them has come back."""
 
 LARGEST_KEPT = 4_000_000
 """Numbers of path points kept in memory; of further paths only the two ends are."""
@@ -138,12 +138,13 @@ class Search:
         self.add(path)
         return self.solved
 
-    def add(self, path: Path) -> None:
-        """Take a traced path into account."""
+    def add(self, path: Path, weighted: bool = False) -> None:
+        """Take a traced path into account; one with weights in its objective ends where those of x'w need not hold."""
         self.counts = self.counts + path.counts
         if path.steps:
             arrived = path.status is Status.REACHED_TARGET
-            self.ends.append(End(self._certified(path, arrived), len(self.paths), arrived and self._stationary(path)))
+            stationary = arrived and not weighted and self._stationary(path)
+            self.ends.append(End(self._certified(path, arrived), len(self.paths), stationary))
             self._kept += len(path) * path.endpoint.u.size
         if self._kept > LARGEST_KEPT:
             light(path)
@@ -178,36 +179,46 @@ class Search:
         """
         tolerance = None if self.attempt is None else self.tolerance
 
-        def task(k: int) -> Restart:
-            return Restart(self.structure, name, bands, seed, k, tolerance, self.options)
+        def task(k: int, weights: Array | None) -> Restart:
+            return Restart(self.structure, name, bands, seed, k, tolerance, self.options, weights)
 
-        if executor is None:
-            for k in range(count):
-                if self.exhausted:
-                    return k
-                self.add(task(k).trace(self._left(), self._observers()))
-                if self.solved:
-                    return k + 1
-            return count
-        return self._distributed(executor, [task(k) for k in range(count)])
+        if executor is not None:
+            return self._distributed(executor, task, count)
+        weights = None
+        for k in range(count):
+            if self.exhausted:
+                return k
+            path = task(k, weights).trace(self._left(), self._observers())
+            self.add(path, weights is not None)
+            if self.solved:
+                return k + 1
+            weights = emphasized(self.problem, weights, path)
+        return count
 
-    def _distributed(self, executor: Executor, tasks: list[Restart]) -> int:
+    def _distributed(self, executor: Executor, task: Callable[[int, Array | None], Restart], count: int) -> int:
+        """Restart k goes on with the weights that restart k - AHEAD left: what it does depends on no timing."""
         waiting: dict[Future[Path], Restart] = {}
-        ahead = iter(tasks)
         begun = 0
+
+        def submit(k: int, weights: Array | None) -> int:
+            if k >= count or self.exhausted:
+                return 0
+            one = task(k, weights)
+            waiting[executor.submit(trace_light, one, self._left())] = one
+            return 1
+
         try:
-            while True:
-                while len(waiting) < AHEAD and not self.exhausted and (task := next(ahead, None)) is not None:
-                    waiting[executor.submit(trace_light, task, self._left())] = task
-                    begun += 1
-                if not waiting:
-                    return begun
+            for k in range(min(AHEAD, count)):
+                begun += submit(k, None)
+            while waiting:
                 done, _ = wait(waiting, return_when=FIRST_COMPLETED)
                 for future in sorted(done, key=lambda one: waiting[one].k):
-                    del waiting[future]
-                    self.add(future.result())
+                    restart, path = waiting.pop(future), future.result()
+                    self.add(path, restart.weights is not None)
                     if self.solved:
                         return begun
+                    begun += submit(restart.k + AHEAD, emphasized(self.problem, restart.weights, path))
+            return begun
         finally:
             for future in waiting:
                 future.cancel()

@@ -1,8 +1,9 @@
 """Paths from random starts: where they begin, the parts that make them quick, and when one is given up.
 
-A path of the KKT homotopy may end at a stationary point that does not solve the problem; another start leads elsewhere.
-Measured on random nonmonotone problems (docs/lcp_benchmark.md): starts far out, of uniform products, solve several
-times as often as starts near the solution; what tells them apart is the weight of one multiplier against the other.
+A path of the KKT homotopy may end at a stationary point of x'w that does not solve the problem; another start leads
+elsewhere. Measured on random nonmonotone problems (docs/lcp_benchmark.md): starts far out, whose products x z1 and w z2
+are all about equal, solve several times as often as others. Where a path failed, its large products x_i w_i get more
+weight in the objective of the next, which then has other stationary points, while the solutions stay.
 """
 
 from __future__ import annotations
@@ -14,12 +15,14 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
+from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg
 from continuation.correctors import BorderedNewton
 from continuation.path import Kind, Path
 from continuation.predictors import Hermite
 from continuation.presets import Preset
+from continuation.tolerance import Tolerance
 from continuation.tracer import Observer, Tracer
 from problems.lcp.faces import Faces
 from problems.lcp.finish import Finish, Finishing, smallest_parameter
@@ -33,31 +36,42 @@ from problems.lcp.homotopies import (
     YuHomotopy,
     ZhaoHomotopy,
 )
-from problems.lcp.homotopies.starts import SPREAD, natural_units
+from problems.lcp.homotopies.starts import natural_units
+from problems.lcp.infeasible import scaled_data
 from problems.lcp.problem import LCP
 
 Band = tuple[float, float]
 
-FAR: tuple[Band, ...] = ((0.7, 1.5), (1.5, 2.5), (0.7, 1.5), (-0.3, 0.5))
+FAR: tuple[Band, ...] = ((0.7, 2.5),)
 NEAR: tuple[Band, ...] = ((-0.5, 0.0), (0.0, 0.5))
 """Ten to a power from these intervals, in turn, is the distance of a start in natural units.
 
-Starts far out solve most, and each band solves problems that the others do not; for A >= 0 only near ones do well.
+Starts far out solve most; for A >= 0 only near ones do well.
 """
 
-WEIGHTS = (0.1, 0.02, 0.8)
-"""Standard deviation of the decimal logarithm of the weight of z2 against z1: at first, growth a restart, at most."""
+SPREAD = 0.5
+"""Standard deviation of the natural logarithms of the components of a start: with 0.3 or 1 half as many paths solve."""
+
+BALANCE = (0.05, 0.1)
+"""Mean and standard deviation of the decimal logarithm of the products w z2 over the products x z1.
+
+At a point where all x_i w_i are equal, z1 = w and z2 = x satisfy the optimality conditions where the two products are
+equal: then a central point of the LCP is one of the path. At a ratio of 4 or 1/4 next to no path solves.
+"""
+
+EMPHASIS = 1.0
+"""How much weight the largest product x_i w_i at the end of a path that failed gains, others by its square root."""
 
 SMALLEST = 5e-5
 """Products x z1 below this, in natural units: what the active set is then, it remains."""
 
-LONGEST = 100
+LONGEST = 60
 """Steps, and n more, after which a restart is given up: few that turn so often end well, and none of them soon."""
 
 LARGEST_FRESH = 150
 """Up to this order a factorisation costs no more than the solves by which an old one is refined."""
 
-TRACE_TOLERANCE = 1e-2
+TRACE_TOLERANCE = Tolerance(absolute=1e-4, relative=5e-2)
 """Of the last increment; with Newton's method the error is near its square. The end is exact by the finish."""
 
 
@@ -77,7 +91,7 @@ def search_preset(n: int) -> Preset:
 
 
 def restart_start(problem: LCP, generator: np.random.Generator, k: int, bands: tuple[Band, ...] = FAR) -> Start:
-    """The start of the k-th restart: scale, weight and components random, x z1 and w z2 each uniform.
+    """The start of the k-th restart: scale, balance and components random, all products x z1 equal, and all w z2.
 
     Parameters
     ----------
@@ -85,18 +99,30 @@ def restart_start(problem: LCP, generator: np.random.Generator, k: int, bands: t
     generator : numpy.random.Generator
         Its state decides, so that restarts can be repeated.
     k : int
-        The weights spread wider as k grows.
+        Decides which of the bands it is from.
     bands : tuple of intervals
         `FAR` or `NEAR`.
     """
     x, w = natural_units(problem)
     scale = 10.0 ** generator.uniform(*bands[k % len(bands)])
-    first, growth, most = WEIGHTS
-    weight = 10.0 ** (min(first + growth * k, most) * generator.standard_normal())
-    x0 = scale * x * generator.uniform(*SPREAD, problem.n)
-    w0 = np.maximum(problem.w(x0), 0.0) + scale * w * generator.uniform(*SPREAD, problem.n)
+    balance = 10.0 ** generator.normal(*BALANCE)
+    x0 = scale * x * np.exp(SPREAD * generator.standard_normal(problem.n))
+    w0 = np.maximum(problem.w(x0), 0.0) + scale * w * np.exp(SPREAD * generator.standard_normal(problem.n))
     product = scale * scale * x * w
-    return Start(x0, product / x0, weight * product / w0, w0)
+    return Start(x0, product / x0, balance * product / w0, w0)
+
+
+def emphasized(problem: LCP, weights: Array | None, path: Path) -> Array:
+    """Weights of the x_i w_i in the objective, after a path that ended where some of these products are not zero."""
+    x = np.maximum(path.endpoint.y[: problem.n], 0.0)
+    products = x * np.maximum(problem.w(x), 0.0)
+    largest = float(products.max())
+    before = np.ones(problem.n) if weights is None else weights
+    if not 0.0 < largest < np.inf:
+        return before
+    after = before * (1.0 + EMPHASIS * np.sqrt(products / largest))
+    scaled: Array = after / np.exp(np.log(after).mean())
+    return scaled
 
 
 TWO_VECTOR = {"wang": WangHomotopy, "yu": YuHomotopy, "zhao": ZhaoHomotopy, "xu": XuHomotopy}
@@ -105,7 +131,7 @@ TWO_VECTOR = {"wang": WangHomotopy, "yu": YuHomotopy, "zhao": ZhaoHomotopy, "xu"
 
 @frozen(eq=False)
 class Restart:
-    """The k-th restart: it depends on the problem, the seed and k alone, and can be sent to another process.
+    """The k-th restart: it depends on what is here alone, and can be sent to another process.
 
     Attributes
     ----------
@@ -120,6 +146,9 @@ class Restart:
         Of the finish; None to go without it.
     options : mapping
         For the tracer, over those of `search_preset`.
+    weights : Array or None
+        Of the x_i w_i in the objective of "kkt", shape (n,); None for ones. The path is then that of the problem whose
+        rows are multiplied by them.
     """
 
     structure: Structure
@@ -129,11 +158,16 @@ class Restart:
     k: int
     tolerance: float | None
     options: Mapping[str, Any]
+    weights: Array | None = None
 
     def homotopy(self) -> KKTHomotopy | TwoVectorHomotopy:
         """The homotopy at its start."""
         problem = self.structure.problem
         start = restart_start(problem, np.random.default_rng([self.seed, self.k]), self.k, self.bands)
+        if self.name == "kkt" and self.weights is not None:
+            e = self.weights
+            weighted = Structure(LCP(*scaled_data(problem, 1.0 / e, np.ones(problem.n))))
+            return KKTHomotopy(weighted.problem, start.x0, start.z1, start.z2 / e, e * start.w0, structure=weighted)
         if self.name == "kkt":
             return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=self.structure)
         return TWO_VECTOR[self.name](problem, start.x0, start.w0, structure=self.structure)
@@ -145,7 +179,7 @@ class Restart:
         finish = None if self.tolerance is None else Finish(Faces(self.structure), self.tolerance)
         # A pure path is its own end, so it is traced in earnest.
         traced = homotopy if finish is None else Finishing(homotopy, finish, rough=True)
-        tolerance = PURE_TOLERANCE if finish is None else TRACE_TOLERANCE
+        tolerance: Tolerance | float = PURE_TOLERANCE if finish is None else TRACE_TOLERANCE
         # What counts is where the path ends, and that the finish finds.
         options = {
             "preset": search_preset(n), "tolerance": tolerance, "examine": finish is None, **self.options

@@ -4,11 +4,22 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 import continuation
 from problems import lcp
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.restarts import FAR, NEAR, Restart, light, restart_start, search_preset, trace_light
+from problems.lcp.restarts import (
+    FAR,
+    NEAR,
+    SPREAD,
+    Restart,
+    emphasized,
+    light,
+    restart_start,
+    search_preset,
+    trace_light,
+)
 
 PLANTED = 30
 
@@ -40,8 +51,10 @@ def test_starts_are_centred_positive_and_at_their_distance(bands):
         scale = np.sqrt(first[0] / (x * w))
         low, high = bands[k % len(bands)]
         assert 10**low <= scale <= 10**high
-        assert (start.x0 >= 0.5 * scale * x).all()
-        assert (start.x0 <= 1.5 * scale * x).all()
+        spread = np.log(start.x0 / (scale * x))
+        assert 0.5 * SPREAD <= spread.std() <= 1.5 * SPREAD
+        # Where the two products are equal a central point of the LCP is one of the path.
+        assert 0.4 <= second[0] / first[0] <= 2.5
 
 
 def test_a_restart_depends_on_seed_and_number_alone():
@@ -52,6 +65,54 @@ def test_a_restart_depends_on_seed_and_number_alone():
     assert not np.array_equal(first.steps[0].u, other.steps[0].u)
     reseeded = restart(problem, 3, seed=1).homotopy()
     assert not np.array_equal(reseeded.origin.x0, restart(problem, 3).homotopy().origin.x0)
+
+
+def test_large_products_at_a_failed_end_gain_weight():
+    problem = next(p for p in map(planted, range(50)) if not lcp.solve(p, "kkt", restarts=0).solved)
+    path = lcp.solve(problem, "kkt", restarts=0).path
+    x = path.endpoint.y[:PLANTED]
+    products = np.maximum(x, 0.0) * np.maximum(problem.w(x), 0.0)
+    weights = emphasized(problem, None, path)
+    np.testing.assert_allclose(np.log(weights).mean(), 0.0, atol=1e-14)
+    gains = 1.0 + np.sqrt(products / products.max())
+    np.testing.assert_allclose(weights, gains / np.exp(np.log(gains).mean()), rtol=1e-6)
+    twice = emphasized(problem, weights, path)
+    np.testing.assert_allclose(twice, weights**2, rtol=1e-5)
+
+
+def test_a_solution_gains_nothing():
+    problem = lcp.LCP(np.eye(2), [-1.0, 1.0])
+    path = lcp.solve(problem, "kkt", finish=False).path
+    path.steps[-1] = evolve(path.endpoint, u=np.array([1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))
+    np.testing.assert_array_equal(emphasized(problem, None, path), np.ones(2))
+
+
+def test_weights_move_the_path_and_not_the_solutions():
+    problem = planted(5)
+    weights = np.exp(np.random.default_rng(1).normal(0.0, 0.2, PLANTED))
+    solved = 0
+    for k in range(5):
+        even, weighted = restart(problem, k), restart(problem, k, weights=weights)
+        np.testing.assert_array_equal(weighted.homotopy().origin.x0, even.homotopy().origin.x0)
+        np.testing.assert_allclose(weighted.homotopy().problem.A, weights[:, None] * problem.A, rtol=1e-15)
+        for one in (even, weighted):
+            homotopy = one.homotopy()
+            np.testing.assert_allclose(homotopy.c2, homotopy.c2[0], rtol=1e-12)
+        path = weighted.trace(continuation.Budget())
+        if path.status is continuation.Status.REACHED_TARGET:
+            solved += 1
+            assert lcp.certify(problem, path.endpoint.y[:PLANTED]).solves(1e-10)
+    assert solved
+
+
+def test_the_end_of_a_weighted_path_is_not_called_stationary(monkeypatch):
+    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
+    search_ends = []
+    monkeypatch.setattr("problems.lcp.portfolio.Search.best", lambda self: search_ends.extend(self.ends))
+    lcp.solve(problem, "kkt", finish=False, restarts=3)
+    assert len(search_ends) == 4
+    assert search_ends[0].stationary
+    assert not any(end.stationary for end in search_ends[2:])
 
 
 def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
@@ -86,6 +147,16 @@ def test_an_executor_finds_what_one_process_finds():
     assert solution.solved
     assert lcp.certify(problem, solution.x).solves(1e-10)
     assert all(len(path) <= 2 for path in solution.paths[1:])
+
+
+def test_over_an_executor_a_restart_goes_on_from_one_before_it(monkeypatch):
+    monkeypatch.setattr("problems.lcp.portfolio.AHEAD", 1)
+    problem = planted(17)
+    alone = lcp.solve(problem, "kkt", restarts=300, seed=2)
+    with ThreadPoolExecutor(2) as executor:
+        spread = lcp.solve(problem, "kkt", restarts=300, seed=2, executor=executor)
+    np.testing.assert_array_equal(alone.x, spread.x)
+    assert len(alone.paths) == len(spread.paths) > 3
 
 
 def test_an_executor_stops_at_the_count():

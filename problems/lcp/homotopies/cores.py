@@ -88,21 +88,11 @@ def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
     )
 
 
-def sizes(*blocks: Array) -> tuple[Array, float]:
-    """Magnitudes of all components, one for a zero, with one for the parameter; and the ratio of their extremes."""
-    magnitudes = np.abs(np.concatenate([*blocks, [1.0]]))
-    smallest = float(magnitudes.min())
-    if smallest == 0.0:
-        return np.where(magnitudes > 0.0, magnitudes, 1.0), np.inf
-    with np.errstate(over="ignore"):
-        return magnitudes, float(magnitudes.max()) / smallest
-
-
 def _parity(count: int | np.intp) -> int:
     return -1 if count % 2 else 1
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Full:
     """The full bordered system, known by its products.
 
@@ -112,16 +102,33 @@ class Full:
         z -> H' z, ``(N + 1,) -> (N,)``.
     border : Array
         (N + 1,).
-    units : Array
-        Positive sizes of the unknowns, (N + 1,), in which a correction is called large or small.
-    spread : float
-        Ratio of the largest to the smallest coefficient in the pairs; inf if one is zero.
+    point : tuple of Array
+        The unknowns, block by block.
+    coefficients : tuple of Array
+        More of what stands in the pairs.
     """
 
     apply: Callable[[Array], Array]
     border: Array
-    units: Array
-    spread: float
+    point: tuple[Array, ...]
+    coefficients: tuple[Array, ...] = ()
+
+    @cached_property
+    def units(self) -> Array:
+        """Sizes of the unknowns, one for a zero and for the parameter, in which a correction is large or small."""
+        sizes: Array = np.abs(np.concatenate([*self.point, [1.0]]))
+        sizes[sizes == 0.0] = 1.0
+        return sizes
+
+    @cached_property
+    def spread(self) -> float:
+        """Ratio of the largest to the smallest coefficient in the pairs; inf if one is zero."""
+        sizes = np.abs(np.concatenate([*self.point, *self.coefficients, [1.0]]))
+        smallest = float(sizes.min())
+        if smallest == 0.0:
+            return np.inf
+        with np.errstate(over="ignore"):
+            return float(sizes.max()) / smallest
 
     def residual(self, z: Array, r: Array, rho: float) -> tuple[Array, float]:
         """``(r, rho) - M z``."""
@@ -164,6 +171,10 @@ class Refined:
             return probe.core.solve(r, rho)
         solution = self._refined(probe.core, r, rho)
         return self._robustly(r, rho)[0] if solution is None else solution[0]
+
+    def approximate(self, r: Array, rho: float) -> Array:
+        """The solution by the core as it is: for an iteration that measures its own residual."""
+        return self._probe.core.solve(r, rho)
 
     @cached_property
     def robust(self) -> BorderedSystem:

@@ -7,7 +7,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
-from problems.lcp.homotopies.cores import Full, Pairs, Refined, larger_eliminated, second_eliminated, sizes
+from problems.lcp.homotopies.cores import Full, Pairs, Refined, larger_eliminated, second_eliminated
 from problems.lcp.homotopies.structure import Structure
 
 
@@ -126,8 +126,7 @@ def factor_kkt(system: KKTSystem, border: Array) -> Refined:
     SingularError
         If no core has a factorisation.
     """
-    units, spread = sizes(system.x, system.z1, system.z2)
-    full = Full(system.apply, border, units, max(spread, sizes(system.w, system.z2)[1]))
+    full = Full(system.apply, border, (system.x, system.z1, system.z2), (system.w,))
     quick = _reduced(system, border) if system.structure.squarable else None
     refined = Refined(full, quick, lambda: _augmented(system, border))
     if quick is None:

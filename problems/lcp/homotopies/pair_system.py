@@ -7,7 +7,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
-from problems.lcp.homotopies.cores import Full, Pairs, Refined, larger_eliminated, second_eliminated, sizes
+from problems.lcp.homotopies.cores import Full, Pairs, Refined, larger_eliminated, second_eliminated
 from problems.lcp.homotopies.structure import Structure
 
 
@@ -101,7 +101,7 @@ def factor_pairs(system: PairSystem, border: Array) -> Refined:
     SingularError
         If no core has a factorisation.
     """
-    full = Full(system.apply, border, *sizes(system.x, system.y))
+    full = Full(system.apply, border, (system.x, system.y))
     quick = _definite(system, border)
     refined = Refined(full, quick, lambda: _reduced(system, border, larger_eliminated(system.y, system.x, system.c)))
     if quick is None:
