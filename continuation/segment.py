@@ -153,6 +153,10 @@ def hermite(u0: Array, v0: Array, u1: Array, v1: Array, border: Array) -> Hermit
     return HermiteSegment(u0, u1, v0 * (sigma / float(np.dot(border, v0))), v1 * (sigma / float(np.dot(border, v1))))
 
 
+_NODES, _WEIGHTS = (tuple(map(float, values)) for values in np.polynomial.legendre.leggauss(8))
+"""Gauss' rule on [-1, 1]: its nodes are eigenvalues, not to be computed for every point."""
+
+
 def parameter_at(segment: Segment, weights: Array, fraction: float) -> float:
     """The t at which a fraction of the segment's arclength lies behind.
 
@@ -161,14 +165,13 @@ def parameter_at(segment: Segment, weights: Array, fraction: float) -> float:
     """
     if fraction <= 0.0 or fraction >= 1.0:
         return min(max(fraction, 0.0), 1.0)
-    x, w = np.polynomial.legendre.leggauss(8)
 
     def speed(t: float) -> float:
         slope = segment.derivative(t)
         return float(np.sqrt(np.dot(weights * slope, slope)))
 
     def behind(t: float) -> float:
-        return 0.5 * t * sum(float(b) * speed(0.5 * t * (float(a) + 1.0)) for a, b in zip(x, w))
+        return 0.5 * t * sum(b * speed(0.5 * t * (a + 1.0)) for a, b in zip(_NODES, _WEIGHTS))
 
     goal, t = fraction * behind(1.0), fraction
     for _ in range(5):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import floor, log10
+from math import ceil, floor, log10
 
 from attrs import frozen
 
@@ -27,9 +27,9 @@ def draw(
 ) -> Figure:
     """Draw error against work.
 
-    Runs on the Pareto front have a black ring. Errors that are round-off (at most `FLOOR`) are in a grey band on the
-    left. Failures have no place on x: they are in the strip on the right, at the work that they cost, or on its lower
-    edge where that is less or unknown.
+    Runs on the Pareto front have a black ring. Errors that are round-off (at most `FLOOR`), if there are any, are in a
+    grey band on the left. Failures have no place on x: they are in the strip on the right, at the work that they cost,
+    or on its lower edge where that is less or unknown.
 
     Parameters
     ----------
@@ -48,11 +48,14 @@ def draw(
     ImportError
         Without matplotlib.
     ValueError
-        If the error or the work is none of the results'.
+        If the error, the work, a problem or a method is none of the results'.
     """
     results.check(error, work)
     shown = list(problems) if problems is not None else results.problems
     names = list(methods) if methods is not None else results.methods
+    for kind, wanted, known in (("problems", shown, results.problems), ("methods", names, results.methods)):
+        if not wanted or not set(wanted) <= set(known):
+            raise ValueError(f"{kind}: expected some of {', '.join(known)}, found {wanted}")
     figure, axes = panels(len(shown))
     for name, ax in zip(shown, axes):
         rows = [row for row in results.of(problem=name) if row.method in names]
@@ -61,7 +64,8 @@ def draw(
     label(axes, results.errors[error], WORK[work].label)
     handles = [handle(look(k)) for k in range(len(names))]
     legend_below(figure, [*handles, handle(_FRONT)], [*names, "Pareto front"])
-    figure.suptitle(results.title, fontsize="medium")
+    if [results.title] != shown:
+        figure.suptitle(results.title, fontsize="medium")
     return figure
 
 
@@ -84,7 +88,8 @@ class Precision:
 
 def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, work: str) -> None:
     points = {id(row): point for row in rows if (point := coordinates(row, error, work)) is not None}
-    band = _Band(max((e for e, _ in points.values()), default=FLOOR), len(names))
+    found = [e for e, _ in points.values()] or [FLOOR]
+    band = _Band(min(found), max(found), len(names), sum(e <= FLOOR for e in found) / len(found))
     failures = []
     for k, name in enumerate(names):
         own = [row for row in rows if row.method == name]
@@ -110,23 +115,32 @@ class _Band:
 
     Attributes
     ----------
-    largest : float
+    smallest, largest : float
         Error in the panel.
     count : int
         Methods.
+    fraction : float
+        Of the points that are in the band; where there are none, there is no band.
     """
 
+    smallest: float
     largest: float
     count: int
+    fraction: float
 
     @property
     def _decades(self) -> float:
-        """Of errors beyond round-off, two at least; the band takes a third of the panel's width."""
+        """Of errors beyond round-off, two at least."""
         return max(2.0, log10(self.largest / FLOOR) + 0.5)
 
     @property
+    def _share(self) -> float:
+        """Of the panel's width: what its share of the points deserves, from a third to two thirds."""
+        return min(max(self.fraction, 1.0 / 3.0), 2.0 / 3.0)
+
+    @property
     def _left(self) -> float:
-        return float(FLOOR * 10.0 ** (-0.5 * self._decades))
+        return float(FLOOR * 10.0 ** (-self._decades * self._share / (1.0 - self._share)))
 
     def place(self, k: int, error: float, work: float) -> tuple[float, float]:
         """Where to draw a point of method k."""
@@ -135,16 +149,23 @@ class _Band:
         return float(self._left * (FLOOR / self._left) ** ((k + 0.6) / (self.count + 0.2))), work
 
     def mark(self, axes: Axes) -> None:
-        """Shade the band, name it, and take its ticks away."""
+        """Set the axis; shade the band and name it, without ticks in it."""
         from matplotlib.ticker import FixedLocator, LogFormatterSciNotation, NullLocator
 
-        first, last = round(log10(FLOOR)), floor(log10(FLOOR) + self._decades)
-        stride = 1 + (last - first) // 4
-        axes.set_xlim(self._left, FLOOR * 10.0**self._decades)
-        axes.axvspan(self._left, FLOOR, color="0.94", linewidth=0, zorder=0)
+        if self.fraction > 0.0:
+            first, last = round(log10(FLOOR)), floor(log10(FLOOR) + self._decades)
+            stride = 1 + (last - first) // round(6.0 * (1.0 - self._share))
+            axes.set_xlim(self._left, FLOOR * 10.0**self._decades)
+        else:
+            first, last = floor(log10(self.smallest) - 0.1), ceil(log10(self.largest) + 0.1)
+            stride = 1 + (last - first) // 6
+            axes.set_xlim(10.0**first, 10.0**last)
         axes.xaxis.set_major_locator(FixedLocator([10.0**k for k in range(first, last + 1, stride)]))
         axes.xaxis.set_major_formatter(LogFormatterSciNotation())
         axes.xaxis.set_minor_locator(NullLocator())
+        if self.fraction == 0.0:
+            return
+        axes.axvspan(self._left, FLOOR, color="0.94", linewidth=0, zorder=0)
         middle = (self._left * FLOOR) ** 0.5
         axes.annotate(
             "round-off", (middle, 0.0), (0, -3), ("data", "axes fraction"), "offset points", fontsize="x-small",
@@ -156,8 +177,9 @@ def _failures(axes: Axes, failures: Sequence[tuple[int, float]], count: int) -> 
     strip = axes.inset_axes((1.02, 0.0, STRIP, 1.0), sharey=axes)
     strip.set_facecolor("0.94")
     strip.spines[["top", "right", "left", "bottom"]].set_visible(False)
-    strip.tick_params(left=False, labelleft=False, bottom=False, labelbottom=False, which="both")
-    strip.set_xlim(-0.6, count - 0.4)
+    strip.xaxis.set_visible(False)
+    strip.yaxis.set_visible(False)
+    strip.set_xlim(-1.0, float(count))
     strip.set_title("failed", fontsize="x-small", pad=2)
     # What raised has no counts: at the lower edge.
     lowest = axes.get_ylim()[0]

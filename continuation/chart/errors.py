@@ -84,9 +84,13 @@ def _curve_distance(problem: Problem, answer: Answer) -> float:
 
 
 def _sampled(path: Path) -> Array:
-    s = path.arclength
-    inner = [a + t * (b - a) for a, b in pairwise(s) if b > a for t in BETWEEN]
-    return np.concatenate([path.u, path(np.array(inner))]) if inner else path.u
+    # By the segments' own parameter: where exactly a point of the dense output lies does not matter to its distance.
+    inner = [
+        after.segment.at(t) if after.segment is not None else (1.0 - t) * before.u + t * after.u
+        for before, after in pairwise(path.steps)
+        for t in BETWEEN
+    ]
+    return np.concatenate([path.u, inner])
 
 
 def _dropped(problem: Problem, points: Array) -> Array:

@@ -12,11 +12,14 @@ FLOOR = 1e-13
 
 
 def coordinates(row: Row, error: str, work: str) -> tuple[float, float] | None:
-    """(error, work) of a run that succeeded, the error not below `FLOOR`; None for others."""
+    """(error, work) of a run that succeeded, the error to three digits and not below `FLOOR`; None for others.
+
+    Errors that differ in the fourth digit say the same: neither run is better for it.
+    """
     value = row.errors[error]
     if row.failed or not math.isfinite(value):
         return None
-    return max(value, FLOOR), row.work(work)
+    return max(float(f"{value:.2e}"), FLOOR), row.work(work)
 
 
 def on_front(rows: Sequence[Row], error: str, work: str) -> list[Row]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from math import inf
 from typing import Any
 
 from attrs import evolve, field, frozen
@@ -15,9 +16,12 @@ Options = dict[str, Any]
 
 
 def _values(values: object) -> tuple[float, ...]:
-    found = tuple(float(value) for value in values)  # type: ignore[attr-defined]
-    if not found or not all(value > 0.0 for value in found):
-        raise ValueError(f"values: expected positive numbers, at least one, found {found}")
+    try:
+        found = tuple(float(value) for value in values)  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        found = ()
+    if not found or not all(0.0 < value < inf for value in found):
+        raise ValueError(f"values: expected positive numbers, at least one, found {values}")
     return found
 
 

@@ -54,7 +54,10 @@ def legend_below(figure: Figure, handles: Sequence[Any], labels: Sequence[str]) 
     """One legend for all panels, outside of them."""
     width = figure.get_size_inches()[0]
     longest = max((len(label) for label in labels), default=1)
-    columns = max(1, min(len(labels), int(width / (0.5 + 0.075 * longest))))
+    most = max(1, int(width / (0.5 + 0.075 * longest)))
+    # As few rows as fit, and as few columns as those rows need, so that no row is nearly empty.
+    rows = -(-len(labels) // most)
+    columns = max(1, -(-len(labels) // max(1, rows)))
     figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, fontsize="small")
 
 
@@ -69,12 +72,13 @@ def label(axes: Sequence[Axes], across: str, up: str) -> None:
 
 
 def few_ticks(axis: Any) -> None:
-    """Ticks at 1, 2 and 5 of each decade, as plain numbers where the axis spans little, at the decades otherwise."""
+    """Plain numbers at 1, 2 and 5 of each decade, or closer, where the axis spans little; the decades otherwise."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
-    if high <= 100.0 * low:
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    if high <= 300.0 * low:
+        subs = (1.0, 2.0, 5.0) if high > 10.0 * low else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+        axis.set_major_locator(LogLocator(subs=subs))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
 

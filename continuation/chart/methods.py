@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import signature
 from typing import Any
 
 from continuation.chart.ladder import Rung
 from continuation.chart.study import Answer, Method, Problem
 from continuation.path import Path
 from continuation.trace import trace
+from continuation.tracer import Tracer
+
+OPTIONS = frozenset(signature(Tracer).parameters) - {"homotopy"}
+"""What a trace may be told."""
 
 
 def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: Any) -> Method:
@@ -21,7 +26,15 @@ def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: A
         The problem's subject to a homotopy; made anew for each run, and timed. By default the subject is one.
     **options
         As for `continuation.trace`: preset, predictor, corrector, controller, metric, budget.
+
+    Raises
+    ------
+    TypeError
+        For an unknown option, at once rather than in every run.
     """
+    unknown = sorted(set(options) - OPTIONS)
+    if unknown:
+        raise TypeError(f"{unknown[0]}: expected options of continuation.trace, which are {', '.join(sorted(OPTIONS))}")
 
     def run(problem: Problem, rung: Rung) -> Answer:
         followed = problem.subject if homotopy is None else homotopy(problem.subject)

@@ -62,29 +62,30 @@ def draw_profile(results: Results, work: str) -> Figure:
     """
     results.check(work=work)
     figure, axes = panels(len(results.families))
-    for family, ax in zip(results.families, axes):
-        for k, (_, values) in enumerate(ratios(results, work, family).items()):
+    found = {family: ratios(results, work, family) for family in results.families}
+    everything = np.concatenate([values for lines in found.values() for values in lines.values()])
+    # To the power of ten at which all that is ever solved is solved.
+    widest = 10.0 ** max(1, np.ceil(np.log10(everything[np.isfinite(everything)].max(initial=1.0))))
+    for (family, lines), ax in zip(found.items(), axes):
+        for k, values in enumerate(lines.values()):
             finite = np.sort(values[np.isfinite(values)])
             # A step at every ratio, from (1, fraction of best) on; the line goes on to the edge of the panel.
-            x = np.concatenate(([1.0], finite, [_WIDEST]))
+            x = np.concatenate(([1.0], finite, [widest]))
             y = np.concatenate(([np.mean(values <= 1.0)], np.arange(1, finite.size + 1), [finite.size]))
             y[1:] /= values.size
-            style = {**look(k), "marker": ""}
-            ax.step(x, y, where="post", **style)
-            ax.plot([_WIDEST], y[-1:], clip_on=False, **look(k))
+            ax.step(x, y, where="post", **{**look(k), "marker": ""})
+            # Two markers a line, at places of its own, where lines run together.
+            places = widest ** (((k + 0.5) / len(results.methods) + np.array([0.0, 0.5])) % 1.0)
+            ax.plot(places, [np.mean(values <= place) for place in places], **{**look(k), "linestyle": "none"})
         ax.set_xscale("log")
-        ax.set_xlim(1.0, _WIDEST)
+        ax.set_xlim(1.0, widest)
         ax.set_ylim(-0.03, 1.04)
         ax.set_title(family, fontsize="medium")
         tidy(ax)
-    label(axes, f"{WORK[work].label},\nover the least of all methods", "fraction solved")
+    label(axes, f"{WORK[work].quantity},\nover the least of all methods", "fraction solved")
     legend_below(figure, [handle(look(k)) for k in range(len(results.methods))], results.methods)
     figure.suptitle(results.title, fontsize="medium")
     return figure
-
-
-_WIDEST = 100.0
-"""The right edge: beyond it only whether a problem is solved at all matters."""
 
 
 @frozen

@@ -61,6 +61,6 @@ def _page(study: Study, results: Results) -> str:
     if failed.rows:
         parts.append(f"## Failures\n\n{failed.markdown()}")
     parts.append(f"## Runs\n\n{runs(results).markdown()}")
-    made = ("library_version", "created", "threads", "machine", "blas", "python_version", "numpy_version")
+    made = ("notes", "library_version", "created", "threads", "machine", "blas", "python_version", "numpy_version")
     parts.append("\n".join(f"- {name}: {results.provenance[name]}" for name in made if name in results.provenance))
     return "\n\n".join(parts) + "\n"

@@ -60,14 +60,20 @@ class Row:
 
 @frozen
 class Work:
-    """A measure of work: its axis label with the unit, how it is read off a row, and what a run costs at least.
+    """A measure of work: what it is, how it is read off a row, what a run costs at least, and its unit.
 
     A run that needs no factorisation at all counts as one, so that logarithms and ratios exist.
     """
 
-    label: str
+    quantity: str
     of: Callable[[Row], float]
     least: float = 1.0
+    unit: str = ""
+
+    @property
+    def label(self) -> str:
+        """Of an axis."""
+        return f"{self.quantity} ({self.unit})" if self.unit else self.quantity
 
 
 WORK: Mapping[str, Work] = {
@@ -75,7 +81,7 @@ WORK: Mapping[str, Work] = {
     "solves": Work("solves with a factorisation", lambda row: float(row.counts.solves)),
     "residuals": Work("residual evaluations", lambda row: float(row.counts.residuals)),
     "steps": Work("accepted steps", lambda row: float(row.counts.accepted)),
-    "seconds": Work("processor time (s), least of repeated runs", lambda row: row.seconds, 1e-9),
+    "seconds": Work("processor time", lambda row: row.seconds, 1e-9, "s"),
 }
 """By name."""
 

@@ -41,10 +41,11 @@ def run(study: Study, watch: Watch | None = None) -> Results:
         for method in study.methods
         for rung in (study.ladder.rungs if method.laddered else study.ladder.rungs[:1])
     ]
-    rows = []
+    rows: list[Row] = []
     with pinned() as threads:
         for problem, method, rung in cases:
-            rows.append(_row(study, problem, method, rung))
+            spent = _spent(rows, problem, method) if study.give_up else None
+            rows.append(_row(study, problem, method, rung, spent))
             if watch is not None:
                 watch(len(rows), len(cases), rows[-1])
     return Results(
@@ -54,12 +55,33 @@ def run(study: Study, watch: Watch | None = None) -> Results:
         errors={error.name: error.label for error in study.errors},
         work=tuple(study.work),
         rows=tuple(rows),
-        provenance={**software(), "created": now(), "threads": threads},
+        provenance={
+            **software(),
+            "created": now(),
+            "threads": threads,
+            **({"notes": "; ".join(study.notes)} if study.notes else {}),
+        },
     )
 
 
-def _row(study: Study, problem: Problem, method: Method, rung: Rung) -> Row:
-    answer, seconds = _timed(problem, method, rung)
+def _spent(rows: list[Row], problem: Problem, method: Method) -> Row | None:
+    """A run of the method that was out of budget on this problem or a smaller one of its family."""
+    beyond = (
+        row
+        for row in rows
+        if row.failure == Failure.BUDGET
+        and (row.method, row.family) == (method.name, problem.family)
+        and (row.problem == problem.name or row.n < problem.n)
+    )
+    return next(beyond, None)
+
+
+def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row | None) -> Row:
+    if spent is None:
+        answer, seconds = _timed(problem, method, rung)
+    else:
+        sentence = f"Not run: it was out of budget on {spent.problem}."
+        answer, seconds = Answer(counts=Counts(), failure=Failure.BUDGET, message=sentence), 0.0
     failure, message = verdict(problem, answer)
     repeats = study.repeats if seconds <= study.patience and not failure else 0
     again = [_timed(problem, method, rung)[1] for _ in range(repeats)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from attrs import frozen
+from scipy.optimize import isotonic_regression
 
 from continuation.chart.looks import Axes, Figure, few_ticks, handle, label, legend_below, look, panels, tidy
 from continuation.chart.results import WORK, Results
@@ -11,6 +12,9 @@ from continuation.chart.table import Cell, Table
 
 FITTED = 3
 """Sizes that a fit needs at least; it is made to the larger half of them, since costs are asymptotic."""
+
+_APART = 0.075
+"""Least distance of two labels, as a fraction of the panel's height."""
 
 
 def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
@@ -87,13 +91,15 @@ def draw_scaling(results: Results, work: str) -> Figure:
 
 
 def _name_ends(axes: Axes, ends: list[tuple[float, str, str]]) -> None:
-    """Write (height, text, colour) beside the panel, each at its height or as little above it as keeps them apart."""
+    """Write (height, text, colour) beside the panel, as near to their heights as keeps them apart."""
+    if not ends:
+        return
+    ends = sorted(ends)
     to_panel = axes.transData + axes.transAxes.inverted()
-    lowest = 0.0
-    for height, text, colour in sorted(ends):
-        place = max(float(to_panel.transform((axes.get_xlim()[0], height))[1]), lowest)
+    heights = np.array([to_panel.transform((axes.get_xlim()[0], height))[1] for height, _, _ in ends])
+    apart = _APART * np.arange(len(ends))
+    for place, (_, text, colour) in zip(isotonic_regression(heights - apart).x + apart, ends):
         axes.annotate(text, (1.02, place), xycoords="axes fraction", fontsize="small", va="center", color=colour)
-        lowest = place + 0.075
 
 
 @frozen

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 from attrs import field, frozen
-from attrs.validators import ge, min_len
+from attrs.validators import ge
 
 from continuation.arrays import Array
 from continuation.chart.ladder import Ladder, Rung, tolerances
@@ -129,10 +129,24 @@ class Figure(Protocol):
 
 
 def _distinct(instance: Any, attribute: Any, value: Sequence[Any]) -> None:
+    if not isinstance(value, Sequence) or isinstance(value, str):
+        raise TypeError(f"{attribute.name}: expected a list, found {value!r}")
+    if not value:
+        raise ValueError(f"{attribute.name}: expected at least one, found none")
+    for item in value:
+        if not hasattr(item, "name"):
+            raise TypeError(f"{attribute.name}: expected {attribute.name} of continuation.chart, found {item!r}")
     names = [item.name for item in value]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise ValueError(f"{attribute.name}: expected distinct names, found {twice!r} twice")
+
+
+def _known_work(instance: Any, attribute: Any, value: Sequence[str]) -> None:
+    from continuation.chart.results import WORK
+
+    if isinstance(value, str) or not value or not set(value) <= set(WORK):
+        raise ValueError(f"work: expected a list of some of {', '.join(WORK)}, found {value!r}")
 
 
 @frozen(eq=False, kw_only=True)
@@ -159,23 +173,32 @@ class Study:
         Timed runs after the first, which warms up and is judged; the shortest counts.
     patience : float
         Seconds: a run that took longer than this, or failed, is not repeated, its own time counts.
+    give_up : bool
+        Whether a method that ran out of budget is spared the further rungs of that problem and the larger problems of
+        its family: they are failures of the same kind, without having been run.
+    notes : sequence of str
+        Sentences for the reader of the results, kept with them: outside solvers that are not installed, say.
 
     Raises
     ------
     ValueError
-        If there is no problem, method or error, or two of a kind have the same name.
+        If there is no problem, method or error, two of a kind have the same name, or a kind of work is unknown.
+    TypeError
+        If problems, methods or errors are no list of such.
     """
 
     name: str
-    problems: Sequence[Problem] = field(validator=[min_len(1), _distinct])
-    methods: Sequence[Method] = field(validator=[min_len(1), _distinct])
+    problems: Sequence[Problem] = field(validator=_distinct)
+    methods: Sequence[Method] = field(validator=_distinct)
     ladder: Ladder = field(factory=lambda: tolerances(1e-4, 1e-6, 1e-8, 1e-10))
-    errors: Sequence[Error] = field(validator=[min_len(1), _distinct])
-    work: Sequence[str] = field(default=("factorizations", "seconds"), validator=min_len(1))
+    errors: Sequence[Error] = field(validator=_distinct)
+    work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known_work)
     figures: Sequence[Figure] = ()
     title: str = field()
     repeats: int = field(default=2, validator=ge(0))
     patience: float = field(default=0.5, validator=ge(0))
+    give_up: bool = False
+    notes: Sequence[str] = ()
 
     @title.default
     def _own_name(self) -> str:

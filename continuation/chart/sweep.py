@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 from attrs import frozen
 
 from continuation.chart.looks import Figure, handle, legend_below, look, panels, tidy
@@ -13,13 +14,14 @@ Chooser = Callable[[Row], float | None]
 """The value that the library chooses for a row's problem; None where it does not choose."""
 
 _BEST = {"marker": "o", "markersize": 12, "markerfacecolor": "none", "markeredgecolor": "black", "linestyle": "none"}
-_CHOSEN = {"marker": "|", "markersize": 18, "markeredgecolor": "black", "markeredgewidth": 2.0, "linestyle": "none"}
+_CHOSEN = {"marker": "|", "markersize": 20, "markeredgecolor": "black", "markeredgewidth": 2.5, "linestyle": "none"}
+_TICKS = (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 
 def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Figure:
     """Draw work, relative to the least of each line, against the ladder; one panel a method.
 
-    Failures are left out of the lines; the best value of a line has a ring, the chosen one a bar.
+    Failures are left out of the lines; the best value of a line has a ring, the chosen one a bar of the line's colour.
 
     Parameters
     ----------
@@ -47,18 +49,18 @@ def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Fi
             ax.plot(*min(values, key=lambda pair: pair[1]), zorder=1, **_BEST)
             choice = chosen(rows[0]) if chosen is not None else None
             if choice is not None:
-                nearest = min(values, key=lambda pair: abs(pair[0] - choice))
-                ax.plot(choice, nearest[1], zorder=4, **_CHOSEN)
+                height = np.interp(choice, *np.array(values).T)
+                ax.plot(choice, height, zorder=4, **{**_CHOSEN, "markeredgecolor": look(k)["color"]})
         ax.set_yscale("log")
         highest = max(2.0, ax.get_ylim()[1])
-        ticks = [2**k for k in range(20) if 2**k <= highest]
-        ax.set_yticks(ticks, labels=[str(tick) for tick in ticks])
-        ax.set_ylim(0.85, highest)
-        ax.yaxis.set_minor_formatter("")
+        ticks = [tick for tick in _TICKS if tick <= highest]
+        ax.set_yticks(ticks, labels=[f"{tick:g}" for tick in ticks])
+        ax.set_yticks([], minor=True)
+        ax.set_ylim(0.9, highest)
         ax.set_title(method, fontsize="medium")
         ax.set_xlabel(results.ladder)
         tidy(ax)
-    axes[0].set_ylabel(f"{WORK[work].label}\nover the least of the line")
+    axes[0].set_ylabel(f"{WORK[work].quantity},\nover the least of the line")
     labels = [*results.problems, "least"]
     handles = [*(handle(look(k)) for k in range(len(results.problems))), handle(_BEST)]
     if chosen is not None:

@@ -117,6 +117,8 @@ def _one(study: Study, folder: Path, out: TextIO) -> None:
     results = run_study(study, _watch(study.name))
     for title, table in tables(study, results).items():
         print(f"\n{results.title}: {title}\n{table.text()}", file=out)
+    for note in study.notes:
+        print(f"\n{results.title}: {note}", file=out)
     print(f"\nWritten: {', '.join(map(str, report(study, results, folder)))}", file=out)
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -76,55 +79,64 @@ def _loop(problem: Problem, rung: Rung) -> Answer:
 
 
 def lcp_solvers() -> list[Method]:
-    """Those of quantecon, PIQP and Clarabel that can be imported."""
+    """Those of quantecon, PIQP and Clarabel that can be imported; `lcp_notes` names the others."""
     from problems.charts.lcp import direct
 
     found = []
-    for name, module, solve in (
-        ("quantecon Lemke", "quantecon", _quantecon),
-        ("PIQP", "piqp", _piqp),
-        ("Clarabel", "clarabel", _clarabel),
-    ):
-        try:
-            library = __import__(module)
-        except ImportError:
+    for name, (module, solve) in _LCP.items():
+        if not _installed(module):
             continue
+        library = import_module(module)
         # Once beforehand, for a library that compiles itself at its first call.
         solve(library, LCP(np.eye(1), -np.ones(1)))
-        found.append(direct(name, _with(library, solve)))
+        found.append(direct(name, partial(solve, library)))
     return found
 
 
-Solve = Callable[[Any, LCP], tuple[Array, int]]
-"""(library, problem) to x and what it cost in factorisations."""
+def lcp_notes() -> list[str]:
+    """Which outside solvers take part, with their versions, and which are left out."""
+    modules = {module: _installed(module) for module, _ in _LCP.values()}
+    there = [f"{module} {version(module)}" for module, found in modules.items() if found]
+    absent = [module for module, found in modules.items() if not found]
+    return [
+        *([f"outside solvers: {', '.join(there)}"] if there else []),
+        *([f"outside solvers left out, not installed: {', '.join(absent)}"] if absent else []),
+    ]
 
 
-def _with(library: Any, solve: Solve) -> Callable[[LCP], tuple[Array, Counts, str]]:
-    def run(problem: LCP) -> tuple[Array, Counts, str]:
-        x, factorizations = solve(library, problem)
-        return x, Counts(factorizations=factorizations), ""
+def _installed(module: str) -> bool:
+    try:
+        import_module(module)
+    except ImportError:
+        return False
+    return True
 
-    return run
+
+Solved = tuple[Array | None, Counts, str]
+"""x, None where the solver itself disowns it; what it cost; how it ended."""
 
 
-def _quantecon(library: Any, problem: LCP) -> tuple[Array, int]:
-    """Its tableau method; a pivot counts as 6/n factorisations, like one of our own."""
+def _quantecon(library: Any, problem: LCP) -> Solved:
+    """Its tableau method; a pivot counts as 6/n factorisations and a solve, like one of our own."""
     result = library.optimize.lcp_lemke(_dense(problem), problem.q)
-    return np.asarray(result.z), -(-6 * int(result.num_iter) // problem.n)
+    pivots = int(result.num_iter)
+    counts = Counts(factorizations=-(-6 * pivots // problem.n), solves=pivots, accepted=pivots)
+    return np.asarray(result.z) if result.success else None, counts, f"status {int(result.status)}"
 
 
-def _piqp(library: Any, problem: LCP) -> tuple[Array, int]:
+def _piqp(library: Any, problem: LCP) -> Solved:
     """Min x'(A x + q), x >= 0, A x + q >= 0, a convex program where A is positive semidefinite."""
     A = _dense(problem)
     n = problem.n
     solver = library.DenseSolver()
     solver.settings.eps_abs = solver.settings.eps_rel = 1e-10
     solver.setup(A + A.T, problem.q, None, None, A, -problem.q, np.full(n, np.inf), np.zeros(n), np.full(n, np.inf))
-    solver.solve()
-    return np.asarray(solver.result.x), int(solver.result.info.iter)
+    status = solver.solve()
+    x = np.asarray(solver.result.x) if status == library.PIQP_SOLVED else None
+    return x, _interior(int(solver.result.info.iter)), str(status)
 
 
-def _clarabel(library: Any, problem: LCP) -> tuple[Array, int]:
+def _clarabel(library: Any, problem: LCP) -> Solved:
     """The same program as a cone program."""
     import scipy.sparse as sp
 
@@ -137,9 +149,23 @@ def _clarabel(library: Any, problem: LCP) -> tuple[Array, int]:
     upper = sp.triu(A + A.T, format="csc")
     cones = [library.NonnegativeConeT(2 * n)]
     solution = library.DefaultSolver(upper, problem.q, rows, bound, cones, settings).solve()
-    return np.asarray(solution.x), int(solution.iterations)
+    x = np.asarray(solution.x) if str(solution.status) in ("Solved", "AlmostSolved") else None
+    return x, _interior(int(solution.iterations)), str(solution.status)
+
+
+def _interior(iterations: int) -> Counts:
+    """An iteration of an interior-point method: one factorisation, a solve to predict and one to correct."""
+    return Counts(factorizations=iterations, solves=2 * iterations, accepted=iterations)
 
 
 def _dense(problem: LCP) -> Array:
     A: Array = problem.A.toarray() if problem.sparse else problem.A
     return A
+
+
+_LCP: dict[str, tuple[str, Callable[[Any, LCP], Solved]]] = {
+    "quantecon Lemke": ("quantecon", _quantecon),
+    "PIQP": ("piqp", _piqp),
+    "Clarabel": ("clarabel", _clarabel),
+}
+"""Module and adapter by name."""

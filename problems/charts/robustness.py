@@ -14,11 +14,12 @@ from problems.charts.lcp import MAKERS, RESIDUAL, WORK, path, problem, reference
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
     """One panel a family; every problem has a planted solution."""
-    orders, seeds = {"smoke": ((5,), 1), "moderate": ((6, 12), 5), "full": ((5, 10, 20, 50), 25)}[size]
+    orders, seeds = {"smoke": ((5,), 1), "moderate": ((6, 12), 4), "full": ((5, 10, 20, 50), 25)}[size]
     families = ("semidefinite", "N") if size == "smoke" else [name for name in FAMILIES if name != "obstacle"]
     methods = [
         *(path(name, make) for name, make in MAKERS.items()),
-        path("KKT, series", MAKERS["KKT"], preset=continuation.SERIES),
+        # The same path, several times as dear in time: for reports.
+        *((path("KKT, series", MAKERS["KKT"], preset=continuation.SERIES),) if size == "full" else ()),
         solver("KKT, finish", homotopy="kkt"),
         solver("solve, auto", restarts=5),
         *references(),
@@ -35,5 +36,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             work=WORK,
             figures=(Profile("factorizations"), Profile("seconds")),
             repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
+            notes=rivals.lcp_notes() if compare else (),
         )
     ]

@@ -9,6 +9,7 @@ from continuation.chart import END_POINT, Problem, Scaling, Study, tolerances, t
 from continuation.chart.catalogue import Size
 from continuation.correctors import Broyden
 from problems import lcp
+from problems.charts import rivals
 from problems.charts.lcp import RESIDUAL, path, problem, references, solver
 from problems.charts.subjects import bratu, bratu_square, chandrasekhar
 
@@ -34,11 +35,13 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     families = ("semidefinite",) if size == "smoke" else ("semidefinite", "scaled P", "obstacle")
     methods = [
         path("KKT", lcp.KKTHomotopy),
-        path("KKT, series", lcp.KKTHomotopy, preset=continuation.SERIES),
+        # Wang's path shows what a series does to the cost; that of the KKT path takes most of the time of the study.
+        *((path("KKT, series", lcp.KKTHomotopy, preset=continuation.SERIES),) if size == "full" else ()),
         path("Wang", lcp.WangHomotopy),
         path("Wang, series", lcp.WangHomotopy, preset=continuation.SERIES),
         solver("solve, auto"),
         *references(),
+        *(rivals.lcp_solvers() if compare else ()),
     ]
     complementarity = Study(
         name="scaling-lcp",
@@ -50,6 +53,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         work=("seconds", "factorizations"),
         figures=(Scaling("seconds"), Scaling("factorizations")),
         repeats=repeats,
+        give_up=True,
+        notes=rivals.lcp_notes() if compare else (),
     )
     return [curves, complementarity]
 

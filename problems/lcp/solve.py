@@ -82,7 +82,8 @@ def solve(
         Paths from random starts after the first has failed. Default: 0 for a named homotopy, min(10 n, 1000) for
         "auto".
     seed : int
-        Of the random starts; the k-th one depends on `seed` and k alone.
+        Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
+        restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
     budget : continuation.Budget, optional
         Of everything together; 60 seconds by default.
     tolerance : float

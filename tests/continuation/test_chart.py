@@ -169,6 +169,41 @@ def test_a_reference_knows_what_the_closed_form_knows():
         chart.reference(ExponentialCosine(3), budget=continuation.Budget(steps=2))
 
 
+def test_what_was_out_of_budget_is_not_run_on_larger_problems():
+    ran = []
+
+    def spend(problem, rung):
+        ran.append((problem.name, rung.value))
+        return chart.Answer(Counts(factorizations=9), failure=chart.Failure.BUDGET if problem.n > 1 else "")
+
+    sizes = {"small": 1, "middle": 2, "large": 3, "other": 3}
+    study = chart.Study(
+        name="spent",
+        problems=[chart.Problem(k, None, n=n, family="other" if k == "other" else "one") for k, n in sizes.items()],
+        methods=[chart.Method("spends", spend)],
+        ladder=chart.tolerances(1e-2, 1e-4),
+        errors=[chart.END_POINT],
+        repeats=0,
+        give_up=True,
+    )
+    rows = chart.run(study).rows
+    assert ran == [("small", 1e-2), ("small", 1e-4), ("middle", 1e-2), ("other", 1e-2)]
+    assert [row.failure for row in rows] == ["", "", *["budget"] * 6]
+    assert rows[4].message == "Not run: it was out of budget on middle."
+    assert rows[4].counts.factorizations == 0
+    del ran[:]
+    chart.run(evolve(study, give_up=False))
+    assert len(ran) == len(rows)
+
+
+def test_profiles_reach_as_far_as_anything_is_solved():
+    figure = chart.draw_profile(made(("a", 1.0, 1, ""), ("b", 1.0, 700, ""), ("c", 1.0, 1, "jump")), "factorizations")
+    (panel,) = figure.axes
+    assert panel.get_xlim() == (1.0, 1000.0)
+    steps = [line for line in panel.get_lines() if line.get_linestyle() != "None"]
+    assert [line.get_ydata()[-1] for line in steps] == [1.0, 1.0, 0.0]
+
+
 def made(*points):
     """Results of one problem: (method, error, factorisations, failure)."""
     rows = [
@@ -304,6 +339,42 @@ def test_a_study_refuses_equal_names():
         chart.Study(
             name="s", problems=[problem], methods=[chart.traced("a"), chart.traced("a")], errors=[chart.END_POINT]
         )
+
+
+@pytest.mark.parametrize(
+    ("change", "kind", "complaint"),
+    [
+        ({"problems": []}, ValueError, "problems: expected at least one"),
+        ({"problems": cosine(2)}, TypeError, "problems: expected a list"),
+        ({"problems": [Circle()]}, TypeError, "problems: expected problems of continuation.chart"),
+        ({"errors": ["end_point"]}, TypeError, "errors: expected errors of continuation.chart, found 'end_point'"),
+        ({"work": ("flops",)}, ValueError, "work: expected a list of some of factorizations, .*'flops'"),
+    ],
+    ids=["none", "no list", "no problem", "no error", "no work"],
+)
+def test_a_study_refuses_what_is_none(change, kind, complaint):
+    whole = {"problems": [cosine(2)], "methods": [chart.traced("a")], "errors": [chart.END_POINT]}
+    with pytest.raises(kind, match=complaint):
+        chart.Study(name="s", **{**whole, **change})
+
+
+def test_a_misspelt_option_and_a_bad_rung_are_refused_at_once():
+    with pytest.raises(TypeError, match="predictr: expected options of continuation"):
+        chart.traced("a", predictr=Hermite())
+    for bad in ((), (-1.0,), ("a",), (math.inf,)):
+        with pytest.raises(ValueError, match="values: expected positive numbers"):
+            chart.tolerances(*bad)
+
+
+@pytest.mark.parametrize("kind", ["problems", "methods"])
+def test_what_is_not_there_is_not_drawn(results, kind):
+    with pytest.raises(ValueError, match=f"{kind}: expected some of"):
+        chart.draw(results, "end_point", "seconds", **{kind: ["none"]})
+
+
+def test_errors_that_agree_to_three_digits_are_equal():
+    results = made(("cheap", 1.0004e-3, 10, ""), ("dear", 1.0e-3, 20, ""), ("better", 0.9e-3, 30, ""))
+    assert [r.method for r in chart.on_front(results.rows, "e", "factorizations")] == ["cheap", "better"]
 
 
 @pytest.fixture

@@ -80,6 +80,42 @@ def test_the_plain_loop_arrives_and_is_counted():
     assert row.counts.factorizations > 0
 
 
+def test_absent_outside_solvers_are_named_and_left_out(monkeypatch):
+    monkeypatch.setattr(rivals, "_installed", lambda module: False)
+    for module in (lcp_charts, robustness, scaling):
+        study = module.studies("smoke", True)[-1]
+        assert "Lemke" in [method.name for method in study.methods]
+        assert study.notes == ["outside solvers left out, not installed: quantecon, piqp, clarabel"]
+    assert module.studies("smoke", False)[-1].notes == ()
+
+
+def test_an_outside_solver_is_judged_by_the_certificate_unless_it_says_itself_that_it_failed(monkeypatch):
+    answers = {"right": (np.zeros(5), ""), "gives up": (None, "a ray")}
+    adapters = {
+        name: ("json", lambda library, problem, x=x, end=end: (x, continuation.Counts(factorizations=2), end))
+        for name, (x, end) in answers.items()
+    }
+    monkeypatch.setattr(rivals, "_LCP", adapters)
+    study = chart.Study(
+        name="outside",
+        problems=[chart.Problem("one", lcp.LCP(np.eye(5), np.ones(5)))],
+        methods=rivals.lcp_solvers(),
+        errors=[lcp_charts.RESIDUAL],
+        repeats=0,
+    )
+    rows = chart.run(study).rows
+    assert [(row.failure, row.counts.factorizations) for row in rows] == [("", 2), ("stopped", 2)]
+
+
+@pytest.mark.parametrize("name", ["quantecon", "piqp", "clarabel"])
+def test_the_adapters_of_installed_solvers_work(name):
+    library = pytest.importorskip(name)
+    solve = next(adapter for module, adapter in rivals._LCP.values() if module == name)
+    x, counts, _ = solve(library, lcp_charts.problem("semidefinite", 5, 0).subject)
+    assert lcp.certify(lcp_charts.problem("semidefinite", 5, 0).subject, x).solves(1e-6)
+    assert counts.factorizations > 0
+
+
 def test_methods_for_the_lcp_are_judged_by_the_certificate():
     problem = lcp_charts.problem("semidefinite", 5, 0)
     wrong = lcp_charts.direct("wrong", lambda p: (np.zeros(5), continuation.Counts(), "made up"))

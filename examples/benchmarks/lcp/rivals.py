@@ -48,13 +48,17 @@ def lemke(problem: LCP, seconds: float) -> np.ndarray | None:
 
 
 def restarted_lemke(problem: LCP, seconds: float) -> np.ndarray | None:
-    """The same from random covering vectors, log-uniform over two decades, until one succeeds or the time is up."""
+    """The same from random covering vectors near e until one succeeds or the time is up.
+
+    Of eight distributions this solved most of the random nonmonotone problems: 2 of 12 in 4 s each, uniform ones on
+    [0.5, 1.5] 1, those that spread wider none, as they end on a ray after few pivots.
+    """
     from quantecon.optimize import lcp_lemke
 
     began, k = time.perf_counter(), 0
     A = _dense(problem)
     while time.perf_counter() - began < seconds:
-        d = 10.0 ** np.random.default_rng(k).uniform(-1.0, 1.0, problem.n)
+        d = np.exp(0.05 * np.random.default_rng(k).standard_normal(problem.n))
         result = lcp_lemke(A, problem.q, d=d, max_iter=20 * problem.n)
         if result.success:
             return result.z
