@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, floor, log10
+from math import ceil, floor, inf, log10
 
 from attrs import frozen
 
@@ -96,7 +96,7 @@ def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, wo
         placed = [band.place(k, *points[id(row)]) for row in own if id(row) in points]
         if placed:
             axes.plot(*zip(*placed), **look(k))
-        failures += [(k, row.work(work)) for row in own if row.failed]
+        failures += [(k, inf if row.spared else row.work(work)) for row in own if row.failed]
     front = [band.place(names.index(row.method), *points[id(row)]) for row in on_front(rows, error, work)]
     if front:
         axes.plot(*zip(*front), zorder=1, **_FRONT)
@@ -181,7 +181,7 @@ def _failures(axes: Axes, failures: Sequence[tuple[int, float]], count: int) -> 
     strip.yaxis.set_visible(False)
     strip.set_xlim(-1.0, float(count))
     strip.set_title("failed", fontsize="x-small", pad=2)
-    # What raised has no counts: at the lower edge.
-    lowest = axes.get_ylim()[0]
+    # What raised has no counts: at the lower edge. What a budget did not suffice for at a smaller size: at the upper.
+    lowest, highest = axes.get_ylim()
     for k, cost in failures:
-        strip.plot([k], [max(cost, lowest)], clip_on=False, **{**look(k), "linestyle": "none"})
+        strip.plot([k], [min(max(cost, lowest), highest)], clip_on=False, **{**look(k), "linestyle": "none"})

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from attrs import field, frozen
 
+from continuation.chart.study import Failure
 from continuation.evaluation import Counts
 
 
@@ -51,6 +52,11 @@ class Row:
     def failed(self) -> bool:
         """Whether it has a failure."""
         return bool(self.failure)
+
+    @property
+    def spared(self) -> bool:
+        """Whether it was not run, as a smaller problem had been out of budget (`Study.give_up`)."""
+        return self.failure == Failure.BUDGET and self.counts == Counts()
 
     def work(self, name: str) -> float:
         """One of `WORK` by name, not below its least."""
