@@ -181,7 +181,12 @@ def _failures(axes: Axes, failures: Sequence[tuple[int, float]], count: int) -> 
     strip.yaxis.set_visible(False)
     strip.set_xlim(-1.0, float(count))
     strip.set_title("failed", fontsize="x-small", pad=2)
-    # What raised has no counts: at the lower edge. What a budget did not suffice for at a smaller size: at the upper.
-    lowest, highest = axes.get_ylim()
+    # What raised has no counts: at the lower edge.
+    lowest = axes.get_ylim()[0]
     for k, cost in failures:
-        strip.plot([k], [min(max(cost, lowest), highest)], clip_on=False, **{**look(k), "linestyle": "none"})
+        if cost < inf:
+            strip.plot([k], [max(cost, lowest)], clip_on=False, **{**look(k), "linestyle": "none"})
+    # What a budget had not sufficed for at a smaller size: at the upper edge, where that is now.
+    axes.set_ylim(axes.get_ylim())
+    for k in {k for k, cost in failures if cost == inf}:
+        strip.plot([k], [axes.get_ylim()[1]], clip_on=False, **{**look(k), "linestyle": "none"})
