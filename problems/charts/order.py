@@ -42,7 +42,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     return [
         Study(
             name="order",
-            title="Order of the Taylor predictor against time",
+            title="Order of the Taylor predictor against work",
             problems=problems,
             methods=methods,
             ladder=orders(*rungs),
