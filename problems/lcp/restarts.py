@@ -50,7 +50,7 @@ Starts far out solve most; for A >= 0 only near ones do well.
 """
 
 SPREAD = 0.5
-"""Standard deviation of the natural logarithms of the components of a start: with 0.3 or 1 half as many paths solve."""
+"""Standard deviation of the natural logarithms of the components of a start; with 0 or 1 half as many paths solve."""
 
 BALANCE = (0.05, 0.1)
 """Mean and standard deviation of the decimal logarithm of the products w z2 over the products x z1.
@@ -60,13 +60,16 @@ equal: then a central point of the LCP is one of the path. At a ratio of 4 or 1/
 """
 
 EMPHASIS = 1.0
-"""How much weight the largest product x_i w_i at the end of a path that failed gains, others by its square root."""
+"""How much weight the largest product x_i w_i at the end of a path that failed gains; others by the root of theirs."""
+
+HEAVIEST = 100.0
+"""Weights stay below this, and above its inverse, however often the same product is the largest."""
 
 SMALLEST = 5e-5
 """Products x z1 below this, in natural units: what the active set is then, it remains."""
 
 LONGEST = 60
-"""Steps, and n more, after which a restart is given up: few that turn so often end well, and none of them soon."""
+"""Steps, and n more, after which a restart is given up: of 144 paths that solved one took nearly as many."""
 
 LARGEST_FRESH = 150
 """Up to this order a factorisation costs no more than the solves by which an old one is refined."""
@@ -112,17 +115,18 @@ def restart_start(problem: LCP, generator: np.random.Generator, k: int, bands: t
     return Start(x0, product / x0, balance * product / w0, w0)
 
 
-def emphasized(problem: LCP, weights: Array | None, path: Path) -> Array:
-    """Weights of the x_i w_i in the objective, after a path that ended where some of these products are not zero."""
+def emphasized(problem: LCP, weights: Array | None, path: Path) -> Array | None:
+    """Weights of the x_i w_i in the objective after a path that failed: those that are not zero at its end gain."""
+    if not path.steps:
+        return weights
     x = np.maximum(path.endpoint.y[: problem.n], 0.0)
     products = x * np.maximum(problem.w(x), 0.0)
     largest = float(products.max())
-    before = np.ones(problem.n) if weights is None else weights
     if not 0.0 < largest < np.inf:
-        return before
-    after = before * (1.0 + EMPHASIS * np.sqrt(products / largest))
-    scaled: Array = after / np.exp(np.log(after).mean())
-    return scaled
+        return weights
+    gained = (1.0 if weights is None else weights) * (1.0 + EMPHASIS * np.sqrt(products / largest))
+    balanced: Array = np.clip(gained / np.exp(np.log(gained).mean()), 1.0 / HEAVIEST, HEAVIEST)
+    return balanced
 
 
 TWO_VECTOR = {"wang": WangHomotopy, "yu": YuHomotopy, "zhao": ZhaoHomotopy, "xu": XuHomotopy}

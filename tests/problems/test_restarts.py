@@ -78,13 +78,21 @@ def test_large_products_at_a_failed_end_gain_weight():
     np.testing.assert_allclose(weights, gains / np.exp(np.log(gains).mean()), rtol=1e-6)
     twice = emphasized(problem, weights, path)
     np.testing.assert_allclose(twice, weights**2, rtol=1e-5)
+    for _ in range(30):
+        weights = emphasized(problem, weights, path)
+    assert weights.max() == 100.0
+    assert weights.min() >= 0.01
 
 
 def test_a_solution_gains_nothing():
     problem = lcp.LCP(np.eye(2), [-1.0, 1.0])
     path = lcp.solve(problem, "kkt", finish=False).path
     path.steps[-1] = evolve(path.endpoint, u=np.array([1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))
-    np.testing.assert_array_equal(emphasized(problem, None, path), np.ones(2))
+    assert emphasized(problem, None, path) is None
+    weights = np.array([2.0, 0.5])
+    assert emphasized(problem, weights, path) is weights
+    del path.steps[:]
+    assert emphasized(problem, weights, path) is weights
 
 
 def test_weights_move_the_path_and_not_the_solutions():
