@@ -171,6 +171,33 @@ def test_bordered_solve_has_a_small_backward_error(
 
 
 @every
+def test_an_approximate_solve_is_one_of_the_core_and_makes_refinement_contract(make: Callable[..., Any]) -> None:
+    """Close to the boundary too, where the core alone loses digits."""
+    rng = np.random.default_rng(6)
+    for span in (0.5, 3.0, 8.0):
+        homotopy = made(make, random_lcp(rng, 6), rng)
+        y, lam = interior(rng, homotopy, span)
+        border, rhs = rng.standard_normal((2, y.size + 1))
+        M = full_matrix(homotopy, y, lam, border)
+        system = homotopy.bordered(y, lam, border)
+        assert system.sign in (-1, 1)
+        alone = system._probe.core.solve(rhs[:-1], rhs[-1])
+        assert np.array_equal(system.approximate(rhs[:-1], rhs[-1]), alone)
+        z, exact = np.zeros(y.size + 1), system.solve(rhs[:-1], rhs[-1])
+        for _ in range(4):
+            before = np.abs((z - exact) / y_and_parameter(y)).max()
+            r = rhs - M @ z
+            z = z + system.approximate(r[:-1], r[-1])
+            after = np.abs((z - exact) / y_and_parameter(y)).max()
+            assert after <= max(1e-2 * before, 1e-9 * np.abs(exact / y_and_parameter(y)).max())
+
+
+def y_and_parameter(y: np.ndarray) -> np.ndarray:
+    """The units of the unknowns and of the parameter."""
+    return np.append(np.abs(y), 1.0)
+
+
+@every
 def test_components_that_are_zero(make: Callable[..., Any]) -> None:
     """On the boundary, where the end of a path lies, the reduction divides by nothing that is zero."""
     rng = np.random.default_rng(3)
