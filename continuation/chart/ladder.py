@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from math import inf
 from typing import Any
 
@@ -15,9 +15,9 @@ Options = dict[str, Any]
 """Arguments of `continuation.trace`."""
 
 
-def _values(values: object) -> tuple[float, ...]:
+def _values(values: Iterable[float]) -> tuple[float, ...]:
     try:
-        found = tuple(float(value) for value in values)  # type: ignore[attr-defined]
+        found = tuple(float(value) for value in values)
     except (TypeError, ValueError):
         found = ()
     if not found or not all(0.0 < value < inf for value in found):
