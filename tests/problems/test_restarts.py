@@ -103,6 +103,7 @@ def test_weights_move_the_path_and_not_the_solutions():
         even, weighted = restart(problem, k), restart(problem, k, weights=weights)
         np.testing.assert_array_equal(weighted.homotopy().origin.x0, even.homotopy().origin.x0)
         np.testing.assert_allclose(weighted.homotopy().problem.A, weights[:, None] * problem.A, rtol=1e-15)
+        np.testing.assert_allclose(weighted.homotopy().origin.w0, weights * even.homotopy().origin.w0, rtol=1e-15)
         for one in (even, weighted):
             homotopy = one.homotopy()
             np.testing.assert_allclose(homotopy.c2, homotopy.c2[0], rtol=1e-12)
