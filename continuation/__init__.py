@@ -3,20 +3,22 @@
 ``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target.
 """
 
-from continuation.audit import arclength, audit, refine
-from continuation.branch import BranchPoint, branch_directions, switch_branch
+from continuation.auditing import arclength, audit, refine
+from continuation.branch_switching import branch_directions, switch_branch
 from continuation.budget import Budget
-from continuation.checks import check_jacobian
 from continuation.citation import cite
-from continuation.evaluation import Counts
+from continuation.counts import Counts
+from continuation.evaluation.functions import from_functions
+from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events import Monitor, TargetValue, TurningPoint
-from continuation.homotopy import Homotopy, from_functions
-from continuation.path import Kind, LocatedEvent, Path, Step
+from continuation.events.branch_point import BranchPoint
+from continuation.homotopy import Homotopy
+from continuation.path import LocatedEvent, Path, Step
 from continuation.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
-from continuation.status import Status
+from continuation.status import Kind, Status
+from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance
-from continuation.trace import trace
-from continuation.tracer import Observer, Tracer
+from continuation.tracing import trace
 
 __version__ = "0.1.0"
 

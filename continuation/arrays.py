@@ -31,7 +31,7 @@ def largest(entries: Array) -> float:
 
 
 @lru_cache(maxsize=4)
-def general(n: int) -> Array:
+def generic_vector(n: int) -> Array:
     """A vector of n components between -1 and 1 that has a part in every direction; the same each time, read-only."""
     vector: Array = np.cos(1.0 + 1.7 * np.arange(float(n)) ** 2)
     vector.flags.writeable = False

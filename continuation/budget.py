@@ -7,7 +7,7 @@ import math
 from attrs import field, frozen
 from attrs.validators import gt
 
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 
 
 @frozen

@@ -6,7 +6,8 @@ import re
 from typing import Any
 
 from continuation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
-from continuation.path import Kind, Path
+from continuation.path import Path
+from continuation.status import Kind
 
 _KEY = re.compile(r"@\w+\s*\{\s*([^,\s]+)\s*,")
 _FIELD = re.compile(r"^\s*(author|year|title)\s*=\s*\{(.*)\},?\s*$", re.MULTILINE)

@@ -10,22 +10,9 @@ import numpy as np
 from attrs import define, field, frozen
 
 from continuation.arrays import Array
-from continuation.evaluation import Counts
-from continuation.segment import Segment, parameter_at
-from continuation.status import Status
-
-
-class Kind:
-    """What a stored point is. Numbers are stored in archives: they are added to, never renumbered."""
-
-    REGULAR = 0
-    START = 1
-    TARGET = 2
-    TURNING_POINT = 3
-    BRANCH_POINT = 4
-    EVENT = 5
-
-    NAMES = ("regular", "start", "target", "turning_point", "branch_point", "event")
+from continuation.counts import Counts
+from continuation.point.segment import Segment, parameter_at
+from continuation.status import Kind, Status
 
 
 @frozen(eq=False)

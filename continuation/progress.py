@@ -7,7 +7,7 @@ import time
 from typing import Any, TextIO
 
 from continuation.path import LocatedEvent, Step
-from continuation.tracer import Tracer
+from continuation.step.tracer import Tracer
 
 LIVE_SECONDS = 0.1
 """Between updates of a live line."""

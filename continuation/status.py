@@ -44,3 +44,16 @@ _SENTENCES = {
     Status.INTERRUPTED: "The trace was interrupted; all accepted points are kept and it can be resumed.",
     Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
 }
+
+
+class Kind:
+    """What a stored point is. Numbers are stored in archives: they are added to, never renumbered."""
+
+    REGULAR = 0
+    START = 1
+    TARGET = 2
+    TURNING_POINT = 3
+    BRANCH_POINT = 4
+    EVENT = 5
+
+    NAMES = ("regular", "start", "target", "turning_point", "branch_point", "event")

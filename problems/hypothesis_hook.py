@@ -11,7 +11,7 @@ def register() -> None:
     Called from two places, so that the order of the two imports does not matter: Hypothesis calls it through the entry
     point group `hypothesis` when it is imported, and `problems.lcp` calls it when that is imported.
     """
-    problem = sys.modules.get("problems.lcp.problem")
+    problem = sys.modules.get("problems.lcp.data.problem")
     strategies = sys.modules.get("hypothesis.strategies")
     if problem is None or strategies is None:
         return

@@ -12,8 +12,8 @@ from attrs import asdict, field, frozen
 
 import continuation
 from continuation.arrays import Array
-from problems.lcp.certificate import certify
 from problems.lcp.homotopies import KKTHomotopy, WangHomotopy, XuHomotopy, YuHomotopy, ZhaoHomotopy
+from problems.lcp.proof.certificate import certify
 from problems.lcp.reference import ReferenceResult, lemke, min_newton, modulus
 from problems.literal import run_literally
 from problems.paper import Example

@@ -13,10 +13,10 @@ import continuation
 from continuation.archive import PathLog
 from continuation.arrays import Array
 from continuation.path import Path
-from continuation.tracer import Observer
-from problems.lcp.certificate import certify
+from continuation.step.tracer import Observer
 from problems.lcp.homotopies import KKTHomotopy
-from problems.lcp.padded import Padded
+from problems.lcp.proof.certificate import certify
+from problems.lcp.search.padded import Padded
 from problems.literal import LiteralRun, run_literally
 from problems.paper import Example
 

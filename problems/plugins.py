@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from continuation.arrays import Array
-from problems.lcp.files import read_problem
+from problems.lcp.data.files import read_problem
+from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import (
     KKTHomotopy,
     KojimaMegiddoMizunoHomotopy,
@@ -15,7 +16,6 @@ from problems.lcp.homotopies import (
     YuHomotopy,
     ZhaoHomotopy,
 )
-from problems.lcp.problem import LCP
 from problems.nonlinear import Differentiable, FixedPointHomotopy, brown
 
 

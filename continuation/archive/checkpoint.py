@@ -12,8 +12,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.archive.codec import UnknownError, UnstorableError, decode, encode, order
-from continuation.state import State
-from continuation.tracer import Tracer
+from continuation.step.state import State
+from continuation.step.tracer import Tracer
 
 _HEAD = struct.Struct("<QQI")
 OPTIONS = (

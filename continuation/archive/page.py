@@ -12,8 +12,8 @@ import numpy as np
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import COUNT_NAMES
-from continuation.path import Kind, Path
-from continuation.status import Status
+from continuation.path import Path
+from continuation.status import Kind, Status
 
 _DETAILED = 3
 _LISTED = 12

@@ -21,7 +21,7 @@ import scipy
 from continuation.archive.checkpoint import OPTIONS
 from continuation.archive.codec import UnstorableError, encode, inline
 from continuation.archive.schema import SCHEMA
-from continuation.tracer import Tracer
+from continuation.step.tracer import Tracer
 
 ENTRY_POINTS = "continuation.homotopies"
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")

@@ -21,7 +21,7 @@ from continuation.archive.schema import COUNT_NAMES, EVENT_NAME, TANGENT_COLUMNS
 from continuation.archive.store import RESUME
 from continuation.archive.tables import Table
 from continuation.citation import entries
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
 

@@ -22,7 +22,7 @@ from continuation.archive.store import Store, check_new
 from continuation.archive.writer import PathLog
 from continuation.path import Path
 from continuation.status import Status
-from continuation.tracer import Observer, Tracer
+from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
     Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,

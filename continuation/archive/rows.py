@@ -12,7 +12,7 @@ from attrs import evolve, frozen
 
 from continuation.archive.schema import ACCEPTED, LOCATED, NO_EVENT, Layout
 from continuation.path import LocatedEvent, Step
-from continuation.segment import hermite
+from continuation.point.segment import hermite
 
 _FLOATS = (
     "arclength", "step_length", "residual_norm", "event_monitor", "contraction", "distance", "angle", "parameter_share",

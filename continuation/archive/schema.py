@@ -9,9 +9,8 @@ import attrs
 import numpy as np
 from attrs import field, frozen
 
-from continuation.evaluation import Counts
-from continuation.path import Kind
-from continuation.status import Status
+from continuation.counts import Counts
+from continuation.status import Kind, Status
 
 SCHEMA = "continuation-path-1"
 """Additions keep the name; a change of meaning would be `continuation-path-2`, which this reader refuses."""

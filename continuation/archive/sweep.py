@@ -21,7 +21,7 @@ from continuation.archive.store import check_new
 from continuation.archive.writer import PathLog
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Status
-from continuation.tracer import Tracer
+from continuation.step.tracer import Tracer
 
 Progress = Callable[[int, int], None]
 _PARTS_PER_WORKER = 4

@@ -22,9 +22,9 @@ from continuation.archive.rows import Row, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout
 from continuation.archive.store import SLOTS, Store, check_new
 from continuation.path import LocatedEvent, Step
-from continuation.state import State
 from continuation.status import Status
-from continuation.tracer import Tracer
+from continuation.step.state import State
+from continuation.step.tracer import Tracer
 
 
 @frozen

@@ -10,13 +10,14 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.audit import arclength as quadrature
+from continuation.auditing import arclength as quadrature
 from continuation.chart.study import Answer, Problem
 from continuation.correctors import MoorePenrose
-from continuation.evaluation import Counts, Evaluator
-from continuation.linearization import linearize
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import Euclidean
 from continuation.path import Path
+from continuation.point.linearization import linearize
 from continuation.tolerance import Tolerance
 
 BETWEEN = (0.25, 0.5, 0.75)

@@ -9,8 +9,8 @@ from typing import Any
 from continuation.chart.ladder import Rung
 from continuation.chart.study import Answer, Method, Problem
 from continuation.path import Path
-from continuation.trace import trace
-from continuation.tracer import Tracer
+from continuation.step.tracer import Tracer
+from continuation.tracing import trace
 
 OPTIONS = frozenset(signature(Tracer).parameters) - {"homotopy"}
 """What a trace may be told."""

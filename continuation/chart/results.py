@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from attrs import field, frozen
 
 from continuation.chart.study import Failure
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 
 
 @frozen

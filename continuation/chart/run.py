@@ -12,7 +12,7 @@ from continuation.chart.results import Results, Row
 from continuation.chart.study import Answer, Failure, Method, Problem, Study
 from continuation.chart.threads import pinned
 from continuation.chart.verdict import verdict
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 
 Watch = Callable[[int, int, Row], None]
 """Called after every run: (runs done, runs in all, row)."""

@@ -19,7 +19,7 @@ from continuation.archive.provenance import history
 from continuation.archive.schema import TEXT, Column, text
 from continuation.archive.store import LIBVER, check_new
 from continuation.chart.results import Results, Row
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 
 SCHEMA = "continuation-chart-1"
 """Additions keep the name; a change of meaning would be `continuation-chart-2`, which this reader refuses."""

@@ -11,7 +11,7 @@ from attrs.validators import ge
 from continuation.arrays import Array
 from continuation.chart.ladder import Ladder, Rung, tolerances
 from continuation.chart.truth import Truth
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 from continuation.path import Path
 
 if TYPE_CHECKING:

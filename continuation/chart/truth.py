@@ -13,7 +13,7 @@ from continuation.arrays import Array
 from continuation.path import Path
 from continuation.presets import CONSERVATIVE
 from continuation.status import Status
-from continuation.trace import trace
+from continuation.tracing import trace
 
 ARRIVED = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
 """Ends of a path that was meant to end there."""

@@ -124,7 +124,7 @@ def _full(described: plugins.Description) -> Iterator[str]:
 def _trace(arguments: argparse.Namespace) -> int:
     from continuation import presets
     from continuation.archive import ArchiveError, PathLog
-    from continuation.trace import trace
+    from continuation.tracing import trace
 
     homotopy, values = _homotopy(arguments)
     if arguments.plot is not None:

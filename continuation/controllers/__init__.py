@@ -1,11 +1,10 @@
 """Step controllers: how long the next step is, and whether the last one is accepted."""
 
-from continuation.controllers.base import Attempt, Bounds, Controller, Decision
+from continuation.controllers.base import Bounds, Controller, Decision, StepMeasures
 from continuation.controllers.rules import AllgowerGeorg, Curvature, Fixed, Geometric, IterationCount, SeriesRange
 
 __all__ = [
     "AllgowerGeorg",
-    "Attempt",
     "Bounds",
     "Controller",
     "Curvature",
@@ -14,4 +13,5 @@ __all__ = [
     "Geometric",
     "IterationCount",
     "SeriesRange",
+    "StepMeasures",
 ]

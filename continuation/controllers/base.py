@@ -11,7 +11,7 @@ State: TypeAlias = tuple[float, ...]
 
 
 @frozen
-class Attempt:
+class StepMeasures:
     """What a controller learns of one attempt.
 
     Attributes
@@ -67,7 +67,7 @@ class Bounds:
         if not self.minimum <= self.maximum:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
 
-    def clip(self, h: float) -> float:
+    def cap(self, h: float) -> float:
         """The step kept below the ceiling; the floor is the tracer's to check."""
         return min(h, self.maximum)
 
@@ -84,6 +84,6 @@ class Controller(Protocol):
         """The state before the first step."""
         ...
 
-    def update(self, state: State, attempt: Attempt) -> Decision:
+    def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Judge an attempt; pure, so that a resumed run decides alike."""
         ...

@@ -9,7 +9,7 @@ from attrs import field, frozen
 from attrs.validators import and_, gt, lt
 
 from continuation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINBOLDT
-from continuation.controllers.base import Attempt, Bounds, Decision, State
+from continuation.controllers.base import Bounds, Decision, State, StepMeasures
 
 _FRACTION = and_(gt(0.0), lt(1.0))
 
@@ -25,10 +25,10 @@ class Fixed:
         """No state."""
         return ()
 
-    def update(self, state: State, attempt: Attempt) -> Decision:
+    def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Accept whatever converged within the angle."""
         if attempt.converged and attempt.angle <= self.max_angle:
-            return Decision(True, self.bounds.clip(self.bounds.initial), state)
+            return Decision(True, self.bounds.cap(self.bounds.initial), state)
         return Decision(False, attempt.h / 2.0, state)
 
 
@@ -47,7 +47,7 @@ class Geometric:
         """No state."""
         return ()
 
-    def update(self, state: State, attempt: Attempt) -> Decision:
+    def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Back to the longest step after success, one power of the ratio down after failure."""
         if attempt.converged:
             return Decision(True, self.bounds.initial, state)
@@ -68,12 +68,12 @@ class IterationCount:
         """No state."""
         return ()
 
-    def update(self, state: State, attempt: Attempt) -> Decision:
+    def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Accept what converged within the angle; scale by grow^((target - iterations) / target)."""
         if not attempt.converged or attempt.angle > self.max_angle:
             return Decision(False, attempt.h * self.shrink, state)
         factor = self.grow ** ((self.target - attempt.iterations) / self.target)
-        return Decision(True, self.bounds.clip(attempt.h * max(factor, self.shrink)), state)
+        return Decision(True, self.bounds.cap(attempt.h * max(factor, self.shrink)), state)
 
 
 @frozen
@@ -105,7 +105,7 @@ class AllgowerGeorg:
         """No state."""
         return ()
 
-    def update(self, state: State, attempt: Attempt) -> Decision:
+    def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Divide the step by the worst factor."""
         if not attempt.converged:
             return Decision(False, attempt.h / 2.0, state)
@@ -121,7 +121,7 @@ class AllgowerGeorg:
         limited = max(factor, 1.0 / self.acceleration)
         # Right after a rejection the step must not grow: the reason for it lies just ahead.
         grown = attempt.h / (max(limited, 1.0) if attempt.rejections else limited)
-        return Decision(True, self.bounds.clip(grown), state)
+        return Decision(True, self.bounds.cap(grown), state)
 
 
 @frozen
@@ -146,7 +146,7 @@ class Curvature:
         """No curvature known."""
         return (-1.0, 0.0, self.initial_distance)
 
-    def update(self, state: State, attempt: Attempt) -> Decision:
+    def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Judge by angle; choose by curvature."""
         before, length, liked = state
         if not attempt.converged or attempt.angle > self.max_angle:
@@ -164,7 +164,7 @@ class Curvature:
         wanted = max(wanted, attempt.h / self.growth)
         if attempt.rejections:
             wanted = min(wanted, attempt.h)
-        return Decision(True, self.bounds.clip(wanted), (curvature, attempt.h, liked))
+        return Decision(True, self.bounds.cap(wanted), (curvature, attempt.h, liked))
 
 
 @frozen
@@ -183,9 +183,9 @@ class SeriesRange:
         """No state."""
         return ()
 
-    def update(self, state: State, attempt: Attempt) -> Decision:
+    def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Accept small corrections; ask for the whole range again."""
         near = attempt.distance <= self.distance * attempt.h and attempt.angle <= self.max_angle
         if attempt.converged and near:
-            return Decision(True, self.bounds.clip(self.bounds.initial), state)
+            return Decision(True, self.bounds.cap(self.bounds.initial), state)
         return Decision(False, attempt.h / 2.0, state)

@@ -9,9 +9,9 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array, largest
-from continuation.evaluation import EvaluationError, Evaluator, NotFiniteError, SingularPointError
-from continuation.linearization import Anchor, Linearization
+from continuation.evaluation.evaluator import EvaluationError, Evaluator, NotFiniteError, SingularPointError
 from continuation.metric import norm
+from continuation.point.linearization import Anchor, Linearization
 from continuation.tolerance import Tolerance
 
 

@@ -12,8 +12,8 @@ from attrs.validators import gt
 from continuation.arrays import Array
 from continuation.bibliography import KELLEY
 from continuation.correctors.base import Correction, iterate
-from continuation.evaluation import EvaluationError, Evaluator
-from continuation.linearization import Linearization
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.point.linearization import Linearization
 from continuation.tolerance import Tolerance
 
 

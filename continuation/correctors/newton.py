@@ -11,8 +11,8 @@ from attrs.validators import and_, ge, gt, le
 from continuation.arrays import Array
 from continuation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER
 from continuation.correctors.base import Correction, iterate
-from continuation.evaluation import Evaluator
-from continuation.linearization import Anchor, Linearization, linearize
+from continuation.evaluation.evaluator import Evaluator
+from continuation.point.linearization import Anchor, Linearization, linearize
 from continuation.tolerance import Tolerance
 
 

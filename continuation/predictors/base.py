@@ -9,9 +9,9 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.evaluation import Evaluator
-from continuation.linearization import Linearization
-from continuation.segment import Curve, Segment
+from continuation.evaluation.evaluator import Evaluator
+from continuation.point.linearization import Linearization
+from continuation.point.segment import Curve, Segment
 
 
 @frozen(eq=False)
@@ -71,7 +71,7 @@ class Predictor(Protocol):
         ...
 
 
-def unrolled(point: Linearization, history: Sequence[Knot]) -> list[tuple[float, Array, Array]]:
+def history_in_pseudo_arclength(point: Linearization, history: Sequence[Knot]) -> list[tuple[float, Array, Array]]:
     """The history in the pseudo-arclength of the current point, newest first: (sigma, u, du/dsigma).
 
     sigma = border . (u - point.u) measures all knots alike, though each was reached in a metric of its own. Knots from

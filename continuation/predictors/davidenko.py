@@ -12,9 +12,9 @@ from attrs.validators import in_
 
 from continuation.arrays import Array
 from continuation.bibliography import HAIRER_NORSETT_WANNER
-from continuation.evaluation import Evaluator
-from continuation.linearization import Linearization, linearize
-from continuation.predictors.base import Knot, unrolled
+from continuation.evaluation.evaluator import Evaluator
+from continuation.point.linearization import Linearization, linearize
+from continuation.predictors.base import Knot, history_in_pseudo_arclength
 
 
 @frozen(eq=False)
@@ -92,5 +92,5 @@ class AdamsBashforth:
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> _Slopes:
         """The integral of the interpolated tangent."""
-        nodes, _, slopes = zip(*unrolled(point, history))
+        nodes, _, slopes = zip(*history_in_pseudo_arclength(point, history))
         return _Slopes(point.u, np.array(nodes), np.array(slopes))

@@ -10,9 +10,9 @@ from attrs import field, frozen
 from attrs.validators import ge
 
 from continuation.arrays import Array
-from continuation.evaluation import Evaluator
-from continuation.linearization import Linearization
-from continuation.predictors.base import Knot, unrolled
+from continuation.evaluation.evaluator import Evaluator
+from continuation.point.linearization import Linearization
+from continuation.predictors.base import Knot, history_in_pseudo_arclength
 
 
 @frozen(eq=False)
@@ -93,7 +93,7 @@ class Secant:
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Line:
         """The secant line, with unit speed in the metric of the point."""
-        knots = unrolled(point, history)
+        knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
         sigma, past, _ = knots[1]
@@ -113,7 +113,7 @@ class Hermite:
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Interpolant | Line:
         """The Hermite cubic, read ahead of the current point."""
-        knots = unrolled(point, history)
+        knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
         nodes, values, slopes = zip(*knots[:2])
@@ -142,7 +142,7 @@ class Polynomial:
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Interpolant | Line:
         """The interpolant of the chosen degree."""
-        knots = unrolled(point, history)
+        knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
         nodes, values, slopes = zip(*knots)

@@ -15,12 +15,12 @@ from attrs.validators import and_, ge, gt, lt, optional
 
 from continuation.arrays import Array
 from continuation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
-from continuation.evaluation import EvaluationError, Evaluator
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsTaylor
-from continuation.linearization import Linearization, linearize, sharpened
-from continuation.pade import Pade, best
+from continuation.point.linearization import Linearization, linearize, with_exact_solves
+from continuation.point.segment import SeriesSegment
 from continuation.predictors.base import Knot
-from continuation.segment import SeriesSegment
+from continuation.predictors.pade import Pade, best
 from continuation.tolerance import Tolerance
 
 ORDERS = (8, 30)
@@ -128,7 +128,7 @@ class Taylor:
         """The coefficients at the point, with the factorisation at hand."""
         order = self.order_wanted or best_order(point.u.size, self.accuracy)
         try:
-            coefficients = coefficients_at(evaluator, sharpened(evaluator, point), order)
+            coefficients = coefficients_at(evaluator, with_exact_solves(evaluator, point), order)
         except EvaluationError:
             exact = linearize(evaluator, point.u, point.weights, point.border, 0)
             point = Linearization(point.u, point.weights, exact.anchor, point.tangent, point.orientation)

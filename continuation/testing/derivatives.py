@@ -8,9 +8,9 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.checks import check_jacobian
+from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.jets import path_series
-from continuation.linearization import Linearization
+from continuation.point.linearization import Linearization
 from continuation.predictors.taylor import series_reach
 from continuation.testing.subject import Place, Subject, called, directions, fail
 

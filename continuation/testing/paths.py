@@ -16,7 +16,7 @@ from continuation.archive import ArchiveError, open_archive, resume
 from continuation.archive.codec import UnknownError, decode
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
-from continuation.audit import audit
+from continuation.auditing import audit
 from continuation.budget import Budget
 from continuation.path import Path
 from continuation.status import Status

@@ -13,16 +13,17 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg, Bounds, Controller
-from continuation.derivatives import from_residual
-from continuation.evaluation import Counts, EvaluationError, Evaluator
-from continuation.linearization import Linearization, linearize
+from continuation.counts import Counts
+from continuation.evaluation.derivatives import from_residual
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic
-from continuation.path import Kind, Path
+from continuation.path import Path
+from continuation.point.linearization import Linearization, linearize
 from continuation.presets import DEFAULT
-from continuation.start import StartError, first_point
-from continuation.status import Status
+from continuation.status import Kind, Status
+from continuation.step.start import StartError, first_point
+from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance
-from continuation.tracer import Tracer
 
 STEPS = 60
 """Longest path that the checks of whole paths trace."""

@@ -12,7 +12,7 @@ from continuation.arrays import Array
 from continuation.chart import Answer, Failure, Method, Precision, Problem, Profile, Rung, Study, observed, tolerances
 from continuation.chart.catalogue import Size
 from continuation.chart.methods import answer_of
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 from problems import lcp
 from problems.charts import rivals
 from problems.charts.families import planted

@@ -14,7 +14,7 @@ import scipy.linalg
 
 from continuation.arrays import Array
 from continuation.chart import Answer, Method, Problem, Rung
-from continuation.evaluation import Counts
+from continuation.counts import Counts
 from problems.lcp import LCP
 
 LONGEST = 1000

@@ -23,7 +23,7 @@ def register(subparsers: Subparsers) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Print the table."""
     from problems.lcp.classes import classify, table
-    from problems.lcp.files import read_matrix
+    from problems.lcp.data.files import read_matrix
 
     with named({"path": "FILE", "A": "FILE"}):
         A = read_matrix(arguments.file)

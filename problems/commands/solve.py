@@ -13,7 +13,7 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from problems.commands.arguments import PROBLEM_FORMATS, named
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 
 HOMOTOPIES = ("auto", "kkt", "yu", "zhao", "xu", "wang")
 
@@ -45,7 +45,7 @@ def register(subparsers: Subparsers) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Read, solve, print."""
     from problems import lcp
-    from problems.lcp.files import read_problem, read_vector
+    from problems.lcp.data.files import read_problem, read_vector
 
     _check_outputs(arguments)
     with named(_ARGUMENTS):

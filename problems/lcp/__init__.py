@@ -1,10 +1,8 @@
 """The linear complementarity problem LCP(q, A): homotopies, a solver, certificates, matrix classes, references."""
 
 from problems.hypothesis_hook import register
-from problems.lcp.certificate import Certificate, ExactCertificate, certify, certify_exactly
 from problems.lcp.classes import classify
-from problems.lcp.enumeration import solve_by_enumeration
-from problems.lcp.feasible import NoStrictlyFeasiblePoint, strictly_feasible_start
+from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import (
     KKTHomotopy,
     KojimaMegiddoMizunoHomotopy,
@@ -18,10 +16,12 @@ from problems.lcp.homotopies import (
     default_start,
     random_start,
 )
-from problems.lcp.infeasible import Farkas, empty_interior, farkas
-from problems.lcp.outcome import Outcome, Solution
-from problems.lcp.problem import LCP
-from problems.lcp.solve import solve
+from problems.lcp.proof.certificate import Certificate, ExactCertificate, certify, certify_exactly
+from problems.lcp.proof.farkas import Farkas, empty_interior, farkas
+from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
+from problems.lcp.reference.enumeration import solve_by_enumeration
+from problems.lcp.search.outcome import Outcome, Solution
+from problems.lcp.search.strategy import solve
 
 __all__ = [
     "LCP",

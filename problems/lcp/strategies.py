@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from continuation.arrays import Array
 from problems.lcp.classes.exact import principal_minors
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 
 Order = int | st.SearchStrategy[int]
 Rows = list[list[int]]

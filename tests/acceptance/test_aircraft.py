@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TurningPoint, trace
-from continuation.audit import audit
+from continuation.auditing import audit
 from problems.bifurcation import Aircraft
 from problems.bifurcation.truth import aircraft
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TargetValue, trace
-from continuation.audit import audit
+from continuation.auditing import audit
 from problems.bifurcation import Bratu1D, Bratu2D
 
 # n: lam and max u at the fold.

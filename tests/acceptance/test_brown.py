@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
-from continuation.audit import arclength, audit
+from continuation.auditing import arclength, audit
 from problems.nonlinear import brown, fixed_point, newton
 
 LENGTHS = {5: 2.7114077076, 10: 3.7199286259, 20: 5.1259069338, 30: 6.1886027468}

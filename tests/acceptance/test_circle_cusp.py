@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TargetValue, trace
-from continuation.audit import arclength, audit
+from continuation.auditing import arclength, audit
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp
 

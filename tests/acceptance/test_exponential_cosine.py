@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, guards, trace
-from continuation.audit import arclength, audit
+from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
+from continuation.auditing import arclength, audit
 from continuation.controllers import Bounds, Geometric
 from continuation.predictors import Tangent
+from continuation.step import acceptance
 from problems.bifurcation import ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
@@ -67,7 +68,7 @@ def test_the_audit_agrees(n, backwards):
 @pytest.fixture
 def unguarded(monkeypatch):
     """The engine without the guard that refuses arcs whose middle is off the path: with it, nothing jumps here."""
-    monkeypatch.setattr(guards, "connected", lambda evaluator, arc, tolerance: True)
+    monkeypatch.setattr(acceptance, "midpoint_on_path", lambda evaluator, arc, tolerance: True)
 
 
 @pytest.mark.parametrize("n", [5, 6, 7, 8])

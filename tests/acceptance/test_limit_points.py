@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 import continuation
 from continuation import CONSERVATIVE, DEFAULT, FAST, TurningPoint, trace
-from continuation.audit import arclength, audit
+from continuation.auditing import arclength, audit
 from continuation.controllers import AllgowerGeorg, Bounds, Curvature, IterationCount
 from problems.bifurcation import FreudensteinRoth
 

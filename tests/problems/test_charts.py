@@ -5,7 +5,7 @@ import pytest
 
 import continuation
 from continuation import chart
-from continuation.checks import check_jacobian
+from continuation.evaluation.jacobian_check import check_jacobian
 from problems import lcp
 from problems.charts import engine, families, order, rivals, robustness, scaling, subjects
 from problems.charts import lcp as lcp_charts

@@ -10,7 +10,7 @@ import pytest
 import continuation
 from continuation.archive import open_archive
 from problems.lcp.homotopies import KKTHomotopy
-from problems.lcp.padded import Padded
+from problems.lcp.search.padded import Padded
 from problems.paper import EXAMPLES
 from problems.paper_figures import draw_examples
 from problems.paper_methods import METHODS, compare, matrix, write_csv

@@ -17,7 +17,7 @@ from problems.lcp.classes.cones import (
     is_strictly_semimonotone,
 )
 from problems.lcp.classes.exact import ExactMatrix
-from problems.lcp.classes.membership import Certificate, Classification, Membership, table
+from problems.lcp.classes.membership import Classification, Evidence, Membership, table
 from problems.lcp.classes.minors import (
     is_almost_n,
     is_almost_n0,
@@ -103,8 +103,8 @@ def classify(A: Any) -> Classification:
 
 
 __all__ = [
-    "Certificate",
     "Classification",
+    "Evidence",
     "ExactMatrix",
     "Membership",
     "classify",

@@ -13,7 +13,7 @@ import random
 from typing import Any
 
 from problems.lcp.classes.exact import ExactMatrix, index_sets, principal_minors
-from problems.lcp.classes.membership import Certificate, Membership, Rows
+from problems.lcp.classes.membership import Evidence, Membership, Rows
 from problems.lcp.classes.minors import SIGNS, judge, of_exact_order, two_signs
 
 N_BAR = "Mohan, Parthasarathy and Sridhar, N-bar matrices and the class Q, 1992"
@@ -50,26 +50,26 @@ def _limit(matrix: ExactMatrix, name: str, last: int, cited: str) -> Membership:
     if not weak.holds:
         return weak
     if judge(matrix, name, two_signs("negative", last, "positive"), cited).holds:
-        return Membership(name, True, Certificate("its minors have the strict signs: a constant sequence"), cited)
+        return Membership(name, True, Evidence("its minors have the strict signs: a constant sequence"), cited)
     signature = _signature(matrix)
     if signature is None and (last >= 3 or last == matrix.n):
         sentence = (
             "no diagonal S of signs makes S A S nonpositive, as one does for every N-matrix (the cycle products of its "
             "submatrices of order 3 are negative), hence for every limit"
         )
-        return Membership(name, False, Certificate(sentence), cited)
+        return Membership(name, False, Evidence(sentence), cited)
     found = _perturbation(matrix, last, signature)
     if found is None:
         sentence = (
             f"the minors have the weak signs that a limit needs, but none of {TRIALS} perturbations shows a sequence"
         )
-        return Membership(name, None, Certificate(sentence), cited)
+        return Membership(name, None, Evidence(sentence), cited)
     first, second = found
     sentence = (
         f"A + t B + t^2 C has the strict signs for every small t > 0, "
         f"B = {[list(row) for row in first]}, C = {[list(row) for row in second]}"
     )
-    return Membership(name, True, Certificate(sentence, perturbation=found), cited)
+    return Membership(name, True, Evidence(sentence, perturbation=found), cited)
 
 
 def _signature(matrix: ExactMatrix) -> Signature | None:

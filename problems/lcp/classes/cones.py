@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices
-from problems.lcp.classes.membership import CPS, Certificate, Membership, show_set, show_vector, undecided
+from problems.lcp.classes.membership import CPS, Evidence, Membership, show_set, show_vector, undecided
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point, positive_point
 
 LARGEST = 10
@@ -49,10 +49,10 @@ def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str,
         return undecided(name, matrix.n, LARGEST, cited)
     violation = _first_violation(matrix, build)
     if violation is None:
-        return Membership(name, True, Certificate(words[1]), cited)
+        return Membership(name, True, Evidence(words[1]), cited)
     support, x = violation
     sentence = f"x = {show_vector(x)} with support {show_set(support)} has {words[0]}"
-    return Membership(name, False, Certificate(sentence, support, vector=x), cited)
+    return Membership(name, False, Evidence(sentence, support, vector=x), cited)
 
 
 def _all_negative(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
@@ -104,11 +104,11 @@ def _copositive(matrix: ExactMatrix, name: str, build: Build, wanted: str) -> Me
         return undecided(name, matrix.n, LARGEST, cited)
     violation = _first_violation(matrix.symmetric_part, build)
     if violation is None:
-        return Membership(name, True, Certificate(f"x'Ax is {wanted} for every nonzero x >= 0"), cited)
+        return Membership(name, True, Evidence(f"x'Ax is {wanted} for every nonzero x >= 0"), cited)
     support, x = violation
     value = quadratic_form(matrix, x)
     sentence = f"x = {show_vector(x)} has x'Ax = {value}, not {wanted}"
-    return Membership(name, False, Certificate(sentence, support, value, x), cited)
+    return Membership(name, False, Evidence(sentence, support, value, x), cited)
 
 
 def quadratic_form(matrix: ExactMatrix, x: Sequence[Fraction]) -> Fraction:
@@ -124,14 +124,14 @@ def is_almost_copositive(A: Any) -> Membership:
     if plain.holds is None:
         return undecided("almost copositive", matrix.n, LARGEST, cited)
     if plain.holds:
-        return Membership("almost copositive", False, Certificate("A is copositive of order n too"), cited)
+        return Membership("almost copositive", False, Evidence("A is copositive of order n too"), cited)
     alpha = plain.certificate.indices or ()
     if len(alpha) < matrix.n:
         sentence = f"the principal submatrix of {show_set(alpha)} is not copositive: {plain.certificate}"
-        certificate = Certificate(sentence, alpha, plain.certificate.value, plain.certificate.vector)
+        certificate = Evidence(sentence, alpha, plain.certificate.value, plain.certificate.vector)
         return Membership("almost copositive", False, certificate, cited)
     sentence = f"copositive up to order n - 1, and {plain.certificate}"
-    certificate = Certificate(sentence, alpha, plain.certificate.value, plain.certificate.vector)
+    certificate = Evidence(sentence, alpha, plain.certificate.value, plain.certificate.vector)
     return Membership("almost copositive", True, certificate, cited)
 
 
@@ -153,10 +153,10 @@ def is_semimonotone_star(A: Any) -> Membership:
                 x = embed(matrix.n, support, found)
                 value = matrix.transpose.image(x)[i]
                 sentence = f"x = {show_vector(x)} has x'Ax = 0 and Ax >= 0, but (A'x)_{i} = {value}"
-                return Membership("E0^s", False, Certificate(sentence, support, vector=x), cited)
+                return Membership("E0^s", False, Evidence(sentence, support, vector=x), cited)
     also = "is" if is_semimonotone(matrix).holds else "is not"
     sentence = f"every solution x of LCP(0, A) has A'x <= 0; A {also} E0"
-    return Membership("E0^s", True, Certificate(sentence), cited)
+    return Membership("E0^s", True, Evidence(sentence), cited)
 
 
 def is_s(A: Any) -> Membership:
@@ -165,9 +165,9 @@ def is_s(A: Any) -> Membership:
     cited = CPS + ", section 3.1; Ville's theorem"
     x = positive_point([at_least(row, 1) for row in matrix.entries], matrix.n)
     if x is not None:
-        return Membership("S", True, Certificate(f"x = {show_vector(x)} > 0 has Ax > 0", vector=x), cited)
+        return Membership("S", True, Evidence(f"x = {show_vector(x)} > 0 has Ax > 0", vector=x), cited)
     rows = [at_most(row) for row in matrix.transpose.entries]
     y = feasible_point([*rows, at_least([1] * matrix.n, 1)], matrix.n)
     assert y is not None, "Ville's theorem of the alternative"
     sentence = f"y = {show_vector(y)} >= 0 is nonzero and A'y <= 0, so no x >= 0 has Ax > 0"
-    return Membership("S", False, Certificate(sentence, vector=y), cited)
+    return Membership("S", False, Evidence(sentence, vector=y), cited)

@@ -13,7 +13,7 @@ CPS = "Cottle, Pang and Stone, The Linear Complementarity Problem, 1992"
 
 
 @frozen
-class Certificate:
+class Evidence:
     """The evidence for a membership, in data and in one sentence. Indices are counted from 0.
 
     Parameters
@@ -48,7 +48,7 @@ class Membership:
     name : str
         The class.
     holds : bool or None
-    certificate : Certificate
+    certificate : Evidence
         Why; for None, why not decided.
     cited : str
         Source of the definition or of the criterion.
@@ -56,7 +56,7 @@ class Membership:
 
     name: str
     holds: bool | None
-    certificate: Certificate
+    certificate: Evidence
     cited: str = CPS
 
     def __bool__(self) -> bool:
@@ -74,7 +74,7 @@ Classification = Mapping[str, Membership]
 def undecided(name: str, n: int, limit: int, cited: str) -> Membership:
     """The answer for a matrix beyond the documented limit of an exponential test."""
     sentence = f"the exact test is exponential in n and stops at n = {limit}, found n = {n}"
-    return Membership(name, None, Certificate(sentence), cited)
+    return Membership(name, None, Evidence(sentence), cited)
 
 
 def show_set(indices: Sequence[int]) -> str:

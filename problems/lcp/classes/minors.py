@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
-from problems.lcp.classes.membership import CPS, Certificate, Membership, show_set, undecided
+from problems.lcp.classes.membership import CPS, Evidence, Membership, show_set, undecided
 
 LARGEST = 12
 """Largest order of the tests that read all 2^n - 1 principal minors."""
@@ -42,8 +42,8 @@ def judge(matrix: ExactMatrix, name: str, rule: Rule, cited: str = CPS) -> Membe
         if not SIGNS[sign](matrix.minors[mask]):
             value, alpha = matrix.minor(mask), indices(mask)
             sentence = f"the principal minor of {show_set(alpha)} is {value}, not {sign}"
-            return Membership(name, False, Certificate(sentence, alpha, value), cited)
-    return Membership(name, True, Certificate(_all_right(n, rule)), cited)
+            return Membership(name, False, Evidence(sentence, alpha, value), cited)
+    return Membership(name, True, Evidence(_all_right(n, rule)), cited)
 
 
 def _all_right(n: int, rule: Rule) -> str:
@@ -133,18 +133,18 @@ def of_exact_order(A: Any, base: str, k: int | None, test: Callable[[ExactMatrix
         return test(matrix, f"{base} of exact order {k}", n - k)
     name = f"{base} of exact order k"
     if n == 1:
-        return Membership(name, False, Certificate("no order k with 1 <= k < n = 1"), EXACT_ORDER)
+        return Membership(name, False, Evidence("no order k with 1 <= k < n = 1"), EXACT_ORDER)
     results = [test(matrix, name, n - order) for order in range(1, n)]
     for order, result in enumerate(results, start=1):
         if result.holds:
             sentence = f"k = {order}: {result.certificate}"
-            found = Certificate(sentence, value=Fraction(order), perturbation=result.certificate.perturbation)
+            found = Evidence(sentence, value=Fraction(order), perturbation=result.certificate.perturbation)
             return Membership(name, True, found, result.cited)
     for result in results:
         if result.holds is None:
             return result
     reasons = "; ".join(f"k = {order}: {result.certificate}" for order, result in enumerate(results, start=1))
-    return Membership(name, False, Certificate(reasons), EXACT_ORDER)
+    return Membership(name, False, Evidence(reasons), EXACT_ORDER)
 
 
 def is_nondegenerate(A: Any) -> Membership:
@@ -161,8 +161,8 @@ def is_z(A: Any) -> Membership:
             if i != j and entry > 0:
                 value = Fraction(entry, matrix.scale)
                 sentence = f"the off-diagonal entry {(i, j)} is {value}, positive"
-                return Membership("Z", False, Certificate(sentence, (i, j), value), cited)
-    return Membership("Z", True, Certificate("no off-diagonal entry is positive"), cited)
+                return Membership("Z", False, Evidence(sentence, (i, j), value), cited)
+    return Membership("Z", True, Evidence("no off-diagonal entry is positive"), cited)
 
 
 def is_k(A: Any) -> Membership:
@@ -179,10 +179,10 @@ def is_k(A: Any) -> Membership:
         if top[0] <= 0:
             value, alpha = Fraction(top[0], matrix.scale**order), tuple(range(order))
             sentence = f"the leading principal minor of order {order} is {value}, not positive"
-            return Membership("K", False, Certificate(sentence, alpha, value), cited)
+            return Membership("K", False, Evidence(sentence, alpha, value), cited)
         work = [[(top[0] * v - row[0] * t) // previous for v, t in zip(row[1:], top[1:])] for row in rest]
         previous = top[0]
-    return Membership("K", True, Certificate("Z, and all leading principal minors are positive"), cited)
+    return Membership("K", True, Evidence("Z, and all leading principal minors are positive"), cited)
 
 
 def is_k0(A: Any) -> Membership:

@@ -11,7 +11,7 @@ from attrs import define, evolve
 from problems.lcp.classes.cones import is_r0, is_s, is_semimonotone
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices, over_common_denominator, simplest, solve
 from problems.lcp.classes.faces import face_point
-from problems.lcp.classes.membership import CPS, Certificate, Membership, show_vector
+from problems.lcp.classes.membership import CPS, Evidence, Membership, show_vector
 from problems.lcp.classes.minors import is_p, is_z
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, feasible_point, positive_point
 from problems.lcp.classes.sufficiency import is_row_sufficient
@@ -36,7 +36,7 @@ def is_q0(A: Any) -> Membership:
     cited = CPS + ", sections 3.2, 3.5 and 3.11"
     for name, test in _SUFFICIENT_FOR_Q0.items():
         if test(matrix).holds:
-            return Membership("Q0", True, Certificate(f"{name}, hence Q0"), cited)
+            return Membership("Q0", True, Evidence(f"{name}, hence Q0"), cited)
     return _by_cover(matrix, "Q0", "every feasible q", cited)
 
 
@@ -51,29 +51,29 @@ def is_q(A: Any) -> Membership:
     if not s.holds:
         return Membership("Q", False, evolve(s.certificate, sentence=f"not S: {s.certificate}"), cited)
     if is_p(matrix).holds:
-        return Membership("Q", True, Certificate("P, hence Q with unique solutions"), cited)
+        return Membership("Q", True, Evidence("P, hence Q with unique solutions"), cited)
     if is_semimonotone(matrix).holds and is_r0(matrix).holds:
-        return Membership("Q", True, Certificate("E0 and R0, hence Q"), cited)
+        return Membership("Q", True, Evidence("E0 and R0, hence Q"), cited)
     for name, test in _SUFFICIENT_FOR_Q0.items():
         if test(matrix).holds:
-            return Membership("Q", True, Certificate(f"S and {name}, hence S and Q0"), cited)
+            return Membership("Q", True, Evidence(f"S and {name}, hence S and Q0"), cited)
     return _by_cover(matrix, "Q", "every q (A is S, so every q is feasible)", cited)
 
 
 def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Membership:
     if matrix.n > LARGEST_COVER:
         sentence = f"no criterion that we use applies, and the cover of cones is decided up to n = {LARGEST_COVER} only"
-        return Membership(name, None, Certificate(sentence), cited)
+        return Membership(name, None, Evidence(sentence), cited)
     search = _Subtraction(matrix)
     try:
         witness = search.leftover([])
     except _BudgetSpentError:
         sentence = f"the complementary cones were not subtracted within {BUDGET} linear programs"
-        return Membership(name, None, Certificate(sentence), cited)
+        return Membership(name, None, Evidence(sentence), cited)
     if witness is None:
-        return Membership(name, True, Certificate(f"the full complementary cones cover {scope}"), cited)
+        return Membership(name, True, Evidence(f"the full complementary cones cover {scope}"), cited)
     sentence = f"q = {show_vector(witness)} is feasible and LCP(q, A) has no solution"
-    return Membership(name, False, Certificate(sentence, vector=witness), cited)
+    return Membership(name, False, Evidence(sentence, vector=witness), cited)
 
 
 class _BudgetSpentError(Exception):

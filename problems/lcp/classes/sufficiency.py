@@ -12,7 +12,7 @@ from attrs import evolve
 
 from problems.lcp.classes.cones import columns, embed, quadratic_form
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices, simplest
-from problems.lcp.classes.membership import CPS, Certificate, Membership, show_set, show_vector, undecided
+from problems.lcp.classes.membership import CPS, Evidence, Membership, show_set, show_vector, undecided
 from problems.lcp.classes.minors import is_p, is_p0
 from problems.lcp.classes.simplex import Point, at_most, positive_point
 
@@ -35,11 +35,11 @@ def is_psd(A: Any) -> Membership:
     x = _negative_direction([[Fraction(v) for v in row] for row in matrix.symmetric_part.entries])
     if x is None:
         sentence = "the elimination of the symmetric part meets no negative pivot"
-        return Membership("PSD", True, Certificate(sentence), cited)
+        return Membership("PSD", True, Evidence(sentence), cited)
     x = simplest(x, lambda v: quadratic_form(matrix, v) < 0)
     value = quadratic_form(matrix, x)
     sentence = f"x = {show_vector(x)} has x'Ax = {value}"
-    return Membership("PSD", False, Certificate(sentence, value=value, vector=x), cited)
+    return Membership("PSD", False, Evidence(sentence, value=value, vector=x), cited)
 
 
 def _negative_direction(S: list[list[Fraction]]) -> Point | None:
@@ -77,7 +77,7 @@ def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
     cited = "Cottle, Pang and Venkateswaran, Linear Algebra Appl. 114/115 (1989) 231-249; " + CPS + ", section 3.5"
     shortcut = _known_class(matrix)
     if shortcut is not None:
-        return Membership(name, True, Certificate(shortcut), cited)
+        return Membership(name, True, Evidence(shortcut), cited)
     p0 = is_p0(matrix)
     if matrix.n > LARGEST_SIGNED:
         if p0.holds is False:
@@ -86,11 +86,11 @@ def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
     violation = _reversed_vector(matrix)
     if violation is None:
         sentence = f"no sign pattern of x allows x_i ({symbol}x)_i <= 0 for all i and < 0 for some i"
-        return Membership(name, True, Certificate(sentence), cited)
+        return Membership(name, True, Evidence(sentence), cited)
     support, x = violation
     products = show_vector([v * y for v, y in zip(x, matrix.image(x), strict=True)])
     sentence = f"x = {show_vector(x)} has x_i ({symbol}x)_i = {products}"
-    return Membership(name, False, Certificate(sentence, support, vector=x), cited)
+    return Membership(name, False, Evidence(sentence, support, vector=x), cited)
 
 
 def _known_class(matrix: ExactMatrix) -> str | None:
@@ -126,7 +126,7 @@ def is_sufficient(A: Any) -> Membership:
         certificate = evolve(failed.certificate, sentence=f"not {failed.name}: {failed.certificate}")
         return Membership("sufficient", False, certificate, row.cited)
     if row.holds and column.holds:
-        return Membership("sufficient", True, Certificate("row sufficient and column sufficient"), row.cited)
+        return Membership("sufficient", True, Evidence("row sufficient and column sufficient"), row.cited)
     return undecided("sufficient", matrix.n, LARGEST_SIGNED, row.cited)
 
 
@@ -141,14 +141,14 @@ def is_p_star(A: Any) -> Membership:
     if not sufficient.holds:
         return Membership("P_*", sufficient.holds, sufficient.certificate, VALIAHO)
     if is_psd(matrix).holds:
-        return Membership("P_*", True, Certificate("PSD: kappa = 0 exactly", value=Fraction(0)), HANDICAP)
+        return Membership("P_*", True, Evidence("PSD: kappa = 0 exactly", value=Fraction(0)), HANDICAP)
     if matrix.n == 2:
         kappa = _handicap_of_pair(matrix, (0, 1))
         text = f"kappa = {float(kappa):.6g} from the closed form for n = 2; the value is that number rounded down"
-        return Membership("P_*", True, Certificate(text, value=kappa), HANDICAP)
+        return Membership("P_*", True, Evidence(text, value=kappa), HANDICAP)
     kappa, source = _handicap_bound(matrix)
     text = f"kappa >= {float(kappa):.6g}, a lower bound only, from {source}"
-    return Membership("P_*", True, Certificate(text, value=kappa), HANDICAP)
+    return Membership("P_*", True, Evidence(text, value=kappa), HANDICAP)
 
 
 def _handicap_bound(matrix: ExactMatrix) -> tuple[Fraction, str]:

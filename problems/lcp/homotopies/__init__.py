@@ -1,8 +1,8 @@
 """Homotopies for the linear complementarity problem: plug-ins of `continuation`, each with its reduction to order n."""
 
+from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.homotopies.kkt import KKTHomotopy
 from problems.lcp.homotopies.starts import Start, default_start, random_start
-from problems.lcp.homotopies.structure import Structure
 from problems.lcp.homotopies.two_vector import (
     KojimaMegiddoMizunoHomotopy,
     TwoVectorHomotopy,

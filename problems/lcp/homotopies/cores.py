@@ -18,7 +18,7 @@ from continuation.linear import BorderedSystem, SingularError
 REFINEMENTS = 4
 """Corrections in the full system that a solve may take; one is the rule."""
 
-FIRM = 1e-9
+CONVERGED = 1e-9
 """Relative size of a correction, component by component, after which the corrected solution is at round-off."""
 
 RESOLVED = 1e-6
@@ -30,7 +30,7 @@ ROUND_OFF = 1e-13
 SPREAD = 1e3
 """Ratio of the largest to the smallest factor of the pairs up to which the tangent's correction speaks for others."""
 
-LOOSE = 1e-3
+UNRELIABLE = 1e-3
 """Relative size of the first correction, in the units of the point, above which a core is not believed."""
 
 
@@ -136,7 +136,7 @@ class Full:
 
 
 @frozen(eq=False)
-class Probe:
+class TangentSolve:
     """The core to be used, its tangent (the solution for (0, 1)), and whether its solutions need no correction."""
 
     core: BorderedSystem
@@ -145,7 +145,7 @@ class Probe:
 
 
 @frozen(eq=False, slots=False)
-class Refined:
+class CoreSystem:
     """A bordered system solved by its quick core and corrected in full, by its robust core where that fails.
 
     The quick core is smaller and symmetric, and loses digits as a pair approaches zero; corrections regain them. The
@@ -182,13 +182,13 @@ class Refined:
         return self.make_robust()
 
     @cached_property
-    def _probe(self) -> Probe:
+    def _probe(self) -> TangentSolve:
         nothing = np.zeros(self.full.border.size - 1)
         solution = None if self.quick is None else self._refined(self.quick, nothing, 1.0)
         if self.quick is None or solution is None:
             tangent, moved = self._robustly(nothing, 1.0)
-            return Probe(self.robust, tangent, self._firm(moved))
-        return Probe(self.quick, solution[0], self._firm(solution[1]))
+            return TangentSolve(self.robust, tangent, self._firm(moved))
+        return TangentSolve(self.quick, solution[0], self._firm(solution[1]))
 
     def _firm(self, moved: float) -> bool:
         return moved <= ROUND_OFF and self.full.spread <= SPREAD
@@ -213,11 +213,11 @@ class Refined:
                     correction = core.solve(*self.full.residual(z, r, rho))
                     z = z + correction
                     moved, overall = self._moved(correction, z)
-                    if not overall <= LOOSE:
+                    if not overall <= UNRELIABLE:
                         return None
                     stalled = bool(changes) and moved > 0.5 * changes[-1]
                     changes.append(moved)
-                    if moved <= FIRM or stalled:
+                    if moved <= CONVERGED or stalled:
                         break
                 return z, changes[0]
         except SingularError:

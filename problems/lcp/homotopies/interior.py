@@ -7,7 +7,7 @@ from attrs import field, frozen
 from attrs.validators import gt
 
 from continuation.arrays import Array
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 
 LARGEST_FALL = 1e-3
 """A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""

@@ -11,13 +11,13 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem
-from continuation.linearization import Linearization
+from continuation.point.linearization import Linearization
+from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.interior import RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.kkt_system import KKTSystem, factor_kkt
 from problems.lcp.homotopies.references import DUTTA_DAS_JANA
 from problems.lcp.homotopies.starts import Start, centred, default_start, natural_units, positive_vector, relaxed_w
-from problems.lcp.homotopies.structure import Structure
-from problems.lcp.problem import LCP
 from problems.options import quiet
 
 

@@ -7,8 +7,8 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
-from problems.lcp.homotopies.cores import Full, Pairs, Refined, larger_eliminated, second_eliminated
-from problems.lcp.homotopies.structure import Structure
+from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.homotopies.cores import CoreSystem, Full, Pairs, larger_eliminated, second_eliminated
 
 
 @frozen(eq=False)
@@ -118,8 +118,8 @@ class Augmented:
         return z
 
 
-def factor_kkt(system: KKTSystem, border: Array) -> Refined:
-    """The bordered system of order 3n + 1 at a point, from a factorisation of order n + 1 (or 2n + 1, see `Refined`).
+def factor_kkt(system: KKTSystem, border: Array) -> CoreSystem:
+    """The bordered system of order 3n + 1 at a point, from a factorisation of order n + 1 (or 2n + 1).
 
     Raises
     ------
@@ -128,7 +128,7 @@ def factor_kkt(system: KKTSystem, border: Array) -> Refined:
     """
     full = Full(system.apply, border, (system.x, system.z1, system.z2), (system.w,))
     quick = _reduced(system, border) if system.structure.squarable else None
-    refined = Refined(full, quick, lambda: _augmented(system, border))
+    refined = CoreSystem(full, quick, lambda: _augmented(system, border))
     if quick is None:
         # What cannot be factored is to be said here, not at the first solve.
         _ = refined.robust

@@ -7,8 +7,8 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
-from problems.lcp.homotopies.cores import Full, Pairs, Refined, larger_eliminated, second_eliminated
-from problems.lcp.homotopies.structure import Structure
+from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.homotopies.cores import CoreSystem, Full, Pairs, larger_eliminated, second_eliminated
 
 
 @frozen(kw_only=True)
@@ -90,7 +90,7 @@ class ReducedPairs:
         return z
 
 
-def factor_pairs(system: PairSystem, border: Array) -> Refined:
+def factor_pairs(system: PairSystem, border: Array) -> CoreSystem:
     """The bordered system of order 2n + 1 at a point, from a factorisation of order n + 1.
 
     With y eliminated the core is alpha A + beta I + gamma diag(y/x): Cholesky if A is symmetric positive semidefinite
@@ -103,7 +103,7 @@ def factor_pairs(system: PairSystem, border: Array) -> Refined:
     """
     full = Full(system.apply, border, (system.x, system.y))
     quick = _definite(system, border)
-    refined = Refined(full, quick, lambda: _reduced(system, border, larger_eliminated(system.y, system.x, system.c)))
+    refined = CoreSystem(full, quick, lambda: _reduced(system, border, larger_eliminated(system.y, system.x, system.c)))
     if quick is None:
         # What cannot be factored is to be said here, not at the first solve.
         _ = refined.robust

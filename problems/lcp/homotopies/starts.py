@@ -11,7 +11,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 
 SCALES = (-0.5, 1.0)
 """Random starts are scaled by ten to a power drawn from this interval."""

@@ -11,14 +11,14 @@ from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem
-from continuation.linearization import Linearization
-from problems.lcp.feasible import strictly_feasible_start
+from continuation.point.linearization import Linearization
+from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.interior import RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.starts import positive_vector
-from problems.lcp.homotopies.structure import Structure
-from problems.lcp.problem import LCP
+from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import quiet
 
 

@@ -7,7 +7,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, without_point
 
 _TIE = 1e-11

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved, without_point
 
 _DIVERGED = 1e20

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import lsmr, splu
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved
 
 _DECREASE = 2e-4

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.problem import LCP
+from problems.lcp.data.problem import LCP
 
 SOLVED_BELOW = 1e-8
 """A method solved the problem if the natural residual of its x is at most this, relative to 1 + |q|_inf.

@@ -1,0 +1,279 @@
+"""The limit of a path at a target where it is not regular: y ~ y* + c1 t + c2 t^2 + ..., t = |lam - target|^(1/w).
+
+A power-series endgame (Morgan, Sommese and Wampler, Numerische Mathematik 63, 1992) on real paths: points and tangents
+are computed for parameter values that fall geometrically towards the target, and the Hermite polynomial through
+them in t is evaluated at t = 0, for each winding number w that is tried. Newton's method at the target itself, which
+is singular there, is never asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+from attrs import frozen
+from scipy.optimize import brentq
+
+from continuation.arrays import Array, generic_vector, largest
+from continuation.correctors import BorderedNewton
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.point.linearization import Linearization, linearize, relinearize
+from continuation.point.segment import Curve
+from continuation.predictors.polynomial import interpolate
+from continuation.tolerance import Tolerance
+
+RATIO = 0.2
+"""Each parameter value is this fraction of the one before: far enough for few points, near enough for Newton."""
+
+RELATIVE_FLOOR = 1e-13
+"""A relative error estimate at which no further point is taken: the estimate is the change by the last one."""
+
+RESIDUAL_RATIO = 1e-3
+"""The residual at the limit, relative to that of the first sample put on the target, at which the equations hold."""
+
+ULPS = 8.0
+"""Units in the last place by which a point is moved to see the round-off in H."""
+
+MAX_BACKWARD_SAMPLES = 4
+"""How many samples are taken behind the point where those before it did not do."""
+
+WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
+
+
+@frozen(eq=False)
+class SingularLimit:
+    """The limit of a path.
+
+    Attributes
+    ----------
+    u : ndarray, shape (N + 1,)
+        The parameter is the target exactly.
+    error : float
+        Estimate of the largest error of a component, absolute.
+    winding_number : int
+        1 where the path is analytic in the parameter, 2 for a square root, ...
+    """
+
+    u: Array
+    error: float
+    winding_number: int
+
+
+@frozen(eq=False)
+class Sample:
+    """A point of the path, dy/dlam there, and how much round-off moves Newton's method about it."""
+
+    u: Array
+    slope: Array
+    noise: float = 0.0
+
+
+def endgame(
+    evaluator: Evaluator,
+    point: Linearization,
+    target: float,
+    tolerance: Tolerance,
+    max_step: Callable[[Array, Array], float] | None,
+    samples: int = 14,
+) -> SingularLimit | None:
+    """The limit of the path at the target, or None where no winding number fits to within the tolerance.
+
+    Parameters
+    ----------
+    point : Linearization
+        On the path, near the target, with the parameter moving towards it.
+    samples : int
+        At most so many points, each of which costs a factorisation or two.
+    """
+    gap = point.lam - target
+    taken = [_sample(point)]
+    best: SingularLimit | None = None
+    worse = 0
+    here = point
+    for k in range(1, samples + 1):
+        lam = target + gap * RATIO**k
+        known = best is not None and _within(tolerance, best)
+        tracked = _track(evaluator, here, _guess(taken, target, lam, best), lam, tolerance, max_step, not known)
+        if tracked is None:
+            break
+        here, noise = tracked
+        taken.append(_sample(here, noise))
+        if len(taken) < 3:
+            continue
+        end = _limit(taken, target)
+        if best is None or end.error < best.error:
+            best, worse = end, 0
+        else:
+            worse += 1
+        if best.error <= RELATIVE_FLOOR * (1.0 + float(np.abs(best.u).max())) or worse >= 3:
+            break
+    if best is None or not _within(tolerance, best):
+        taken = _farther(evaluator, point, target, tolerance, max_step)
+        best = _limit(taken, target) if len(taken) > 2 else None
+    if best is None or not _within(tolerance, best):
+        return None
+    return best if _holds(evaluator, best, taken, target) else None
+
+
+def _farther(
+    evaluator: Evaluator,
+    point: Linearization,
+    target: float,
+    tolerance: Tolerance,
+    max_step: Callable[[Array, Array], float] | None,
+) -> list[Sample]:
+    """Samples behind the point, the farthest first: a long step may have led to where round-off leaves few digits."""
+    gap, here = point.lam - target, point
+    taken: list[Sample] = []
+    for k in range(1, MAX_BACKWARD_SAMPLES + 1):
+        lam = target + gap / RATIO**k
+        guess = here.u + (lam - here.lam) * _sample(here).slope
+        tracked = _track(evaluator, here, guess, lam, tolerance, max_step, True)
+        if tracked is None:
+            break
+        here, noise = tracked
+        taken.insert(0, _sample(here, noise))
+    return taken
+
+
+def _sample(point: Linearization, noise: float = 0.0) -> Sample:
+    return Sample(point.u, point.tangent / point.tangent[-1], noise)
+
+
+def _within(tolerance: Tolerance, end: SingularLimit) -> bool:
+    return tolerance.measure(np.full_like(end.u, end.error), end.u) <= 1.0
+
+
+def _holds(evaluator: Evaluator, end: SingularLimit, taken: list[Sample], target: float) -> bool:
+    """Whether the equations hold at the limit: far better than at the first sample, put on the target, or to round-off.
+
+    Relative to that sample because the equations have units of their own.
+    """
+    try:
+        residual, round_off = (largest(evaluator.residual(u)) for u in (end.u, taken[-1].u))
+        moved = largest(evaluator.residual(np.append(taken[0].u[:-1], target)))
+    except EvaluationError:
+        return False
+    return residual <= RESIDUAL_RATIO * moved + 10.0 * round_off
+
+
+def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[float], Array], Array]:
+    """The Hermite interpolant in t, scaled so that the first sample has t = 1, and the nodes."""
+    gap = taken[0].u[-1] - target
+    t = np.array([((sample.u[-1] - target) / gap) ** (1.0 / w) for sample in taken])
+    slopes = [sample.slope * (w * gap * node ** (w - 1)) for sample, node in zip(taken, t)]
+    return interpolate([float(node) for node in t], [sample.u for sample in taken], slopes), t
+
+
+def _limit(taken: list[Sample], target: float) -> SingularLimit:
+    """The best limit over the winding numbers; the error is the change that a sample makes, and the noise.
+
+    A multiple of the true winding number fits as well, a little later, so the smallest within a factor of ten wins.
+    """
+    ends = []
+    # The extrapolation multiplies errors of the samples and of their slopes by 3, 30, 300, ... for w = 1, 2, 3, ...
+    noise = max(sample.noise for sample in taken)
+    for w in WINDING_NUMBERS:
+        value = _polynomial(taken, target, w)[0](0.0)
+        # Without the last sample, the most accurate, and without the first, the least: a small change may be chance.
+        others = [_polynomial(some, target, w)[0](0.0) for some in (taken[:-1], taken[1:])]
+        error = max(largest((value - other)[:-1]) for other in others) + 0.3 * 10.0**w * noise
+        ends.append(SingularLimit(np.append(value[:-1], target), error, w))
+    least = min(end.error for end in ends)
+    return next(end for end in ends if end.error <= 10.0 * least)
+
+
+def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
+    """The interpolant of the last samples at the next parameter value; at first the tangent."""
+    if best is None:
+        last = taken[-1]
+        guess: Array = last.u + (lam - last.u[-1]) * last.slope
+        return guess
+    recent = taken[-3:]
+    gap = recent[0].u[-1] - target
+    curve, _ = _polynomial(recent, target, best.winding_number)
+    guess = curve(((lam - target) / gap) ** (1.0 / best.winding_number))
+    guess[-1] = lam
+    return guess
+
+
+def _track(
+    evaluator: Evaluator,
+    here: Linearization,
+    guess: Array,
+    lam: float,
+    tolerance: Tolerance,
+    max_step: Callable[[Array, Array], float] | None,
+    noisy: bool,
+) -> tuple[Linearization, float] | None:
+    """The point at a parameter value, by Newton at that value, and its noise.
+
+    Increments are followed to a thousandth of the tolerance. Where H_y is so near singular that round-off in H alone
+    makes larger ones, and `noisy` points are wanted, one below the tolerance will do: it says what the point is worth.
+    """
+    unit = np.zeros_like(guess)
+    unit[-1] = 1.0
+    if max_step is not None:
+        room = 0.9 * max_step(here.u, guess - here.u)
+        if room < 1.0:
+            guess = here.u + room * (guess - here.u)
+            guess[-1] = lam
+    fine = Tolerance(absolute=1e-3 * tolerance.absolute, relative=1e-3 * tolerance.relative)
+    correction = BorderedNewton(max_iterations=12, max_contraction=0.9).correct(evaluator, here, guess, unit, fine)
+    u, anchor, noise = correction.u, correction.anchor, 0.0
+    try:
+        if not correction.converged:
+            if not noisy or anchor is None:
+                return None
+            increment = anchor.system.solve(-evaluator.residual(u), 0.0)
+            if tolerance.measure(increment, u) > 1.0:
+                return None
+            u, noise = u + increment, largest(increment)
+        if max_step is not None and not max_step(here.u, u - here.u) > 1.0:
+            return None
+        u[-1] = lam
+        if anchor is not None:
+            at = relinearize(evaluator, u, here.weights, anchor, here.border)
+        else:
+            at = linearize(evaluator, u, here.weights, here.border, 0)
+        return at, max(noise, _round_off(evaluator, at, unit))
+    except EvaluationError:
+        return None
+
+
+def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> float:
+    """How far round-off in H moves the point at its parameter value: where H repeats it, Newton's method cannot see it.
+
+    Measured: H a few units in the last place away, less what the derivative says of that, is round-off.
+    """
+    apply = evaluator.differential(at.u)
+    if apply is None:
+        return 0.0
+    nearby = at.u + ULPS * np.spacing(at.u) * np.sign(generic_vector(at.u.size))
+    nearby[-1] = at.u[-1]
+    left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
+    # One look at something random: the largest of many is more than that.
+    return 2.0 * largest(at.solve(left, 0.0, unit))
+
+
+def touching(curve: Curve, point: Linearization, target: float) -> float | None:
+    """The step at which a series ahead has the parameter touch the target in a fold; None where it does not.
+
+    To be believed the fold must lie within a twentieth of the remaining way from the target.
+    """
+    reach = curve.reach
+    gap = point.lam - target
+    if gap == 0.0 or gap * point.tangent[-1] >= 0.0 or not np.isfinite(reach):
+        return None
+
+    def slope(h: float) -> float:
+        return float(curve.derivative(h)[-1] * np.sign(gap))
+
+    for low, high in pairwise(np.linspace(0.0, reach, 17)):
+        if slope(float(high)) >= 0.0:
+            fold = float(brentq(slope, float(low), float(high))) if slope(float(low)) < 0.0 else float(low)
+            return fold if abs(curve(fold)[-1] - target) <= 0.05 * abs(gap) else None
+        if (curve(float(high))[-1] - target) * gap < -0.05 * gap * gap:
+            return None
+    return None

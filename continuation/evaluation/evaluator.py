@@ -1,0 +1,179 @@
+"""A homotopy as the engine sees it: capabilities resolved once, evaluations counted, u = (y, lam) as one vector."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array, Matrix, finite
+from continuation.counts import Counts
+from continuation.evaluation.derivatives import Derivative, from_residual
+from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
+from continuation.linear import BorderedSystem, SingularError, factor_bordered
+
+
+class EvaluationError(ArithmeticError):
+    """The homotopy has no finite value, or no factorisation, at a point; the sentence says which."""
+
+
+class NotFiniteError(EvaluationError):
+    """The homotopy has no finite value at a point: the edge of its domain, or an overflow."""
+
+
+class SingularPointError(EvaluationError):
+    """The bordered matrix has no factorisation at a point: it is singular there, as in a branch point."""
+
+
+@frozen(eq=False)
+class CountedSystem:
+    """A bordered factorisation whose solves are counted."""
+
+    system: BorderedSystem
+    counts: Counts
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant of the bordered matrix; 0 if unknown."""
+        return self.system.sign
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The bordered solve; EvaluationError where the answer is not finite."""
+        return self._counted(self.system.solve, r, rho)
+
+    def approximate(self, r: Array, rho: float) -> Array:
+        """The same for an iteration that measures its own residual: not refined where the structure can do without."""
+        return self._counted(getattr(self.system, "approximate", self.system.solve), r, rho)
+
+    def _counted(self, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
+        self.counts.solves += 1
+        try:
+            z = solve(r, rho)
+        except SingularError as error:
+            raise EvaluationError(str(error)) from error
+        if not finite(z):
+            raise EvaluationError("a bordered solve gave values that are not finite")
+        return z
+
+
+class Evaluator:
+    """Counted access to one homotopy.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    counts : Counts
+        Where evaluations are added up.
+
+    Attributes
+    ----------
+    methods : set of str
+        BibTeX of what served where the homotopy gave no derivative of its own.
+
+    Raises
+    ------
+    TypeError
+        If `start` or `residual` is missing.
+    ValueError
+        If the start is empty, not a vector, or not finite, or if the residual's shape disagrees with it.
+    """
+
+    def __init__(self, homotopy: Any, counts: Counts) -> None:
+        for name in ("start", "residual"):
+            if not callable(getattr(homotopy, name, None)):
+                raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
+        self.homotopy = homotopy
+        self.counts = counts
+        self._residual: Callable[[Array, float], Array] = homotopy.residual
+        self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
+        self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
+        self.methods: set[str] = set()
+        self._derivative: Derivative | None = None
+        if isinstance(homotopy, SupportsJacobian):
+            self._derivative = Derivative(homotopy.jacobian, evaluations=0, source="jacobian")
+
+    def start(self) -> Array:
+        """The start as one vector (y0, lam0), checked."""
+        answer = self.homotopy.start()
+        if not isinstance(answer, tuple) or len(answer) != 2:
+            raise ValueError(f"start: expected a tuple (y0, lam0), found {type(answer).__name__}")
+        y0 = np.atleast_1d(np.asarray(answer[0], dtype=float))
+        if y0.ndim != 1 or y0.size == 0:
+            raise ValueError(f"start: expected y0 to be a vector of at least one number, found shape {y0.shape}")
+        u: Array = np.append(y0, float(answer[1]))
+        if not np.isfinite(u).all():
+            raise ValueError("start: expected finite numbers, found NaN or infinity")
+        r = np.asarray(self._residual(u[:-1].copy(), float(u[-1])))
+        if r.shape != y0.shape:
+            raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
+        if r.dtype.kind == "c":
+            raise ValueError("residual: expected real numbers, found complex ones")
+        self.counts.residuals += 1
+        return u
+
+    def residual(self, u: Array) -> Array:
+        """H(u), shape (N,); EvaluationError where it is not finite."""
+        self.counts.residuals += 1
+        # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
+        with np.errstate(all="ignore"):
+            try:
+                r: Array = np.asarray(self._residual(u[:-1], float(u[-1])), dtype=float)
+            except (ArithmeticError, ValueError) as error:
+                raise NotFiniteError(f"the residual could not be evaluated: {error}") from error
+        if not finite(r):
+            raise NotFiniteError("the residual is not finite")
+        return r
+
+    @property
+    def derivative(self) -> Derivative:
+        """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
+        if self._derivative is None:
+            self._derivative = from_residual(self._residual, self.homotopy.start())
+            self.methods.update(self._derivative.references)
+        return self._derivative
+
+    def differential(self, u: Array) -> Callable[[Array], Array] | None:
+        """The map v -> H'(u) v without a factorisation; None where only a structured factorisation is to be had."""
+        if self._differential is not None:
+            apply, y, lam = self._differential, u[:-1], float(u[-1])
+            return lambda v: np.asarray(apply(y, lam, v), dtype=float)
+        if self._bordered is not None:
+            return None
+        self.counts.jacobians += 1
+        H_y, H_lam = self._evaluated(u)
+        column = np.asarray(H_lam, dtype=float)
+        return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
+
+    def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
+        derivative = self.derivative
+        self.counts.residuals += derivative.evaluations
+        try:
+            with np.errstate(all="ignore"):
+                return derivative(u[:-1], float(u[-1]))
+        except (ArithmeticError, ValueError) as error:
+            raise NotFiniteError(f"the derivative could not be evaluated: {error}") from error
+
+    def factor(self, u: Array, border: Array) -> CountedSystem:
+        """Factor [[H_y, H_lam], [border']] at u; EvaluationError where that is impossible."""
+        self.counts.jacobians += 1
+        self.counts.factorizations += 1
+        # A factorisation may keep views of the point, and correctors move theirs in place.
+        u = u.copy()
+        try:
+            if self._bordered is not None:
+                with np.errstate(all="ignore"):
+                    system = self._bordered(u[:-1], float(u[-1]), border)
+            else:
+                H_y, H_lam = self._evaluated(u)
+                column = np.asarray(H_lam, dtype=float)
+                if not finite(column) or (isinstance(H_y, np.ndarray) and not np.isfinite(H_y.sum())):
+                    raise NotFiniteError("the derivative is not finite")
+                system = factor_bordered(H_y, column, border)
+        except EvaluationError:
+            raise
+        except ArithmeticError as error:
+            raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error
+        return CountedSystem(system, self.counts)

@@ -1,0 +1,84 @@
+"""A homotopy out of plain functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array, Matrix
+
+
+def _start_vector(y: object) -> Array:
+    return np.array(y, dtype=float, ndmin=1)
+
+
+@frozen(eq=False)
+class FunctionHomotopy:
+    """A homotopy made of a residual alone; see `from_functions`."""
+
+    function: Callable[[Any, Any], Any]
+    y0: Array = field(converter=_start_vector)
+    lam0: float = field(converter=float)
+    target: float | None = 0.0
+
+    def start(self) -> tuple[Array, float]:
+        """The given start."""
+        return self.y0.copy(), self.lam0
+
+    def residual(self, y: Array, lam: float) -> Array:
+        """The given residual."""
+        value: Array = self.function(y, lam)
+        return value
+
+
+@frozen(eq=False)
+class DifferentiableHomotopy:
+    """A homotopy made of a residual and its derivative; see `from_functions`."""
+
+    plain: FunctionHomotopy
+    derivative: Callable[[Any, Any], tuple[Matrix, Array]]
+
+    @property
+    def target(self) -> float | None:
+        """Where the path is to end."""
+        return self.plain.target
+
+    def start(self) -> tuple[Array, float]:
+        """The given start."""
+        return self.plain.start()
+
+    def residual(self, y: Array, lam: float) -> Array:
+        """The given residual."""
+        return self.plain.residual(y, lam)
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """The given derivative."""
+        return self.derivative(y, lam)
+
+
+def from_functions(
+    residual: Callable[[Any, Any], Any],
+    jacobian: Callable[[Any, Any], tuple[Any, Any]] | None = None,
+    *,
+    start: tuple[Any, float],
+    target: float | None = 0.0,
+) -> FunctionHomotopy | DifferentiableHomotopy:
+    """Make a homotopy of functions.
+
+    Parameters
+    ----------
+    residual : callable
+        ``residual(y, lam) -> (N,)``.
+    jacobian : callable, optional
+        ``jacobian(y, lam) -> (H_y, H_lam)``; without it derivatives come from `residual`.
+    start : tuple
+        ``(y0, lam0)``, a point on or near the path.
+    target : float or None
+        Where the path is to end; None for a curve that is followed for its own sake.
+    """
+    y0, lam0 = start
+    plain = FunctionHomotopy(residual, y0, lam0, target)
+    return plain if jacobian is None else DifferentiableHomotopy(plain, jacobian)

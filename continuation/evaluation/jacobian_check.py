@@ -1,0 +1,174 @@
+"""The check of a plug-in's derivative against its own residual."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.jets import directional_derivatives
+
+Product = Callable[[Array], Array]
+"""w -> H'(u) w."""
+
+_PROBES = 3
+_RELATIVE = 1e-6
+"""Error, relative to the size of its row, above which an entry is called wrong; differences have about ten digits."""
+
+
+@frozen
+class JacobianReport:
+    """What the check found.
+
+    Attributes
+    ----------
+    correct : bool
+        Whether no wrong entry was found.
+    sentence : str
+        The finding in words.
+    source : str
+        What the derivative was compared with: jets, complex step or differences.
+    row, column : int or None
+        The wrong entry; column N is that of the parameter.
+    found, expected : float or None
+        Its value as given, and from the residual.
+    """
+
+    correct: bool
+    sentence: str
+    source: str
+    row: int | None = None
+    column: int | None = None
+    found: float | None = None
+    expected: float | None = None
+
+    def __str__(self) -> str:
+        return self.sentence
+
+
+def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
+    """Compare a homotopy's derivative with its residual, and name an entry that is wrong.
+
+    Products with random directions are compared, so the cost is a few residuals, whatever N; where they differ, the
+    entry is found by bisection of the columns, in 2 log2(N) more.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+        With `jacobian`, or with `bordered` and `differential`.
+    u : ndarray, shape (N + 1,), optional
+        Where to check. By default the start and a point beside it, since a start often has zeros that hide a mistake.
+
+    Returns
+    -------
+    JacobianReport
+        Of the first point at which an entry is wrong.
+
+    Raises
+    ------
+    TypeError
+        If the homotopy gives no derivative to check.
+    ValueError
+        If `u` has the wrong shape, or the residual has no finite value at the point.
+    """
+    evaluator = Evaluator(homotopy, Counts())
+    if not any(callable(getattr(homotopy, name, None)) for name in ("jacobian", "differential")):
+        raise TypeError(f"homotopy: expected a method `jacobian` to check, found none on {type(homotopy).__name__}")
+    start = evaluator.start()
+    if u is not None:
+        u = np.array(u, dtype=float)
+        if u.shape != start.shape:
+            raise ValueError(f"u: expected shape {start.shape}, found {u.shape}")
+        return _check(evaluator, u)
+    beside = start + 1e-2 * (1.0 + np.abs(start)) * np.random.default_rng(4).uniform(0.5, 1.0, start.size)
+    report = _check(evaluator, start)
+    if not report.correct:
+        return report
+    try:
+        return _check(evaluator, beside)
+    except ValueError:
+        # The start may lie on the edge of the residual's domain.
+        return report
+
+
+def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
+    try:
+        evaluator.residual(u)
+    except EvaluationError as error:
+        raise ValueError(f"u: at lam = {u[-1]:g} {error}") from error
+    given = evaluator.differential(u)
+    assert given is not None
+    generator = np.random.default_rng(5)
+    probes = [generator.choice((-1.0, 1.0), u.size) * generator.uniform(0.5, 1.0, u.size) for _ in range(_PROBES)]
+    source, expected = _reference(evaluator, u, probes[0])
+    pairs = [(given(w), expected(w)) for w in probes]
+    size = np.max([np.fmax(np.abs(p), np.abs(q)) for p, q in pairs], axis=0)
+    # A row of zeros has no size of its own; then round-off of the others is its measure.
+    allowed = _RELATIVE * size + 1e-10 * float(size.max())
+    for w, (p, q) in zip(probes, pairs):
+        excess = np.where(np.isfinite(p), np.abs(p - q), np.inf) / np.maximum(allowed, np.finfo(float).tiny)
+        if excess.max() > 1.0:
+            return _located(given, expected, w, int(np.argmax(excess)), source, float(u[-1]))
+    sentence = f"The derivative agrees with the residual (by {source}) at lam = {u[-1]:g}."
+    return JacobianReport(True, sentence, source)
+
+
+def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Product]:
+    """The best directional derivative that the residual allows, believed if it agrees with differences."""
+
+    def residual(u: Any) -> Any:
+        return evaluator.homotopy.residual(u[:-1], u[-1])
+
+    def by_differences(w: Array) -> Array:
+        h = 6e-6 * max(1.0, float(np.abs(u).max())) / float(np.abs(w).max())
+        with np.errstate(all="ignore"):
+            return np.asarray((residual(u + h * w) - residual(u - h * w)) / (2.0 * h))
+
+    def by_complex_step(w: Array) -> Array:
+        return np.asarray(np.imag(residual(u + 1e-200j * w)) * 1e200)
+
+    def by_jets(w: Array) -> Array:
+        return np.asarray(directional_derivatives(residual, u, w, 1)[1])
+
+    rough = by_differences(probe)
+    for name, product in (("jets", by_jets), ("complex step", by_complex_step)):
+        try:
+            with warnings.catch_warnings(), np.errstate(all="ignore"):
+                warnings.simplefilter("error", np.exceptions.ComplexWarning)
+                fine = product(probe)
+        except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
+            continue
+        if fine.shape == rough.shape and np.allclose(fine, rough, rtol=1e-4, atol=1e-4 * float(np.abs(rough).max())):
+            return name, product
+    return "differences", by_differences
+
+
+def _located(given: Product, expected: Product, w: Array, row: int, source: str, lam: float) -> JacobianReport:
+    """Bisect the columns of a wrong row down to one of the wrong entries (a NaN spoils every product with its row)."""
+
+    def error(columns: NDArray[np.intp]) -> float:
+        part = np.zeros_like(w)
+        part[columns] = w[columns]
+        return abs(float(given(part)[row] - expected(part)[row]))
+
+    if not np.isfinite(given(w)[row]):
+        sentence = f"jacobian: at lam = {lam:g} row {row} is not finite"
+        return JacobianReport(False, sentence, source, row)
+    columns = np.arange(w.size)
+    while columns.size > 1:
+        halves = np.array_split(columns, 2)
+        columns = halves[0] if error(halves[0]) >= error(halves[1]) else halves[1]
+    column = int(columns[0])
+    unit = np.zeros_like(w)
+    unit[column] = 1.0
+    found, wanted = float(given(unit)[row]), float(expected(unit)[row])
+    where = f"H_lam[{row}]" if column == w.size - 1 else f"H_y[{row}, {column}]"
+    sentence = f"jacobian: at lam = {lam:g} {where} is {found:.10g}, expected {wanted:.10g} (by {source})"
+    return JacobianReport(False, sentence, source, row, column, found, wanted)

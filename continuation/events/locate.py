@@ -1,0 +1,141 @@
+"""Where on an accepted arc a monitor vanishes: a bracketing method of high order on corrected points."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from scipy.optimize import brentq
+
+from continuation.arrays import Array
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.events import Event, TargetValue
+from continuation.point.arc import Arc
+from continuation.point.linearization import Linearization
+from continuation.point.projection import project_and_linearize, project_onto_path
+from continuation.point.segment import Segment, hermite
+from continuation.tolerance import Tolerance
+
+JUMP = 1e-3
+"""A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
+
+
+def may_vanish(event: Event, inside: list[tuple[Array, Array]], ga: float, gb: float) -> bool:
+    """Whether the monitor may vanish on an arc, judged by its ends and the samples inside.
+
+    Ends of one sign may hide a pair of zeros where a sample has the other sign, or dips to less than half of both.
+    """
+    if gb == 0.0 or ga * gb < 0.0:
+        return True
+    values = [event.monitor(u, v) for u, v in inside]
+    return any(value * ga < 0.0 for value in values) or min(map(abs, values)) < 0.5 * min(abs(ga), abs(gb))
+
+
+def locate(
+    evaluator: Evaluator, event: Event, arc: Arc, ga: float, gb: float, tolerance: Tolerance
+) -> list[Linearization]:
+    """All zeros of the monitor on the arc, in order, each on the path to round-off."""
+    knots = [(arc.a, ga), (arc.b, gb)]
+    along = [ga, *(event.monitor(u, v) for u, v in arc.samples), gb]
+    divided = ga * gb > 0.0 or sum(p * q < 0.0 for p, q in itertools.pairwise(along)) > 1
+    if divided:
+        knots[1:1] = [_knot(evaluator, event, arc, t, tolerance) for t in _dividing(arc, along)]
+    found = []
+    for (left, gl), (right, gr) in itertools.pairwise(knots):
+        if gl == 0.0 or gl * gr > 0.0 or np.sign(gl) * event.direction > 0:
+            continue
+        if gr == 0.0:
+            found.append(right)
+        else:
+            series = None if divided else arc.segment
+            part = Arc(left, right, arc.border, arc.segment)
+            root = _root(evaluator, event, part, series, gl, gr, tolerance)
+            found += [] if root is None else [root]
+    return found
+
+
+def _dividing(arc: Arc, along: list[float]) -> list[float]:
+    """Where to evaluate the monitor on the path itself, so that each zero gets a bracket of its own.
+
+    All samples of a cubic, which is a rough guide. Of the many samples of a series, which is a good one, those on
+    either side of a sign change, and the lowest if there is none.
+    """
+    inside = arc.segment.inside
+    if len(inside) <= 3:
+        return list(inside)
+    wanted = {k for k, (p, q) in enumerate(itertools.pairwise(along)) if p * q < 0.0}
+    wanted |= {k + 1 for k in wanted}
+    wanted = wanted or {min(range(1, len(along) - 1), key=lambda k: abs(along[k]))}
+    return [inside[k - 1] for k in sorted(wanted) if 0 < k < len(along) - 1]
+
+
+def _knot(
+    evaluator: Evaluator, event: Event, arc: Arc, t: float, tolerance: Tolerance
+) -> tuple[Linearization, float]:
+    point = project_and_linearize(evaluator, arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border, tolerance)
+    return point, event.monitor(point.u, point.tangent)
+
+
+def _guess(event: Event, segment: Segment, ga: float, gb: float) -> float:
+    """The monitor's zero on the segment; the middle where the segment's end values do not bracket one."""
+
+    def g(t: float) -> float:
+        return event.monitor(segment.at(t), segment.derivative(t))
+
+    if g(0.0) * g(1.0) >= 0.0:
+        return 0.5
+    return float(brentq(g, 0.0, 1.0, xtol=1e-15, rtol=1e-14))
+
+
+def _root(
+    evaluator: Evaluator, event: Event, arc: Arc, series: Segment | None, ga: float, gb: float, tolerance: Tolerance
+) -> Linearization | None:
+    """One zero: interpolate, correct, linearize, narrow; None where the monitor jumps instead, as a tangent may.
+
+    The interpolant has the tangents of both ends, so each pass raises the error of the guess to about the fourth
+    power of the bracket. A pass that does not halve the monitor is followed by a bisection, or is the last one if
+    the monitor is at round-off.
+    """
+    a, b = arc.a, arc.b
+    best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
+    scale = max(abs(ga), abs(gb))
+    width = first = float(np.dot(arc.border, b.u - a.u))
+    bisect = False
+    for _ in range(60):
+        segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
+        series = None
+        # Ends so close that their difference is mostly round-off make a poor cubic: there a secant does as well.
+        fine = width <= 1e-6 * first
+        t = 0.5 if bisect else ga / (ga - gb) if fine else _guess(event, segment, ga, gb)
+        t = min(max(t, 1e-12), 1.0 - 1e-12)
+        point = project_and_linearize(evaluator, a if t < 0.5 else b, segment.at(t), arc.border, tolerance)
+        g = event.monitor(point.u, point.tangent)
+        bisect = abs(g) > 0.5 * least
+        if abs(g) < least:
+            best, least = point, abs(g)
+        if ga * g > 0:
+            a, ga = point, g
+        else:
+            b, gb = point, g
+        width = float(np.dot(arc.border, b.u - a.u))
+        if least <= 1e-15 * scale or (bisect and least <= 1e-10 * scale):
+            break
+    return _on_value(evaluator, event, best, tolerance) if least <= JUMP * scale else None
+
+
+def _on_value(evaluator: Evaluator, event: Event, point: Linearization, tolerance: Tolerance) -> Linearization:
+    """For a wanted value of a component: put the component on it exactly, if the path is transversal to it there."""
+    if not isinstance(event, TargetValue):
+        return point
+    unit = np.zeros_like(point.u)
+    unit[event.component] = 1.0
+    if abs(point.tangent[event.component]) <= 1e-6 * float(np.abs(point.tangent).max()):
+        return point
+    guess = point.u.copy()
+    guess[event.component] = event.value
+    try:
+        u, _ = project_onto_path(evaluator, point, guess, unit, tolerance)
+    except EvaluationError:
+        return point
+    u[event.component] = event.value
+    return Linearization(u, point.weights, point.anchor, point.tangent, point.orientation)

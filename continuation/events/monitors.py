@@ -1,0 +1,109 @@
+"""Events: functions along the path whose zeros are located on corrected points, never interpolated."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from attrs import field, frozen
+from attrs.validators import ge, in_, instance_of
+
+from continuation.arrays import Array
+from continuation.status import Kind
+
+
+class Event(Protocol):
+    """A monitor, and what to do where it vanishes.
+
+    Attributes
+    ----------
+    name : str
+    kind : int
+        One of `continuation.path.Kind`, stored with the point.
+    terminal : int
+        The trace ends at the k-th occurrence; 0 for never.
+    direction : int
+        +1 only where the monitor rises, -1 only where it falls, 0 both.
+    """
+
+    @property
+    def name(self) -> str:
+        """What it is called in the path and the archive."""
+        ...
+
+    @property
+    def kind(self) -> int:
+        """Kind of the located point."""
+        ...
+
+    @property
+    def terminal(self) -> int:
+        """At which occurrence the trace ends."""
+        ...
+
+    @property
+    def direction(self) -> int:
+        """Which crossings count."""
+        ...
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """The function whose zeros are wanted, of the point and the tangent; continuous along the path."""
+        ...
+
+
+_DIRECTION = in_((-1, 0, 1))
+
+
+@frozen
+class TurningPoint:
+    """Where a component of the tangent changes sign: the parameter by default (a fold), or a component of y."""
+
+    component: int = field(default=-1, validator=instance_of(int))
+    terminal: int = field(default=0, validator=ge(0))
+    direction: int = field(default=0, validator=_DIRECTION)
+    kind: int = field(default=Kind.TURNING_POINT, init=False)
+
+    @property
+    def name(self) -> str:
+        """``turning point``, with the component where it is not the parameter."""
+        return "turning point" if self.component == -1 else f"turning point of component {self.component}"
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """The tangent's component."""
+        return float(v[self.component])
+
+
+@frozen
+class TargetValue:
+    """Where the parameter (component -1), or a component of y, takes a value; the point lands on it exactly."""
+
+    value: float
+    component: int = field(default=-1, validator=instance_of(int))
+    terminal: int = field(default=1, validator=ge(0))
+    direction: int = field(default=0, validator=_DIRECTION)
+    kind: int = field(default=Kind.EVENT, init=False)
+
+    @property
+    def name(self) -> str:
+        """The condition as text."""
+        what = "lam" if self.component == -1 else f"component {self.component}"
+        return f"{what} = {self.value:g}"
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """The component minus the value."""
+        return float(u[self.component]) - self.value
+
+
+@frozen
+class Monitor:
+    """Where a function of the caller's, of the point u and the unit tangent v, vanishes."""
+
+    function: Callable[[Array, Array], float]
+    name: str = "event"
+    terminal: int = field(default=0, validator=ge(0))
+    direction: int = field(default=0, validator=_DIRECTION)
+    kind: int = field(default=Kind.EVENT, init=False)
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """The caller's function."""
+        return float(self.function(u, v))

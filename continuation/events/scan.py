@@ -1,0 +1,57 @@
+"""What lies on an accepted arc: events in order, and whether the path ends on it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.events import Event
+from continuation.events.locate import locate, may_vanish
+from continuation.point.arc import Arc, position
+from continuation.point.linearization import Linearization
+from continuation.tolerance import Tolerance
+
+
+def monitored(event: Event, point: Linearization) -> float:
+    """The event's monitor at a point; an IndexError names the component that does not exist."""
+    try:
+        return event.monitor(point.u, point.tangent)
+    except IndexError as error:
+        raise IndexError(f"events: {event!r} asks for a component of u = (y, lam), which has {point.u.size}") from error
+
+
+def scan_events(
+    evaluator: Evaluator, events: tuple[Event, ...], before: tuple[float, ...], arc: Arc, tolerance: Tolerance
+) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
+    """All events on the arc, in order, and the monitors' values at its end.
+
+    A zero exactly at the arc's beginning was found there before; the sign just behind it takes its place.
+    """
+    found: list[tuple[int, Linearization]] = []
+    values = []
+    for i, event in enumerate(events):
+        g = event.monitor(arc.b.u, arc.b.tangent)
+        values.append(g)
+        first = before[i] if before[i] != 0.0 else event.monitor(*arc.just_after_start)
+        if first == 0.0 or not may_vanish(event, arc.samples, first, g):
+            continue
+        try:
+            points = locate(evaluator, event, arc, first, g, tolerance)
+        except EvaluationError:
+            # The arc is on the path, its interior could not be evaluated: the crossing is reported at its end.
+            points = [arc.b] if first * g < 0.0 and np.sign(g) * event.direction >= 0 else []
+        found += [(i, point) for point in points]
+    found.sort(key=lambda pair: position(arc, pair[1].u))
+    return found, tuple(values)
+
+
+def first_terminal(
+    events: tuple[Event, ...], counted: tuple[int, ...], found: list[tuple[int, Linearization]]
+) -> tuple[int | None, tuple[int, ...]]:
+    """At which of the events found the path stops, if at any, and how often each has occurred up to there."""
+    counts = list(counted)
+    for k, (i, _) in enumerate(found):
+        counts[i] += 1
+        if events[i].terminal and counts[i] == events[i].terminal:
+            return k, tuple(counts)
+    return None, tuple(counts)

@@ -1,0 +1,71 @@
+"""The path between two accepted points: its segment, its length, its angle, and where on it a point lies."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.metric import inner, norm
+from continuation.point.linearization import Linearization
+from continuation.point.segment import Segment, hermite
+from continuation.predictors import Prediction
+
+
+@frozen(eq=False)
+class Arc:
+    """The path from a to b, both linearized, in the pseudo-arclength parameter border . (u - a.u)."""
+
+    a: Linearization
+    b: Linearization
+    border: Array
+    segment: Segment
+
+    @cached_property
+    def samples(self) -> list[tuple[Array, Array]]:
+        """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
+        points, slopes = self.segment.sampled()
+        length = float(np.dot(self.border, self.b.u - self.a.u))
+        return [(u, slope / length) for u, slope in zip(points, slopes)]
+
+    @property
+    def just_after_start(self) -> tuple[Array, Array]:
+        """The same just behind the beginning."""
+        length = float(np.dot(self.border, self.b.u - self.a.u))
+        return self.segment.at(0.02), self.segment.derivative(0.02) / length
+
+
+def cut(arc: Arc, end: Linearization) -> Arc:
+    """The arc up to a point on it."""
+    sigma = float(np.dot(arc.border, end.u - arc.a.u))
+    return Arc(arc.a, end, arc.border, arc.segment.until(sigma, end.u, end.tangent, arc.border))
+
+
+def position(arc: Arc, u: Array) -> float:
+    """Pseudo-arclength of a point on the arc, from its beginning."""
+    return float(np.dot(arc.border, u - arc.a.u))
+
+
+def segment_between(a: Linearization, b: Linearization, prediction: Prediction) -> Segment:
+    """The path between the two: the prediction where it is good enough for that, else the Hermite cubic."""
+    # By name: an isinstance check of a Protocol costs more here than the rest of the function.
+    if hasattr(prediction, "segment"):
+        segment: Segment = prediction.segment(float(np.dot(a.border, b.u - a.u)), b.u)
+        return segment
+    return hermite(a.u, a.tangent, b.u, b.tangent, a.border)
+
+
+def angle_between(a: Linearization, b: Linearization) -> float:
+    """The angle between the tangents in the metric of a, radians."""
+    cosine = inner(a.weights, a.tangent, b.tangent) / norm(a.weights, b.tangent)
+    return math.acos(min(max(cosine, -1.0), 1.0))
+
+
+def length_between(a: Linearization, b: Linearization, angle: float) -> float:
+    """Arclength from a to b out of the chord: exact for a circle, an error of fifth order in the step otherwise."""
+    half = 0.5 * angle
+    chord = norm(a.weights, b.u - a.u)
+    return chord * (half / math.sin(half)) if half > 1e-8 else chord

@@ -1,0 +1,217 @@
+"""A point of the path with its factored derivative: tangent, orientation, and every later solve come from here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array, generic_vector, largest
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
+from continuation.metric import norm
+
+ROUND_OFF = 1e-14
+"""The last increment of a tangent that is refined as far as it goes, relative to its size."""
+
+
+@frozen(eq=False)
+class Anchor:
+    """A factorisation and where it was made: the point and the border, from which it can be made again."""
+
+    u: Array
+    border: Array
+    system: CountedSystem
+
+
+@frozen(eq=False)
+class Linearization:
+    """A point, its tangent, and a factorisation of [H_y, H_lam] made there or nearby.
+
+    Attributes
+    ----------
+    u : ndarray, shape (N + 1,)
+        The point (y, lam).
+    weights : ndarray, shape (N + 1,)
+        The metric there.
+    anchor : Anchor
+        The factorisation. Where `exact` is false it was made at a point nearby: right for corrections, not for series.
+    tangent : ndarray, shape (N + 1,)
+        Of unit length in the metric, H' tangent = 0, oriented.
+    orientation : int
+        Sign of det [[H'], [(W tangent)']]; 0 if the structure cannot tell.
+    """
+
+    u: Array
+    weights: Array
+    anchor: Anchor
+    tangent: Array
+    orientation: int
+
+    @property
+    def exact(self) -> bool:
+        """Whether the factorisation was made at the point itself."""
+        return self.anchor.u is self.u
+
+    @property
+    def y(self) -> Array:
+        """The unknowns, shape (N,)."""
+        return self.u[:-1]
+
+    @property
+    def lam(self) -> float:
+        """The parameter."""
+        return float(self.u[-1])
+
+    @property
+    def border(self) -> Array:
+        """The tangent in the dual metric, W tangent: border . tangent = 1."""
+        border: Array = self.weights * self.tangent
+        return border
+
+    def solve(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
+        """Solve ``H' z = r, border . z = rho`` with the factorisation at hand, whatever the border.
+
+        All solutions of H' z = r differ by multiples of the tangent, so another border costs one inner product and
+        no factorisation. The default border is W tangent: then z is the shortest solution when rho = 0, that is, the
+        Moore-Penrose inverse applied to r.
+        """
+        z = self.anchor.system.solve(r, 0.0)
+        row = self.border if border is None else border
+        along = float(np.dot(row, self.tangent))
+        if along == 0.0:
+            raise EvaluationError("the border is orthogonal to the tangent")
+        corrected: Array = z + ((rho - float(np.dot(row, z))) / along) * self.tangent
+        return corrected
+
+    def with_weights(self, weights: Array) -> Linearization:
+        """The same point measured in another metric: the tangent keeps its direction, the factorisation stays."""
+        if weights is self.weights:
+            return self
+        tangent = self.tangent / norm(weights, self.tangent)
+        return Linearization(self.u, weights, self.anchor, tangent, self.orientation)
+
+
+def linearize(evaluator: Evaluator, u: Array, weights: Array, reference: Array, orientation: int) -> Linearization:
+    """Factor at u with the border `reference` and orient the tangent.
+
+    With M = [[H'], [reference']] and M v = e_{N+1}: det [[H'], [v']] = det(M) |v|^2, so the sign of the one
+    factorisation orients the tangent (Allgower and Georg, Section 2.1). Where the sign is unknown (operators), or no
+    `orientation` is asked for (0), the tangent makes an acute angle with the reference instead.
+    """
+    system = evaluator.factor(u, reference)
+    raw = system.solve(np.zeros(u.size - 1), 1.0)
+    flip = system.sign * orientation < 0
+    anchor, sign = Anchor(u, reference, system), system.sign
+    return _oriented(anchor, u, weights, -raw if flip else raw, -sign if flip else sign)
+
+
+def relinearize(
+    evaluator: Evaluator,
+    u: Array,
+    weights: Array,
+    anchor: Anchor,
+    along: Array,
+    signed: bool = False,
+    accuracy: float = ROUND_OFF,
+) -> Linearization:
+    """Linearize at u with a factorisation from nearby: the tangent is refined to `accuracy`, and makes along . v > 0.
+
+    Iterative refinement of M v = e_{N+1} with the factors of M~ multiplies the error by I - M~^{-1} M. It is believed
+    only if it contracts by 0.3 or better, else u gets factors of its own. Where the determinant's sign counts
+    (`signed`), the refinement begins with an error in general position, of the metric's size in each component: if
+    M~^{-1} M had a negative eigenvalue, that part of the error would not shrink, so det M~ and det M have one sign.
+    """
+    apply = evaluator.differential(u)
+    tangent = None
+    if apply is not None:
+        if signed:
+            guess = generic_vector(u.size) / np.sqrt(weights)
+        else:
+            guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
+        tangent = _refined(apply, anchor, guess, accuracy)
+    if tangent is None:
+        return linearize(evaluator, u, weights, along, 0)
+    # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
+    flip = float(np.dot(along, tangent)) < 0.0
+    sign = anchor.system.sign
+    return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
+
+
+def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accuracy: float) -> Array | None:
+    """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails."""
+    system, border = anchor.system, anchor.border
+    v, before = guess, np.inf
+    for k in range(20):
+        increment = system.approximate(-apply(v), 1.0 - float(np.dot(border, v)))
+        size = largest(increment)
+        # The first ratio compares unlike parts of an error in general position: it need only fall.
+        if size > (0.9 if k == 1 else 0.3) * before:
+            # At round-off the increments no longer shrink: that is the end of a refinement that has worked.
+            return v if before <= 1e3 * accuracy * largest(v) else None
+        v = v + increment
+        if size <= accuracy * largest(v):
+            return v
+        before = size
+    return None
+
+
+@frozen(eq=False)
+class RefinedSystem:
+    """A factorisation from nearby, made to solve with the matrix of the point itself by iterative refinement."""
+
+    near: CountedSystem
+    apply: Callable[[Array], Array]
+    border: Array
+
+    @property
+    def sign(self) -> int:
+        """As that of the factorisation: refinement converges only if the signs agree."""
+        return self.near.sign
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The bordered solve, to round-off; EvaluationError where refinement does not contract."""
+        z = self.near.solve(r, rho)
+        before = np.inf
+        for _ in range(8):
+            increment = self.near.solve(r - self.apply(z), rho - float(np.dot(self.border, z)))
+            z = z + increment
+            size = largest(increment)
+            if size <= 1e-13 * largest(z):
+                return z
+            if size > 0.3 * before:
+                break
+            before = size
+        if before <= 1e-9 * largest(z):
+            return z
+        raise EvaluationError("a factorisation from nearby could not be refined")
+
+
+def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearization:
+    """The same point with a system that solves for its own matrix: refined where a factorisation from nearby allows it.
+
+    What a series needs, since the error of each coefficient enters all the later ones.
+    """
+    if point.exact:
+        return point
+    apply = evaluator.differential(point.u)
+    if apply is not None:
+        near = point.anchor
+        trial = RefinedSystem(near.system, apply, near.border)
+        try:
+            trial.solve(np.zeros(point.u.size - 1), 1.0)
+        except EvaluationError:
+            pass
+        else:
+            anchor = Anchor(point.u, near.border, CountedSystem(trial, Counts()))
+            return Linearization(point.u, point.weights, anchor, point.tangent, point.orientation)
+    exact = linearize(evaluator, point.u, point.weights, point.border, 0)
+    return Linearization(point.u, point.weights, exact.anchor, point.tangent, point.orientation)
+
+
+def _oriented(anchor: Anchor, u: Array, weights: Array, raw: Array, orientation: int) -> Linearization:
+    length = norm(weights, raw)
+    if not length > 0.0:
+        raise EvaluationError("the tangent vanishes")
+    return Linearization(u, weights, anchor, raw / length, orientation)

@@ -1,0 +1,1 @@
+"""One step: settings, start, state, the attempt, its acceptance, and the loop."""

@@ -1,0 +1,63 @@
+"""Everything a trace carries from one step to the next, as arrays and numbers that an archive can hold."""
+
+from __future__ import annotations
+
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.predictors import Knot
+
+
+@frozen(eq=False)
+class State:
+    """The stepper's state at an accepted point; with the settings it determines the rest of the path, bit for bit.
+
+    Attributes
+    ----------
+    history : tuple of Knot
+        The current point last, with as many before it as the predictor remembers.
+    weights : ndarray, shape (N + 1,)
+        The metric at the point.
+    anchor : tuple of two ndarrays, shape (N + 1,)
+        Where the factorisation at hand was made, and with which border.
+    orientation : int
+        The determinant sign that the tangent is to have.
+    h : float
+        The step length to try next.
+    controller : tuple of float
+        The controller's state.
+    monitors : tuple of float
+        Values of the events' monitors at the point; 0 where an event was found on it.
+    occurrences : tuple of int
+        How often each event has been located.
+    origin : Knot
+        The start, and `origin_weights` the metric there: for recognising a closed curve.
+    divergence_monitor : tuple of float
+        For recognising divergence: the norm and the parameter at the last decade, and decades stalled.
+    last_failed_landing : float
+        The parameter value at which landing was last tried in vain; inf if never.
+    last_failed_endgame : float
+        The parameter value at which the endgame was last tried in vain; inf if never.
+    index : int
+        Of the step that led here.
+    """
+
+    history: tuple[Knot, ...]
+    weights: Array
+    anchor: tuple[Array, Array]
+    orientation: int
+    h: float
+    controller: tuple[float, ...]
+    monitors: tuple[float, ...]
+    occurrences: tuple[int, ...]
+    origin: Knot
+    origin_weights: Array
+    divergence_monitor: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    last_failed_landing: float = float("inf")
+    last_failed_endgame: float = float("inf")
+    index: int = 0
+
+    @property
+    def here(self) -> Knot:
+        """The current point."""
+        return self.history[-1]

@@ -1,0 +1,241 @@
+"""LCPs and vectors read from files: whatever is wrong with one is said in one line.
+
+A container (.npz, .json, .mat, .h5) holds named arrays, ``A`` and ``q``; the other formats hold one array a file.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import scipy.io
+import scipy.sparse as sp
+
+from continuation.arrays import Array, Matrix
+from problems.lcp.data.problem import LCP
+from problems.options import finite_vector
+
+ALONE = ""
+"""The name of the array in a file that holds one array without a name."""
+
+_UNREADABLE = (
+    OSError, ValueError, TypeError, KeyError, EOFError, RecursionError, NotImplementedError, OverflowError,
+    zipfile.BadZipFile, zlib.error, scipy.io.matlab.MatReadError,
+)  # fmt: skip
+
+_WANTED = ("A", "q", "x0")
+"""What is looked for in an HDF5 file, which may hold much else."""
+
+_HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
+
+
+class InputError(ValueError):
+    """A file that cannot be used.
+
+    Attributes
+    ----------
+    argument : str
+        The argument at fault: ``path``, or the name of a vector.
+    complaint : str
+        What was expected and what was found, one line.
+    """
+
+    def __init__(self, argument: str, complaint: str) -> None:
+        self.argument = argument
+        self.complaint = " ".join(complaint.split())
+        super().__init__(f"{self.argument}: {self.complaint}")
+
+
+def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> LCP:
+    """Read LCP(q, A) from a file.
+
+    Parameters
+    ----------
+    path : path
+        ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A and q (in HDF5 at the root, in a group ``problem``
+        or in the group named as ``file.h5:/group``); or, with `q` given, A alone as ``.mtx``, ``.npy``, ``.txt``,
+        ``.csv`` or the ``.npz`` of `scipy.sparse.save_npz`. A sparse A stays sparse.
+    q : path, optional
+        A file with q, in any of these formats. It takes precedence over a q beside A.
+
+    Raises
+    ------
+    InputError
+        A ValueError: if a file is missing, of another format, or holds no real finite data of matching shapes.
+    """
+    contents = _contents("path", path)
+    A = _named(contents, "A", "path", path)
+    if q is None:
+        if ALONE in contents:
+            raise InputError("path", f"expected A and q, found one array in {_shown(path)}; give q in its own file")
+        vector = _named(contents, "q", "path", path)
+    else:
+        vector = _named(_contents("q", q), "q", "q", q)
+    try:
+        return LCP(A, _flat(vector))
+    except (ValueError, TypeError, OverflowError) as error:
+        at_q = q is not None and str(error).startswith("q:")
+        argument, file = ("q", q) if at_q else ("path", path)
+        raise InputError(argument, f"{str(error).removeprefix('q: ') if at_q else error}, in {_shown(file)}") from None
+
+
+def read_matrix(path: str | PathLike[str]) -> Matrix:
+    """Read A alone, not checked; any of the formats of `read_problem`.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, of another format, or holds no A.
+    """
+    return _named(_contents("path", path), "A", "path", path)
+
+
+def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
+    """Read `size` finite numbers, called `name` in messages and in a container, from a file.
+
+    Raises
+    ------
+    InputError
+        As for `read_problem`.
+    """
+    value = _flat(_named(_contents(name, path), name, name, path))
+    try:
+        return finite_vector(name, value, size)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise InputError(name, f"{str(error).removeprefix(f'{name}: ')}, in {_shown(path)}") from None
+
+
+def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
+    """The named arrays of a file."""
+    text = fspath(path)
+    grouped = _HDF5_GROUP.fullmatch(text)
+    file, group = (grouped["file"], grouped["group"]) if grouped else (text, None)
+    suffix = Path(file).suffix.lower()
+    if not Path(file).exists():
+        raise InputError(argument, f"expected a file, found nothing at {_shown(file)}")
+    if not Path(file).is_file():
+        raise InputError(argument, f"expected a file, found a directory at {_shown(file)}")
+    if suffix not in _READERS:
+        known = ", ".join(_READERS)
+        raise InputError(argument, f"expected one of {known}, found {suffix or 'no extension'} in {_shown(file)}")
+    try:
+        return _hdf5(file, group) if suffix in (".h5", ".hdf5") else _READERS[suffix](file)
+    except _UNREADABLE as error:
+        reason = str(error) or type(error).__name__
+        complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
+        raise InputError(argument, complaint) from None
+
+
+def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
+    """The array of that name, or the only one of a file without names; sparse, or an array of anything but objects."""
+    if name not in contents and ALONE not in contents:
+        found = ", ".join(sorted(contents)) or "nothing"
+        raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")
+    value = contents.get(name, contents.get(ALONE))
+    if sp.issparse(value):
+        return value
+    try:
+        array = np.asarray(value)
+        return array.astype(float) if array.dtype == object else array
+    except (ValueError, TypeError, OverflowError) as error:
+        complaint = f"{name}: expected real numbers in rows of one length, found others in {_shown(path)} ({error})"
+        raise InputError(argument, complaint) from None
+
+
+def _shown(path: str | PathLike[str] | None) -> str:
+    return repr(str(path))
+
+
+def _flat(value: Matrix) -> Matrix:
+    """A row or a column as a vector, anything else as it is: which of them a format has is its own affair."""
+    array = value.toarray() if sp.issparse(value) else value
+    return array.ravel() if array.ndim == 2 and 1 in array.shape else array
+
+
+def _npz(file: str) -> Mapping[str, Any]:
+    stored = np.load(file, allow_pickle=False)
+    if not isinstance(stored, np.lib.npyio.NpzFile):
+        raise ValueError("it holds one array, not named arrays")
+    with stored:
+        if {"format", "shape", "data"} <= set(stored.files):
+            return {ALONE: sp.load_npz(file)}
+        return {name: stored[name] for name in stored.files}
+
+
+def _npy(file: str) -> Mapping[str, Any]:
+    array = np.load(file, allow_pickle=False)
+    if isinstance(array, np.lib.npyio.NpzFile):
+        array.close()
+        raise ValueError("it holds named arrays, not one")
+    return {ALONE: array}
+
+
+def _json(file: str) -> Mapping[str, Any]:
+    value = json.loads(Path(file).read_text(encoding="utf-8"))
+    if isinstance(value, dict):
+        return value
+    if isinstance(value, list):
+        return {ALONE: value}
+    raise ValueError(f"it holds {value!r}, not an object with A and q")
+
+
+def _mat(file: str) -> Mapping[str, Any]:
+    stored = scipy.io.loadmat(file)
+    return {name: value for name, value in stored.items() if not name.startswith("__")}
+
+
+def _matrix_market(file: str) -> Mapping[str, Any]:
+    return {ALONE: scipy.io.mmread(file)}
+
+
+def _text(file: str) -> Mapping[str, Any]:
+    text = Path(file).read_text(encoding="utf-8")
+    rows = [line.split("#")[0].replace(",", " ").split() for line in text.splitlines()]
+    numbers = [[float(number) for number in row] for row in rows if row]
+    if not numbers:
+        raise ValueError("it is empty")
+    return {ALONE: np.array(numbers)}
+
+
+def _hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
+    with h5py.File(file, "r") as root:
+        if group is not None:
+            at = root.get(group)
+            if not isinstance(at, h5py.Group):
+                raise ValueError(f"no group {group}")
+        else:
+            nested = root.get("problem")
+            at = nested if isinstance(nested, h5py.Group) and "A" not in root else root
+        found = {name: _from_hdf5(at[name]) for name in _WANTED if name in at}
+        if not found:
+            raise ValueError(f"none of {', '.join(_WANTED)} in its group {at.name}")
+        return found
+
+
+def _from_hdf5(node: Any) -> Matrix:
+    """A dataset, or the parts of a compressed sparse matrix in a group."""
+    if isinstance(node, h5py.Dataset):
+        return node[()]
+    shape = tuple(int(n) for n in (node["shape"][()] if "shape" in node else node.attrs["shape"]))
+    return sp.csr_array((node["data"][()], node["indices"][()], node["indptr"][()]), shape=shape)
+
+
+_READERS: Mapping[str, Callable[[str], Mapping[str, Any]]] = {
+    ".npz": _npz,
+    ".json": _json,
+    ".mat": _mat,
+    ".h5": _hdf5,
+    ".hdf5": _hdf5,
+    ".mtx": _matrix_market,
+    ".npy": _npy,
+    ".txt": _text,
+    ".csv": _text,
+}

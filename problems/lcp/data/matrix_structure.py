@@ -1,0 +1,193 @@
+"""What the matrix of an LCP offers: products, how it is stored, what a cheap look proves, and the matrices made of it.
+
+Three storages have one face: dense, sparse, and banded (a sparse matrix with few diagonals near the main one).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from scipy.linalg.lapack import dpotrf
+
+from continuation.arrays import Array, Matrix
+from continuation.linear import Banded
+from problems.lcp.data.problem import LCP
+
+WIDEST_BAND = 16
+"""A sparse matrix with at most so many diagonals, the gaps between them counted, is treated as banded."""
+
+FILL = 8.0
+"""A'DA is formed for a sparse A while its terms are at most so many times the entries of A and of the identity.
+
+Beyond that (a full row makes A'DA full) the system of order 2n, which is as sparse as A, takes its place.
+"""
+
+SHIFT = 100 * float(np.finfo(float).eps)
+"""Relative shift per unknown with which a semidefinite matrix passes for definite."""
+
+
+@frozen(eq=False)
+class Band:
+    """The diagonals of a banded matrix: ``rows[lower + k, i] = A[i, i + k]`` for -lower <= k <= upper, else 0."""
+
+    rows: Array
+    lower: int
+    upper: int
+
+    def scaled(self, factor: float, columns: Array, diagonal: Array) -> Banded:
+        """``factor A diag(columns) + diag(diagonal)``."""
+        n = self.rows.shape[1]
+        ab = np.zeros((self.lower + self.upper + 1, n))
+        for k in range(-self.lower, self.upper + 1):
+            begin, end = max(0, -k), min(n, n - k)
+            ab[self.upper - k, begin + k : end + k] = (
+                factor * self.rows[self.lower + k, begin:end] * columns[begin + k : end + k]
+            )
+        ab[self.upper] += diagonal
+        return Banded(ab, self.lower, self.upper)
+
+    def normal(self, factor: float, weights: Array, diagonal: Array) -> Banded:
+        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, of half bandwidth lower + upper."""
+        n, width = self.rows.shape[1], self.lower + self.upper
+        ab = np.zeros((2 * width + 1, n))
+        offsets = range(-self.lower, self.upper + 1)
+        for k in offsets:
+            weighted = weights * self.rows[self.lower + k]
+            for m in offsets:
+                begin, end = max(0, -k, -m), min(n, n - k, n - m)
+                if begin < end:
+                    ab[width + k - m, begin + m : end + m] += (weighted * self.rows[self.lower + m])[begin:end]
+            begin, end = max(0, -k), min(n, n - k)
+            entries = self.rows[self.lower + k, begin:end]
+            ab[width - k, begin + k : end + k] += entries
+            ab[width + k, begin:end] += entries
+        ab *= factor
+        ab[width] += diagonal
+        return Banded(ab, width, width)
+
+
+@frozen(eq=False, slots=False)
+class Structure:
+    """The matrix A of a problem, as the homotopies use it; made once and shared by every start of the problem.
+
+    Parameters
+    ----------
+    problem : LCP
+    """
+
+    problem: LCP
+
+    @property
+    def n(self) -> int:
+        """The order of A."""
+        return self.problem.n
+
+    @cached_property
+    def transpose(self) -> Matrix:
+        """A', a view of the dense matrix or the transposed sparse one."""
+        return self.problem.A.T.tocsr() if self.problem.sparse else self.problem.A.T
+
+    @cached_property
+    def symmetrized(self) -> Matrix:
+        """A + A'."""
+        return sp.csr_array(self.problem.A + self.transpose) if self.problem.sparse else self.problem.A + self.transpose
+
+    @cached_property
+    def band(self) -> Band | None:
+        """The diagonals of a sparse matrix with few of them near the main one, else None."""
+        if not self.problem.sparse:
+            return None
+        entries = self.problem.A.tocoo()
+        offsets = entries.col.astype(np.int64) - entries.row
+        lower, upper = int(max(0, -offsets.min(initial=0))), int(max(0, offsets.max(initial=0)))
+        if lower + upper + 1 > min(WIDEST_BAND, self.n):
+            return None
+        rows = np.zeros((lower + upper + 1, self.n))
+        rows[lower + offsets, entries.row] = entries.data
+        return Band(rows, lower, upper)
+
+    @cached_property
+    def squarable(self) -> bool:
+        """Whether A'DA may be formed: always if A is dense or banded, else where it fills little."""
+        if not self.problem.sparse or self.band is not None:
+            return True
+        terms = float((np.diff(self.problem.A.indptr).astype(float) ** 2).sum())
+        return terms <= FILL * float(self.problem.A.nnz + self.n)
+
+    @cached_property
+    def symmetric(self) -> bool:
+        """Whether A = A' exactly."""
+        if self.problem.sparse:
+            return float(abs(self.problem.A - self.transpose).max()) == 0.0
+        # A row and a column tell most matrices apart, at a thousandth of the cost of all of them.
+        A = self.problem.A
+        return bool(np.array_equal(A[0], A[:, 0])) and bool(np.array_equal(A, self.transpose))
+
+    @cached_property
+    def semidefinite(self) -> bool:
+        """Whether A + A' is proved positive semidefinite, to working precision.
+
+        Dense: by one Cholesky factorisation. Sparse: by diagonal dominance (Gershgorin), where that holds. What is not
+        proved counts as indefinite; a wrong answer costs time only, as it decides which factorisation is tried first.
+        """
+        diagonal = self.symmetrized.diagonal()
+        if (diagonal < 0.0).any():
+            return False
+        if self.problem.sparse:
+            return bool((2.0 * diagonal >= np.asarray(abs(self.symmetrized).sum(axis=1))).all())
+        scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+        scaled = self.symmetrized * scale * scale[:, None]
+        scaled[np.diag_indices(self.n)] += SHIFT * self.n
+        return bool(dpotrf(scaled, lower=1, overwrite_a=1)[1] == 0)
+
+    def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
+        """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A is."""
+        if self.band is not None:
+            return self.band.scaled(factor, columns, diagonal)
+        if self.problem.sparse:
+            return sp.csc_array(self.problem.A @ sp.diags_array(factor * columns) + sp.diags_array(diagonal))
+        dense = self.problem.A * (factor * columns)
+        dense[np.diag_indices(self.n)] += diagonal
+        return dense
+
+    def normal(self, factor: float, weights: Array, diagonal: Array) -> Matrix:
+        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, symmetric of shape (n, n), stored as A is."""
+        if self.band is not None:
+            return self.band.normal(factor, weights, diagonal)
+        A = self.problem.A
+        if self.problem.sparse:
+            square = self.transpose @ (sp.diags_array(weights) @ A)
+            return sp.csc_array(factor * (self.symmetrized + square) + sp.diags_array(diagonal))
+        if (weights >= 0.0).all():
+            # One matrix times its own transpose: numpy hands that to dsyrk, half the work.
+            half = np.sqrt(weights)[:, None] * A
+            square = half.T @ half
+        else:
+            square = A.T @ (weights[:, None] * A)
+        square += self.symmetrized
+        square *= factor
+        square[np.diag_indices(self.n)] += diagonal
+        return square
+
+    def augmented(self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array) -> Matrix:
+        """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]`` times ``diag(columns)`` plus a diagonal.
+
+        Of order 2n, for a column scaling and a diagonal of length n on the first half; dense, or sparse as A is.
+        """
+        n = self.n
+        if self.problem.sparse:
+            scaling = sp.diags_array(columns)
+            top = (factor * self.symmetrized + shift * sp.eye_array(n)) @ scaling + sp.diags_array(diagonal)
+            bottom = sp.diags_array(z2) @ self.problem.A @ scaling
+            return sp.block_array([[top, -factor * self.transpose], [bottom, sp.diags_array(w)]], format="csc")
+        whole = np.empty((2 * n, 2 * n), order="F")
+        whole[:n, :n] = factor * self.symmetrized * columns
+        whole[:n, n:] = -factor * self.transpose
+        whole[n:, :n] = z2[:, None] * self.problem.A * columns
+        whole[n:, n:] = np.diag(w)
+        first = np.arange(n)
+        whole[first, first] += shift * columns + diagonal
+        return whole

@@ -1,0 +1,215 @@
+"""Proofs that an LCP has no feasible point, or no strictly feasible one: multipliers checked in integers.
+
+For y >= 0 with A'y <= 0, every x >= 0 with w = A x + q >= 0 gives 0 <= y'w = (A'y)'x + q'y <= q'y.
+So q'y < 0 proves that no x is feasible, hence that the LCP has no solution (Farkas). If q'y = 0 and y is not zero,
+then y'w = 0, so no x has x >= 0 and w > 0: F = {x > 0, A x + q > 0} is empty (Motzkin). Both conditions are also
+necessary, by the duality theorem.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from math import gcd, lcm
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from scipy.optimize import linprog
+
+from continuation.arrays import Array, Matrix
+from problems.lcp.data.problem import LCP
+from problems.lcp.proof.rational import IntegerRow, Integers, integer_rows, integers, solve_exactly
+
+_HIGHS_TOLERANCE = 1e-10
+"""The tightest feasibility tolerance that HiGHS accepts."""
+_CLEARLY_POSITIVE = 1e-6
+"""A scaled gap q'y above this is not worth an attempt at an exact proof."""
+_DENOMINATORS = (1, 12, 360, 10**4, 10**8)
+"""Largest denominators to which the multipliers are rounded, the simplest first."""
+_LONGEST_DENOMINATOR = 4096
+"""In bits; a common denominator longer than this is no simplification."""
+_TIGHT = (1e-12, 1e-9, 1e-7)
+"""A scaled condition this close to zero is tried as an equation."""
+_SUPPORT = 1e-9
+"""Scaled multipliers above this are taken as nonzero."""
+LARGEST_VERTEX = 300
+"""The largest order at which a multiplier is made exact by solving its tight equations in rationals."""
+
+
+@frozen(eq=False)
+class Farkas:
+    """A multiplier y >= 0, y != 0, with A'y <= 0 and q'y <= 0, exactly: checked in integers on the float data.
+
+    Attributes
+    ----------
+    y : tuple of n int
+        Without a common factor; any positive multiple proves the same.
+    gap : Fraction
+        q'y exactly: negative if no feasible point exists, zero if only no strictly feasible one.
+    """
+
+    y: tuple[int, ...]
+    gap: Fraction
+
+    @property
+    def no_feasible_point(self) -> bool:
+        """Whether {x >= 0, A x + q >= 0} is proved empty, so that the LCP has no solution."""
+        return self.gap < 0
+
+
+def farkas(problem: LCP) -> Farkas | None:
+    """An exact proof that {x >= 0, A x + q >= 0} is empty, or None.
+
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse, of any scaling.
+
+    Returns
+    -------
+    Farkas or None
+        None if feasible points exist, and also if no multiplier passed the exact check: never a claim unproved.
+
+    References
+    ----------
+    Farkas 1902; Cottle, Pang and Stone, Theorem 2.7.9.
+    """
+    return _multiplier(problem, strict=True)
+
+
+def empty_interior(problem: LCP) -> Farkas | None:
+    """An exact proof that F = {x > 0, A x + q > 0} is empty, or None.
+
+    Returns
+    -------
+    Farkas or None
+        Preferably one that proves that no feasible point exists at all (`no_feasible_point`).
+
+    References
+    ----------
+    Motzkin's transposition theorem; Cottle, Pang and Stone, Theorem 2.7.10.
+    """
+    return _multiplier(problem, strict=False)
+
+
+def scales(problem: LCP) -> tuple[Array, Array]:
+    """Powers of two r, c, shape (n,): the rows of [A, q] over r and then the columns of A over c have maximum 1."""
+    size: Matrix = abs(problem.A)
+    largest = np.asarray(size.max(axis=1).toarray()).ravel() if problem.sparse else size.max(axis=1)
+    rows = _power_of_two(np.maximum(largest, np.abs(problem.q)))
+    scaled = sp.diags_array(1.0 / rows) @ size if problem.sparse else size / rows[:, None]
+    largest = np.asarray(scaled.max(axis=0).toarray()).ravel() if problem.sparse else scaled.max(axis=0)
+    return rows, _power_of_two(largest)
+
+
+def scaled_data(problem: LCP, rows: Array, columns: Array) -> tuple[Matrix, Array]:
+    """A and q with rows over `rows` and columns over `columns`; exact, as both are powers of two."""
+    if problem.sparse:
+        return sp.diags_array(1.0 / rows) @ problem.A @ sp.diags_array(1.0 / columns), problem.q / rows
+    return problem.A / rows[:, None] / columns, problem.q / rows
+
+
+def _power_of_two(values: Array) -> Array:
+    exponents = np.clip(np.frexp(values)[1], -500, 500)
+    return np.where(values > 0.0, np.ldexp(1.0, exponents), 1.0)
+
+
+def _multiplier(problem: LCP, strict: bool) -> Farkas | None:
+    rows, columns = scales(problem)
+    matrix, vector = scaled_data(problem, rows, columns)
+    vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
+    guess = _linear_program(matrix, vector)
+    if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
+        return None
+    # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
+    conditions = _Conditions(
+        integer_rows(_transposed(problem.A), np.zeros(problem.n)), integer_rows(problem.q[None, :], np.zeros(1))[0]
+    )
+    for candidate in _candidates(conditions, matrix, guess, rows):
+        if conditions.hold(candidate, strict):
+            return _farkas(conditions, candidate)
+    return None
+
+
+def _transposed(matrix: Matrix) -> Matrix:
+    return sp.csr_array(matrix.T) if sp.issparse(matrix) else matrix.T
+
+
+def _linear_program(matrix: Matrix, vector: Array) -> Array | None:
+    """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if there is none, or HiGHS gave up."""
+    n = vector.size
+    total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
+    result = linprog(
+        vector, A_ub=_transposed(matrix), b_ub=np.zeros(n), A_eq=total, b_eq=[1.0], bounds=(0, None), method="highs",
+        options={"primal_feasibility_tolerance": _HIGHS_TOLERANCE, "dual_feasibility_tolerance": _HIGHS_TOLERANCE},
+    )
+    if result.status != 0:
+        return None
+    solution: Array = np.maximum(result.x, 0.0)
+    return solution
+
+
+@frozen
+class _Conditions:
+    """The conditions on a multiplier in integers: the rows (A'y)_j and the row q'y."""
+
+    columns: list[IntegerRow]
+    gap: IntegerRow
+
+    def hold(self, y: list[int], strict: bool) -> bool:
+        """Whether y >= 0, y != 0, A'y <= 0 and q'y <= 0, or < 0 if strict, hold exactly."""
+        if min(y) < 0 or not any(y):
+            return False
+        gap = self.gap.times(y, 1)
+        if gap > 0 or (strict and gap == 0):
+            return False
+        return all(column.times(y, 1) <= 0 for column in self.columns)
+
+
+def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array) -> Iterator[list[int]]:
+    """Integer multipliers near the scaled guess: small denominators, its own floats, the vertex it approximates."""
+    weights = integers(rows.max() / rows)[0]  # y of the data as given is the scaled one over the row scales
+    largest = float(guess.max())
+    for denominator in _DENOMINATORS:
+        simple = [Fraction(value / largest).limit_denominator(denominator) for value in guess.tolist()]
+        common = lcm(*(value.denominator for value in simple))
+        if common.bit_length() <= _LONGEST_DENOMINATOR:
+            yield [int(value * common) * weight for value, weight in zip(simple, weights)]
+    yield [value * weight for value, weight in zip(integers(guess)[0], weights)]
+    slack = np.asarray(matrix.T @ guess).ravel()
+    for tolerance in _TIGHT:
+        tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -tolerance)]
+        for equations in (tight, [*tight, conditions.gap]):
+            found = _vertex(equations, guess, rows)
+            if found is not None:
+                yield found
+
+
+def _vertex(equations: list[IntegerRow], guess: Array, rows: Array) -> list[int] | None:
+    """The exact y with the support of the guess, on which the equations vanish; normalised by its scaled sum."""
+    support = np.flatnonzero(guess > _SUPPORT)
+    if support.size > LARGEST_VERTEX or len(equations) > 4 * LARGEST_VERTEX:
+        return None
+    system: Integers = np.zeros((len(equations) + 1, support.size), dtype=object)
+    place = np.full(guess.size, -1)
+    place[support] = np.arange(support.size)
+    for i, equation in enumerate(equations):
+        for column, value in zip(place[equation.columns], equation.values):
+            if column >= 0:
+                system[i, column] = value
+    system[-1], shift = integers(rows[support])
+    found = solve_exactly(system, [0] * len(equations) + [1 << shift], guess[support] / rows[support])
+    if found is None:
+        return None
+    y = [0] * guess.size
+    for j, numerator in zip(support, found[0]):
+        y[j] = numerator
+    return y
+
+
+def _farkas(conditions: _Conditions, y: list[int]) -> Farkas:
+    """The multiplier without a common factor, and its exact gap."""
+    common = gcd(*y)
+    y = [value // common for value in y]
+    return Farkas(tuple(y), Fraction(conditions.gap.times(y, 1), 1 << conditions.gap.shift))

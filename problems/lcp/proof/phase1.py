@@ -1,0 +1,118 @@
+"""Phase I: a strictly feasible start x0 > 0, A x0 + q > 0 by a linear program, or a proof that there is none."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.optimize import linprog
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import LCP
+from problems.lcp.proof.compensated import accurate_w
+from problems.lcp.proof.farkas import Farkas, empty_interior, scaled_data, scales
+
+
+class NoStrictlyFeasiblePoint(ValueError):
+    """No x0 with x0 > 0 and A x0 + q > 0 was found.
+
+    Attributes
+    ----------
+    certificate : Farkas or None
+        The exact proof that none exists; None if the linear program says so only in floating point.
+    margin : float
+        The largest scaled margin t that the linear program found; at most about 0.
+    """
+
+    def __init__(self, message: str, certificate: Farkas | None, margin: float) -> None:
+        super().__init__(message)
+        self.certificate = certificate
+        self.margin = margin
+
+
+def strictly_feasible_start(problem: LCP) -> Array:
+    """A point of F = {x > 0, A x + q > 0}, of the largest scaled margin up to 1.
+
+    Rows of [A, q] and columns of A are scaled by powers of two. HiGHS first looks for the least x of margin 1, and
+    if there is none maximises t <= 1 subject to x >= t and A x + q >= t in scaled units; that program has a dense
+    column and is much slower on large sparse A. Positivity is verified with a rigorous error bound.
+
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse.
+
+    Returns
+    -------
+    x0 : Array of shape (n,)
+
+    Raises
+    ------
+    NoStrictlyFeasiblePoint
+        If F is empty, with the exact certificate, or if no point could be verified; the message says which.
+
+    References
+    ----------
+    Dutta, Das and Jana, "Bounded Homotopy Path Approach", which needs such a start and does not say how to find it.
+    """
+    margin = float("nan")
+    for program in (_unit_margin, _largest_margin):
+        x0, margin = program(problem)
+        if x0 is not None and is_strictly_feasible(problem, x0):
+            return x0
+    certificate = empty_interior(problem)
+    if certificate is None:
+        message = (
+            "A, q: expected a point with x > 0 and A x + q > 0; the linear program reached only the scaled margin "
+            f"{margin:.1e}. This is numerical: no exact proof that there is none was found. "
+            "A start need not be feasible."
+        )
+    elif certificate.no_feasible_point:
+        message = (
+            "A, q: expected a point with x > 0 and A x + q > 0; proved exactly that not even x >= 0 and A x + q >= 0 "
+            "holds anywhere, so the LCP has no solution."
+        )
+    else:
+        message = (
+            "A, q: expected a point with x > 0 and A x + q > 0; proved exactly that there is none. "
+            "The LCP may still have solutions, and a start need not be feasible."
+        )
+    raise NoStrictlyFeasiblePoint(message, certificate, margin)
+
+
+def is_strictly_feasible(problem: LCP, x: Array) -> bool:
+    """Whether x > 0 and A x + q > 0 beyond doubt: each w_i exceeds a bound on its own rounding error."""
+    if not (np.isfinite(x).all() and (x > 0).all()):
+        return False
+    w, bound = accurate_w(problem, x)
+    return bool((np.isfinite(w) & (w > bound)).all())
+
+
+def _unit_margin(problem: LCP) -> tuple[Array | None, float]:
+    """The x of least scaled sum with scaled margin 1, and 1; (None, nan) if there is none."""
+    rows, columns = scales(problem)
+    matrix, vector = scaled_data(problem, rows, columns)
+    result = linprog(np.ones(problem.n), A_ub=-matrix, b_ub=vector - 1.0, bounds=(1.0, None), method="highs")
+    if result.status != 0:
+        return None, float("nan")
+    start: Array = result.x / columns
+    return start, 1.0
+
+
+def _largest_margin(problem: LCP) -> tuple[Array | None, float]:
+    """The x of the linear program max t <= 1 in scaled units, and t; (None, nan) if HiGHS gave up."""
+    rows, columns = scales(problem)
+    matrix, vector = scaled_data(problem, rows, columns)
+    n = problem.n
+    ones = np.ones((n, 1))
+    # Unknowns (u, t) with x = u / columns: -u + t <= 0 and -(A x + q) + t <= 0.
+    if problem.sparse:
+        left = sp.block_array([[-sp.eye_array(n), ones], [-matrix, ones]], format="csr")
+    else:
+        left = np.block([[-np.eye(n), ones], [-matrix, ones]])
+    objective = np.append(np.zeros(n), -1.0)
+    bounds = [(None, None)] * n + [(None, 1.0)]
+    result = linprog(objective, A_ub=left, b_ub=np.concatenate([np.zeros(n), vector]), bounds=bounds, method="highs")
+    if result.status != 0:
+        return None, float("nan")
+    start: Array = result.x[:-1] / columns
+    return start, float(result.x[-1])

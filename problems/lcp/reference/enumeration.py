@@ -1,0 +1,117 @@
+"""Every solution of a small problem, by trying all 2^n complementary faces in exact arithmetic."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+
+from continuation.arrays import Array
+from problems.lcp.classes.exact import Indices, indices, over_common_denominator
+from problems.lcp.classes.faces import FacePoint, face_point
+from problems.lcp.data.problem import LCP
+
+LARGEST = 14
+"""Largest order: 2^14 faces."""
+
+
+@frozen
+class ExactSolution:
+    """One solution, in rational numbers.
+
+    Parameters
+    ----------
+    x, w : tuple of Fraction, length n
+        In the problem's own units: x >= 0, w = A x + q >= 0, x_i w_i = 0, all exactly.
+    faces : tuple of index sets
+        The faces {x_i = 0 off the set, w_i = 0 on it} that contain it.
+    isolated : bool
+        Whether none of these faces holds another solution; one that does holds a continuum.
+    """
+
+    x: tuple[Fraction, ...]
+    w: tuple[Fraction, ...]
+    faces: tuple[Indices, ...]
+    isolated: bool
+
+    @property
+    def point(self) -> Array:
+        """X in floats, each correctly rounded, shape (n,)."""
+        return np.array([float(v) for v in self.x])
+
+    @property
+    def strictly_complementary(self) -> bool:
+        """Whether x_i + w_i > 0 for every i."""
+        return all(a + b > 0 for a, b in zip(self.x, self.w, strict=True))
+
+
+@frozen
+class Enumeration:
+    """All that the faces hold; `solvable` is a proof either way.
+
+    Parameters
+    ----------
+    solutions : tuple of ExactSolution
+        Distinct, in the order of their first face. Every isolated solution is here; each face that holds a continuum is
+        represented by at least one of its points.
+    """
+
+    solutions: tuple[ExactSolution, ...]
+
+    @property
+    def solvable(self) -> bool:
+        """Whether the problem has a solution."""
+        return bool(self.solutions)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the solutions listed are all there are, so that their number is the number of solutions."""
+        return all(solution.isolated for solution in self.solutions)
+
+    @property
+    def points(self) -> Array:
+        """The solutions x in floats, shape (number, n)."""
+        return np.array([solution.point for solution in self.solutions])
+
+
+def solve_by_enumeration(problem: LCP) -> Enumeration:
+    """All solutions of LCP(q, A), by brute force over the 2^n faces; floats are taken as the rationals that they are.
+
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse, n at most `LARGEST`.
+
+    Raises
+    ------
+    ValueError
+        If n is larger.
+
+    Notes
+    -----
+    Where the principal submatrix of a face is singular, the face is a linear feasibility problem, solved exactly by the
+    simplex method. There is no tolerance anywhere, and no shortcut in floats.
+    """
+    n = problem.n
+    if n > LARGEST:
+        raise ValueError(f"problem: expected n <= {LARGEST} for 2^n faces, found n = {n}")
+    dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
+    values = [Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())]
+    flat, scale = over_common_denominator(values)
+    entries, q = [flat[i * n : (i + 1) * n] for i in range(n)], flat[n * n :]
+    on_face = {mask: face_point(entries, q, indices(mask)) for mask in range(1 << n)}
+    wide = [mask for mask, point in on_face.items() if point is not None and not point.only]
+    distinct = {point.x: point for point in on_face.values() if point is not None}
+    return Enumeration(tuple(_solution(point, scale, wide) for point in distinct.values()))
+
+
+def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:
+    """The point in the units of the problem, with the faces that contain it (`wide`: those with more solutions)."""
+    support = sum(1 << i for i, v in enumerate(point.x) if v)
+    outside = sum(1 << i for i, v in enumerate(point.w) if v)
+    faces = [mask for mask in range(1 << len(point.x)) if mask & support == support and not mask & outside]
+    isolated = not any(mask in wide for mask in faces)
+    w = tuple(v / scale for v in point.w)
+    return ExactSolution(point.x, w, tuple(indices(mask) for mask in faces), isolated)

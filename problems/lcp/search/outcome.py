@@ -1,0 +1,109 @@
+"""What `solve` returns: an outcome that may be believed, the point, its certificate, and every path that was traced."""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.counts import Counts
+from continuation.path import Path, Step
+from continuation.status import Kind, Status
+from problems.lcp.data.problem import LCP
+from problems.lcp.proof.certificate import Certificate
+from problems.lcp.proof.farkas import Farkas
+
+
+class Outcome(IntEnum):
+    """What became of the problem; ``str()`` of each is a sentence."""
+
+    SOLVED = 0
+    STATIONARY = 1
+    UNSOLVABLE = 2
+    NOT_FOUND = 3
+
+    def __str__(self) -> str:
+        return _SENTENCES[self]
+
+
+_SENTENCES = {
+    Outcome.SOLVED: "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, verified in twice the working precision.",
+    Outcome.STATIONARY: "A stationary point of min x'w over x >= 0, w >= 0 was found, and it does not solve the LCP; "
+    "other solutions may exist.",
+    Outcome.UNSOLVABLE: "The LCP has no solution: a Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
+    Outcome.NOT_FOUND: "No solution was found, and none is excluded.",
+}
+
+
+@frozen(eq=False)
+class Solution:
+    """The answer to one LCP.
+
+    Attributes
+    ----------
+    problem : LCP
+    outcome : Outcome
+    message : str
+        What was done, in what order and why, and what the outcome means.
+    certificate : Certificate or None
+        Of the point `x`, whatever the outcome; None where there is no point at all.
+    paths : tuple of Path
+        Every path traced, in order. Of many or long ones only the ends are kept; an archive holds them whole.
+    best : int
+        Index of the path that led to `x`; -1 where none did.
+    counts : Counts
+        Of all paths and finishes together.
+    seconds : float
+        Wall-clock time.
+    farkas : Farkas or None
+        The proof of UNSOLVABLE.
+    """
+
+    problem: LCP
+    outcome: Outcome
+    message: str
+    certificate: Certificate | None
+    paths: tuple[Path, ...]
+    best: int
+    counts: Counts
+    seconds: float
+    farkas: Farkas | None = None
+
+    @property
+    def solved(self) -> bool:
+        """Whether the outcome is SOLVED."""
+        return self.outcome is Outcome.SOLVED
+
+    @property
+    def x(self) -> Array | None:
+        """The solution where there is one, else the best point found, shape (n,)."""
+        return None if self.certificate is None else self.certificate.x
+
+    @property
+    def w(self) -> Array | None:
+        """A x + q, shape (n,)."""
+        return None if self.certificate is None else self.certificate.w
+
+    @property
+    def residual(self) -> float:
+        """The natural residual max_i |min(x_i, w_i)|; infinite without a point."""
+        return math.inf if self.certificate is None else self.certificate.residual
+
+    @property
+    def relative_residual(self) -> float:
+        """The residual over 1 + max(|q|_inf, |A|_inf |x|_inf)."""
+        return math.inf if self.certificate is None else self.certificate.relative_residual
+
+    @property
+    def path(self) -> Path:
+        """The path that led to x, else the last one; where none was traced, the point x alone."""
+        if self.paths:
+            return self.paths[self.best]
+        x = self.x if self.x is not None else np.zeros(self.problem.n)
+        u = np.append(x, 0.0)
+        status = Status.REACHED_TARGET if self.solved else Status.INTERRUPTED
+        alone = Step(0, u, np.zeros_like(u), 0.0, kind=Kind.TARGET)
+        return Path([alone], status=status, message="No path was traced.")

@@ -1,0 +1,44 @@
+"""Paths of different numbers of unknowns in one archive: the shorter ones are filled up with NaN."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation.arrays import Array
+from continuation.path import LocatedEvent, Step
+from continuation.step.tracer import Observer, Tracer
+
+
+@frozen(eq=False)
+class Padded:
+    """An observer that shows another one paths with more unknowns, NaN, since an archive holds one number of them.
+
+    Attributes
+    ----------
+    observer : Observer
+    unknowns : int
+        As many as the longest path has.
+    """
+
+    observer: Observer
+    unknowns: int
+
+    def step(self, tracer: Tracer, step: Step) -> None:
+        """The step, filled up."""
+        self.observer.step(tracer, evolve(step, u=self._filled(step.u), tangent=self._filled(step.tangent)))
+
+    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
+        """The event, filled up."""
+        self.observer.event(tracer, evolve(event, u=self._filled(event.u), tangent=self._filled(event.tangent)))
+
+    def end(self, tracer: Tracer) -> None:
+        """The end, as it is."""
+        self.observer.end(tracer)
+
+    def _filled(self, u: Array) -> Array:
+        if u.size - 1 == self.unknowns:
+            return u
+        filled = np.full(self.unknowns + 1, np.nan)
+        filled[: u.size - 1], filled[-1] = u[:-1], u[-1]
+        return filled

@@ -1,0 +1,179 @@
+"""What the engine and the LCP solver do today, written down: status, events, ends and counts of about 300 runs.
+
+    python tests/behaviour/record.py            compare with the record beside this file; exit 1 if anything differs
+    python tests/behaviour/record.py --counts   the same, with the counts that depend on the last bits of the BLAS too
+    python tests/behaviour/record.py --write    write the record anew, and say in the commit why it changed
+
+Statuses, events and ends must agree to 1e-10 on every machine. Counts must agree exactly, but for runs whose counts
+depend on the last bits of the BLAS at hand: `--write` measures which those are, by other kernels of OpenBLAS.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path as File
+from typing import Any
+
+import numpy as np
+
+import continuation
+from problems import lcp
+from problems.bifurcation import (
+    Aircraft,
+    Bratu1D,
+    Bratu2D,
+    Circle,
+    Cusp,
+    ExponentialCosine,
+    FreudensteinRoth,
+    Pitchfork,
+)
+from problems.nonlinear import brown, fixed_point
+from problems.paper import EXAMPLES
+
+RECORD = File(__file__).with_name("record.json")
+PRESETS = (continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE, continuation.SERIES)
+KERNELS = ("Prescott", "Sandybridge", "Haswell", "SkylakeX")
+"""Kernels of OpenBLAS that sum in different orders; one that the processor lacks is replaced by OpenBLAS itself."""
+
+SIGNIFICANT = 1e-10
+PROBLEMS = 200
+
+
+def paths() -> dict[str, tuple[Callable[[], Any], dict[str, Any]]]:
+    """The acceptance problems and the ten examples, each with the options of its trace."""
+    Turn, Stop = continuation.TurningPoint, continuation.TargetValue
+    F = brown(10)
+    found: dict[str, tuple[Callable[[], Any], dict[str, Any]]] = {
+        "circle": (Circle, {}),
+        "cusp": (Cusp, {}),
+        "pitchfork": (Pitchfork, {}),
+        "freudenstein-roth": (FreudensteinRoth, {}),
+        "bratu-1d": (lambda: Bratu1D(100), {"events": [Turn(), Stop(1.0, terminal=2)]}),
+        "bratu-2d": (lambda: Bratu2D(12), {"events": [Turn(), Stop(2.0, terminal=2)]}),
+        "aircraft": (lambda: Aircraft(-0.008), {"events": [Turn(terminal=3)], "direction": -1}),
+        "brown": (lambda: fixed_point(F, np.zeros(10), F.jacobian), {}),
+    }
+    for n in range(2, 7):
+        found[f"exponential-cosine-{n}"] = (lambda n=n: ExponentialCosine(n), {})
+    for example in EXAMPLES:
+        found[f"example-{example.number}"] = (
+            lambda e=example: lcp.KKTHomotopy(e.problem, e.x0, e.z1, e.z2),
+            {},
+        )
+    return found
+
+
+def traced(name: str, preset: continuation.Preset) -> dict[str, Any]:
+    """One path, in numbers."""
+    make, options = paths()[name]
+    path = continuation.trace(make(), preset=preset, **options)
+    return {
+        "status": path.status.name,
+        "end": path.endpoint.u.tolist()[-4:],
+        "events": [[e.name, e.arclength, *e.u.tolist()[-4:]] for e in path.events],
+        "counts": path.counts.as_dict(),
+    }
+
+
+def problem(k: int) -> lcp.LCP:
+    """The k-th generated LCP: five kinds, n = 2 .. 12, integer data, two thirds with a planted solution."""
+    r = np.random.default_rng([14, k])
+    n = int(r.integers(2, 13))
+    A = r.integers(-9, 10, (n, n)).astype(float)
+    kind = k % 5
+    if kind == 1:
+        A = A @ A.T
+    elif kind == 2:
+        A = np.triu(A, 1) - np.triu(A, 1).T + np.diag(r.integers(0, 3, n))
+    elif kind == 3:
+        A = np.diag(r.integers(1, 40, n)) - np.abs(A) * (1 - np.eye(n))
+    elif kind == 4:
+        A = np.abs(A)
+    q = r.integers(-9, 10, n).astype(float)
+    if k % 3:
+        x = np.where(r.random(n) < 0.5, r.integers(0, 5, n), 0)
+        q = np.where(x > 0, 0, r.integers(0, 5, n)) - A @ x
+    return lcp.LCP(A, q)
+
+
+def solved(k: int) -> dict[str, Any]:
+    """The answer to the k-th LCP, in numbers; a budget of work, so that no clock decides."""
+    solution = lcp.solve(problem(k), restarts=3, budget=continuation.Budget(steps=2000))
+    return {
+        "status": solution.outcome.name,
+        "end": [] if solution.x is None else solution.x.tolist(),
+        "events": [],
+        "counts": solution.counts.as_dict(),
+    }
+
+
+def runs() -> Iterator[tuple[str, Callable[[], dict[str, Any]]]]:
+    """Every run by name."""
+    for name in paths():
+        for preset in PRESETS:
+            yield f"{name} {preset.name}", lambda name=name, preset=preset: traced(name, preset)
+    for k in range(PROBLEMS):
+        yield f"lcp {k}", lambda k=k: solved(k)
+
+
+def same_numbers(found: list[Any], expected: list[Any]) -> bool:
+    """Whether names are equal, and numbers to 1e-10 of the largest beside them."""
+    if len(found) != len(expected):
+        return False
+    numbers = [value for value in expected if isinstance(value, float)]
+    scale = SIGNIFICANT * max([1.0, *map(abs, numbers)])
+    return all(abs(a - b) <= scale if isinstance(b, float) else a == b for a, b in zip(found, expected, strict=True))
+
+
+def differences(name: str, found: dict[str, Any], expected: dict[str, Any], every_count: bool) -> list[str]:
+    """What of a run is not as recorded; `every_count` asks for those, too, that the last bits decide."""
+    said = []
+    if found["status"] != expected["status"]:
+        said.append(f"{name}: status {found['status']}, recorded {expected['status']}")
+    if not same_numbers(found["end"], expected["end"]):
+        said.append(f"{name}: end {found['end']}, recorded {expected['end']}")
+    events = found["events"], expected["events"]
+    if len(events[0]) != len(events[1]) or not all(map(same_numbers, *events)):
+        said.append(f"{name}: events {found['events']}, recorded {expected['events']}")
+    if (every_count or expected["exact"]) and found["counts"] != expected["counts"]:
+        said.append(f"{name}: counts {found['counts']}, recorded {expected['counts']}")
+    return said
+
+
+def compare(names: set[str] | None = None, every_count: bool = False) -> list[str]:
+    """All differences from the record, of the runs named or of all."""
+    record = json.loads(RECORD.read_text())
+    chosen = [(name, run) for name, run in runs() if names is None or name in names]
+    return [line for name, run in chosen for line in differences(name, run(), record[name], every_count)]
+
+
+def written() -> dict[str, Any]:
+    """The record: this process's runs, and which of them have the same counts under every kernel."""
+    others = []
+    for kernel in KERNELS:
+        environment = {**os.environ, "OPENBLAS_CORETYPE": kernel}
+        process = subprocess.run(
+            [sys.executable, __file__, "--print"], env=environment, capture_output=True, check=True
+        )
+        others.append(json.loads(process.stdout))
+    record = {name: run() for name, run in runs()}
+    for name, entry in record.items():
+        entry["exact"] = all(other[name]["counts"] == entry["counts"] for other in others)
+    return record
+
+
+if __name__ == "__main__":
+    if "--print" in sys.argv:
+        print(json.dumps({name: run() for name, run in runs()}))
+    elif "--write" in sys.argv:
+        lines = [f"{json.dumps(name)}: {json.dumps(entry)}" for name, entry in written().items()]
+        RECORD.write_text("{\n" + ",\n".join(lines) + "\n}\n")
+    else:
+        lines = compare(every_count="--counts" in sys.argv)
+        print("\n".join(lines) or "as recorded")
+        sys.exit(bool(lines))

@@ -1,0 +1,25 @@
+"""The engine and the solver do what they did: see `record.py`, which wrote down status, events, ends and counts."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+spec = importlib.util.spec_from_file_location("behaviour_record", Path(__file__).with_name("record.py"))
+record = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(record)
+
+
+@pytest.mark.parametrize("preset", record.PRESETS, ids=lambda preset: preset.name)
+def test_paths_are_as_recorded(preset):
+    assert record.compare({f"{name} {preset.name}" for name in record.paths()}) == []
+
+
+def test_answers_are_as_recorded():
+    assert record.compare({f"lcp {k}" for k in range(record.PROBLEMS)}) == []
+
+
+def test_a_difference_is_noticed():
+    expected = {"status": "SOLVED", "end": [1.0], "events": [["fold", 0.5]], "counts": {"solves": 3}, "exact": True}
+    wrong = {"status": "CLOSED", "end": [1.0 + 1e-9], "events": [], "counts": {"solves": 4}}
+    assert len(record.differences("x", wrong, expected, every_count=False)) == 4

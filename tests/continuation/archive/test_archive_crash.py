@@ -1,0 +1,209 @@
+"""kill -9 at any moment: what was committed is there, and is exactly the path."""
+
+import multiprocessing
+import os
+import random
+import signal
+import time
+
+import numpy as np
+import pytest
+
+from continuation import Status, Tracer, trace
+from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
+from continuation.archive.store import Store
+from continuation.controllers import Bounds, Fixed
+from problems.bifurcation import ExponentialCosine, FreudensteinRoth
+
+HOMOTOPY = ExponentialCosine(4)
+OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.02))}
+
+
+class Slow:
+    """An observer that lets a path of 300 steps last longer than any kill below waits, however fast the machine."""
+
+    def step(self, tracer, step):
+        time.sleep(0.002)
+
+    def event(self, tracer, event):
+        pass
+
+    def end(self, tracer):
+        pass
+
+
+def write(file, rows):
+    trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), observers=(Slow(),), **OPTIONS)
+
+
+@pytest.fixture(scope="module")
+def uninterrupted():
+    return trace(HOMOTOPY, **OPTIONS)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_kill_at_a_random_moment(tmp_path, uninterrupted, seed):
+    """Commits every few rows, so that most kills fall into one."""
+    generator, file = random.Random(seed), tmp_path / "run.h5"
+    process = multiprocessing.get_context("fork").Process(target=write, args=(file, generator.choice([1, 3, 20])))
+    process.start()
+    deadline = time.monotonic() + 60.0
+    while not file.exists() or file.stat().st_size < 100_000:
+        assert process.is_alive()
+        assert time.monotonic() < deadline, "the writer has written nothing in a minute"
+        time.sleep(0.002)
+    time.sleep(generator.uniform(0.0, 0.15))
+    os.kill(process.pid, signal.SIGKILL)
+    process.join()
+    assert process.exitcode == -signal.SIGKILL
+    with open_archive(file) as archive:
+        assert not archive.closed_by_writer
+        before = archive.points.size
+    assert recover(file) == file
+    with open_archive(file) as archive:
+        assert archive.closed_by_writer
+        assert archive.points.size == before
+        if before:
+            path = archive.path(0)
+            assert path.status is Status.INTERRUPTED
+            for name in ("u", "arclength"):
+                assert np.array_equal(getattr(path, name), getattr(uninterrupted, name)[: len(path)])
+            known = [event.lam for event in path.events]
+            assert known == [event.lam for event in uninterrupted.events][: len(known)]
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.h5"]
+    if before:
+        found = resume(file)
+        assert np.array_equal(found.u, uninterrupted.u)
+        assert found.counts == uninterrupted.counts
+        assert found.status is uninterrupted.status
+
+
+class Death(BaseException):
+    """As far as the file is concerned, the writer is gone."""
+
+
+def dying(monkeypatch, flushes):
+    """Let the writer die after so many flushes, in the first or the second phase of a commit."""
+    left = [flushes]
+
+    def flush(self):
+        if not left[0]:
+            raise Death
+        left[0] -= 1
+        self._h5.flush()
+
+    monkeypatch.setattr(Store, "_flush", flush)
+
+
+def leave(log, steps=None):
+    """Give the file up as it is, without a commit."""
+    log._store.close()
+    log._closed = True
+    log.end = lambda tracer: None
+    if steps is not None:
+        steps.close()
+
+
+@pytest.mark.parametrize("flushes", range(2, 15))
+def test_death_between_the_phases(tmp_path, monkeypatch, flushes):
+    """Whichever phase of whichever commit is the last: rows, checkpoint and counters agree."""
+    path = trace(FreudensteinRoth())
+    with monkeypatch.context() as patch:
+        dying(patch, flushes)
+        log = PathLog(tmp_path / "run.h5", limits=Limits(rows=3))
+        with pytest.raises(Death):
+            for _ in Tracer(FreudensteinRoth(), observers=(log,)):
+                pass
+    leave(log)
+    with open_archive(tmp_path / "run.h5") as archive:
+        # Two flushes make the file; of each later commit the first one is what counts, since the counters follow it.
+        commits = (flushes - 1) // 2
+        assert 3 * commits <= archive.points.size <= 5 * commits
+        if len(archive):
+            found = archive.path(0)
+            assert np.array_equal(found.u, path.u[: len(found)])
+            checkpoint = archive.checkpoint()
+            assert checkpoint.rows <= archive.points.size
+            assert np.array_equal(checkpoint.state.here.u, path.u[checkpoint.state.index])
+    if flushes > 2:
+        assert np.array_equal(resume(tmp_path / "run.h5").u, path.u)
+
+
+def test_a_torn_checkpoint_gives_way_to_the_one_before(tmp_path):
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=4))
+    steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
+    assert any(step.index == 13 for step in steps)
+    slots = log._store._slots
+    with open_archive(tmp_path / "run.h5") as archive:
+        latest = archive.checkpoint()
+    slots[latest.sequence % 2, 60] ^= 1
+    leave(log, steps)
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert archive.checkpoint().sequence == latest.sequence - 1
+    assert np.array_equal(resume(tmp_path / "run.h5").u, trace(FreudensteinRoth()).u)
+
+
+def test_a_file_that_was_closed_stays_as_it_is(tmp_path):
+    trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
+    before = (tmp_path / "run.h5").read_bytes()
+    recover(tmp_path / "run.h5")
+    assert (tmp_path / "run.h5").read_bytes() == before
+
+
+def test_a_live_writer_is_left_alone(tmp_path):
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=2))
+    steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
+    for _ in range(5):
+        next(steps)
+    for forbidden in (recover, resume):
+        with pytest.raises(ArchiveError, match=f"process {os.getpid()}, which writes it, seems to be alive"):
+            forbidden(tmp_path / "run.h5")
+    steps.close()
+    assert len(resume(tmp_path / "run.h5")) == len(trace(FreudensteinRoth()))
+
+
+def test_recovery_by_force_keeps_what_was_committed(tmp_path):
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=2))
+    steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
+    for _ in range(5):
+        next(steps)
+    recover(tmp_path / "run.h5", force=True)
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive.path(0)) == 4
+        assert archive.path(0).message.endswith("Its writer was killed.")
+        assert "recovered" in archive.attributes["history"]
+    steps.close()
+
+
+def test_keyboard_interrupt_within_a_commit_repeats_it(tmp_path, monkeypatch):
+    """Ctrl-C between the phases: the commit at the end of the path writes the same rows again, once."""
+    path, flush, calls = trace(FreudensteinRoth()), Store._flush, []
+
+    def interrupted(self):
+        flush(self)
+        calls.append(1)
+        if len(calls) == 6:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Store, "_flush", interrupted)
+    found = trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=4)))
+    assert found.status is Status.INTERRUPTED
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert np.array_equal(archive.path(0).u, found.u)
+    assert np.array_equal(resume(tmp_path / "run.h5").u, path.u)
+
+
+def test_a_full_disk_is_one_clear_line(tmp_path, monkeypatch):
+    put = Store._put
+
+    def full(dataset, start, values):
+        if start >= 6:
+            raise OSError("Can't write data (file write failed: errno = 28, 'No space left on device')\nmore")
+        put(dataset, start, values)
+
+    monkeypatch.setattr(Store, "_put", staticmethod(full))
+    with pytest.raises(ArchiveError, match=r"run.h5: could not be written \(.*No space left.*; what was committed is"):
+        trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=6)))
+    monkeypatch.undo()
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert archive.points.size == 6

@@ -1,0 +1,260 @@
+"""What goes in comes out: through our own reader, and through xarray with either engine."""
+
+import attrs
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+import continuation
+from continuation import Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
+from continuation.archive import Limits, PathLog, open_archive
+from continuation.archive.schema import SCHEMA
+from continuation.counts import Counts
+from continuation.path import LocatedEvent, Step
+from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth, Pitchfork
+
+EVENTS = (TargetValue(0.25, terminal=0), TargetValue(20.0, component=0, terminal=0))
+CASES = {
+    "folds": (FreudensteinRoth(), {}),
+    "own events": (FreudensteinRoth(), {"events": EVENTS}),
+    "terminal event": (FreudensteinRoth(), {"events": [TargetValue(-0.5)]}),
+    "two events on the end": (FreudensteinRoth(), {"events": [TargetValue(1.0, terminal=0)] * 2}),
+    "closed": (Circle(), {}),
+    "observed": (Bratu1D(12), {"budget": Budget(steps=9)}),
+    "branch point": (Pitchfork(), {}),
+}
+
+
+def same(a, b):
+    """Equality in which NaN equals NaN."""
+    return np.array_equal(a, b, equal_nan=True) if isinstance(a, (float, np.ndarray)) else a == b
+
+
+class Corner:
+    """Walks to an event that falls on an accepted point exactly, and goes on."""
+
+    target = None
+
+    def start(self):
+        return np.zeros(1), 0.0
+
+    def residual(self, y, lam):
+        return y - lam
+
+
+def test_an_event_on_an_accepted_point(tmp_path):
+    log = PathLog(tmp_path / "run.h5")
+    tracer = Tracer(Corner(), observers=(log,), budget=Budget(steps=4))
+    steps = iter(tracer)
+    step = [next(steps) for _ in range(3)][-1]
+    events = [
+        LocatedEvent(name, Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index + 1)
+        for name in ("one", "two")
+    ]
+    tracer.path.events.extend(events)
+    log.step(tracer, attrs.evolve(step, index=step.index + 1))
+    steps.close()
+    with open_archive(tmp_path / "run.h5") as archive:
+        found = archive.path(0)
+        assert [(event.name, event.step) for event in found.events] == [("one", 3), ("two", 3)]
+        assert [step.kind for step in found.steps] == [Kind.START, 0, 0, 0]
+
+
+def differences(found, expected, kind, without):
+    names = [a.name for a in attrs.fields(kind) if a.name not in without]
+    return [
+        (i, name)
+        for i, (a, b) in enumerate(zip(found, expected, strict=True))
+        for name in names
+        if not same(getattr(a, name), getattr(b, name))
+    ]
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("tangents", [False, True])
+def test_a_path_comes_back_as_it_was(tmp_path, case, tangents):
+    homotopy, options = CASES[case]
+    path = trace(homotopy, archive=PathLog(tmp_path / "run.h5", tangents=tangents), **options)
+    with open_archive(tmp_path / "run.h5") as archive:
+        found = archive.path(0)
+        assert archive.closed_by_writer
+    unstored = {"segment", "weights"} if tangents else {"segment", "weights", "tangent"}
+    assert not differences(found.steps, path.steps, Step, unstored)
+    assert not differences(found.events, path.events, LocatedEvent, unstored)
+    assert (found.status, found.message, found.counts) == (path.status, path.message, path.counts)
+    assert found.seconds == path.seconds
+    assert path.events or case == "observed"
+    assert all(set(step.observed) == ({"max_u"} if case == "observed" else set()) for step in found.steps)
+
+
+def test_dense_output_of_an_archive_with_tangents(tmp_path):
+    path = trace(Circle(), archive=PathLog(tmp_path / "run.h5", tangents=True))
+    with open_archive(tmp_path / "run.h5") as archive:
+        found = archive.path(0)
+    s = np.linspace(0, path.arclength[-1], 200)
+    assert np.abs(np.hypot(*found(s).T) - 1).max() < 1e-3
+    assert np.abs(found(path.arclength) - path.u).max() < 1e-12
+
+
+@pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
+def test_xarray_opens_the_file_without_us(tmp_path, engine):
+    path = trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
+    with xarray.open_dataset(tmp_path / "run.h5", engine=engine) as data:
+        data.load()
+    assert dict(data.sizes) == {
+        "point": len(path) + len(path.turning_points), "path": 1, "component": 2, "controller": 4, "event": 2,
+    }
+    assert set(data.coords) == {"path", "component"}
+    assert data.y.dims == ("point", "component")
+    assert data.attrs["schema"] == SCHEMA
+    assert data.path_index.attrs["instance_dimension"] == "path"
+    assert data.path.attrs["cf_role"] == "trajectory_id"
+    accepted = data.where(data.role == 0, drop=True)
+    assert np.array_equal(accepted.y, path.y)
+    assert np.array_equal(accepted.parameter, path.lam)
+    for variable in data.variables.values():
+        assert variable.attrs["units"]
+        assert variable.attrs["long_name"]
+    flags = dict(zip(data.status.attrs["flag_meanings"].split(), data.status.attrs["flag_values"]))
+    assert flags == {status.flag: int(status) for status in Status}
+    assert data.status.dtype == np.int8
+    kinds = dict(zip(data.kind.attrs["flag_meanings"].split(), np.atleast_1d(data.kind.attrs["flag_values"])))
+    turning = data.parameter[data.kind == kinds["turning_point"]]
+    assert np.allclose(turning, [0.587587325408120, -0.686352757506886], atol=1e-12)
+    assert int(data.committed_points) == data.sizes["point"]
+
+
+@pytest.mark.parametrize("engine", ["h5netcdf", "netcdf4"])
+def test_to_xarray_is_what_xarray_opens(tmp_path, engine):
+    trace(Bratu1D(5), archive=tmp_path / "run.h5", budget=Budget(steps=7))
+    with open_archive(tmp_path / "run.h5") as archive:
+        ours = archive.to_xarray()
+    with xarray.open_dataset(tmp_path / "run.h5", engine=engine) as data:
+        theirs = data.load()
+    assert set(theirs.variables) - set(ours.variables) == {"committed_points", "committed_paths"}
+    for name, variable in ours.variables.items():
+        assert variable.dims == theirs[name].dims
+        assert set(variable.attrs) == set(theirs[name].attrs)
+        stored = theirs[name].values
+        if variable.dtype.kind == "U":
+            stored = np.array([s.decode() if isinstance(s, bytes) else s for s in stored.tolist()])
+        assert np.array_equal(variable.values, stored, equal_nan=variable.dtype.kind == "f")
+
+
+def test_dimension_scales_are_attached(tmp_path):
+    trace(Bratu1D(5), archive=tmp_path / "run.h5", budget=Budget(steps=3))
+    with h5py.File(tmp_path / "run.h5") as file:
+        for name, dataset in file.items():
+            if isinstance(dataset, h5py.Group) or dataset.is_scale or dataset.ndim == 0:
+                continue
+            for axis in range(dataset.ndim):
+                (scale,) = dataset.dims[axis].values()
+                assert scale.shape[0] == dataset.shape[axis], name
+
+
+def test_dataframe(tmp_path):
+    path = trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive:
+        frame = archive.to_dataframe()
+    accepted = frame[frame.role == 0]
+    assert np.array_equal(accepted[["y_0", "y_1"]], path.y)
+
+
+def test_many_paths_in_one_file_and_selections(tmp_path):
+    homotopies = [ExponentialCosine(3), ExponentialCosine(3, target=0.4), ExponentialCosine(3)]
+    budgets = [Budget(), Budget(), Budget(steps=5)]
+    with PathLog(tmp_path / "run.h5", title="three") as log:
+        paths = [trace(h, archive=log, budget=b) for h, b in zip(homotopies, budgets)]
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive) == 3
+        assert archive.attributes["title"] == "three"
+        for found, path in zip(archive, paths, strict=True):
+            assert np.array_equal(found.u, path.u)
+        assert np.array_equal(archive.paths["homotopy_target"], [1.0, 0.4, 1.0])
+        folds = archive.select(kind=Kind.TURNING_POINT)
+        assert folds.points.size == sum(len(path.turning_points) for path in paths)
+        assert archive.select(status=Status.BUDGET_EXHAUSTED).numbers == [2]
+        assert [len(path) for path in archive.select(status=[Status.BUDGET_EXHAUSTED])] == [len(paths[2])]
+        low = archive.select(parameter=(-1.0, 0.1), event="turning point")
+        assert ((low.points["parameter"] <= 0.1) & (low.points["kind"] == Kind.TURNING_POINT)).all()
+        assert low.to_xarray().sizes["point"] == low.points.size == len(low.to_dataframe())
+        with pytest.raises(ValueError, match="event: expected one of turning point, branch point"):
+            archive.select(event="no such")
+        with pytest.raises(IndexError, match="below 3, found 3"):
+            archive.path(3)
+        assert len(archive[1:]) == 2
+
+
+def test_a_growing_file_is_read_up_to_what_is_committed(tmp_path):
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=4))
+    steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
+    written = [next(steps) for _ in range(10)]
+    with open_archive(tmp_path / "run.h5") as archive:
+        path = archive.path(0)
+        assert not archive.closed_by_writer
+        assert path.status is Status.TRACING
+        assert 4 <= len(path) <= 10
+        assert np.array_equal(path.u, [step.u for step in written[: len(path)]])
+    steps.close()
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert archive.path(0).status is Status.INTERRUPTED
+        assert len(archive.path(0)) == 10
+
+
+def test_a_start_that_fails_is_a_path_without_points(tmp_path):
+    homotopy = from_functions(lambda y, lam: y * y + 1.0 + lam, start=(np.array([0.5]), 0.0), target=1.0)
+    path = trace(homotopy, archive=tmp_path / "run.h5")
+    assert path.status is Status.START_NOT_ON_PATH
+    with open_archive(tmp_path / "run.h5") as archive:
+        found = archive.path(0)
+        assert (found.status, found.message, found.steps) == (path.status, path.message, [])
+
+
+def test_a_trace_that_is_refused_leaves_no_file(tmp_path):
+    homotopy = from_functions(lambda y, lam: y, start=(np.array([np.nan]), 0.0))
+    with pytest.raises(ValueError, match="start: expected finite numbers"):
+        trace(homotopy, archive=tmp_path / "run.h5")
+    assert not list(tmp_path.iterdir())
+
+
+def test_every_counter_has_a_column(tmp_path):
+    path = trace(Circle(), archive=tmp_path / "run.h5")
+    with open_archive(tmp_path / "run.h5") as archive:
+        names = {"residuals": "evaluations"}
+        for name in attrs.fields_dict(Counts):
+            assert archive.paths[names.get(name, name)][0] == getattr(path.counts, name) > -1
+
+
+def test_provenance_and_the_problem_are_in_the_file(tmp_path):
+    trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
+    with h5py.File(tmp_path / "run.h5") as file:
+        about = dict(file.attrs)
+        assert about["Conventions"].startswith("CF-")
+        assert about["featureType"] == "trajectory"
+        assert about["library_version"] == continuation.__version__
+        assert about["homotopy"] == "problems.bifurcation.freudenstein_roth:FreudensteinRoth"
+        assert "@article" in about["references"]
+        assert all(about[f"{name}_version"] for name in ("python", "numpy", "scipy", "h5py", "hdf5"))
+        assert "created" in about["history"]
+        assert not any(isinstance(value, (bool, np.bool_)) for value in about.values())
+
+
+def test_a_log_is_for_one_path_at_a_time(tmp_path):
+    with PathLog(tmp_path / "run.h5") as log:
+        first, second = (iter(Tracer(Circle(), observers=(log,))) for _ in range(2))
+        next(first)
+        with pytest.raises(OSError, match="a path is being written already"):
+            next(second)
+        first.close()
+    with pytest.raises(OSError, match="the log is closed"):
+        trace(Circle(), archive=log)
+
+
+def test_paths_of_another_size_are_refused(tmp_path):
+    with PathLog(tmp_path / "run.h5") as log:
+        trace(Circle(), archive=log)
+        with pytest.raises(ValueError, match=r"homotopy: expected 1 unknowns.*found 2"):
+            trace(FreudensteinRoth(), archive=log)
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert [path.status for path in archive] == [Status.CLOSED, Status.INTERRUPTED]

@@ -1,0 +1,169 @@
+"""Step controllers: pure functions of a state and an attempt."""
+
+from math import inf, sin, sqrt
+
+import pytest
+from attrs import evolve
+
+from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Geometric, IterationCount, StepMeasures
+
+CONTROLLERS = [Fixed(), Geometric(), IterationCount(), AllgowerGeorg(), Curvature()]
+every_controller = pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda c: type(c).__name__)
+
+GOOD = StepMeasures(
+    h=0.1, converged=True, iterations=3, contraction=0.01, distance=1e-4, angle=0.05, order=3, rejections=0
+)
+FAILED = evolve(GOOD, converged=False, contraction=inf, distance=inf, angle=0.0)
+
+
+@every_controller
+def test_the_state_is_a_tuple_of_floats(controller):
+    state = controller.init()
+    for attempt in (GOOD, FAILED, evolve(GOOD, rejections=1)):
+        assert isinstance(state, tuple)
+        assert all(type(number) is float for number in state)
+        state = controller.update(state, attempt).state
+
+
+@every_controller
+def test_updates_are_pure(controller):
+    state = controller.update(controller.init(), GOOD).state
+    assert controller.update(state, GOOD) == controller.update(state, GOOD)
+
+
+@every_controller
+def test_a_failure_is_rejected_and_shortens_the_step(controller):
+    decision = controller.update(controller.init(), FAILED)
+    assert not decision.accept
+    assert 0.0 < decision.h < FAILED.h
+
+
+@every_controller
+def test_failures_reach_the_floor(controller):
+    state, h = controller.init(), controller.bounds.initial
+    for count in range(200):
+        decision = controller.update(state, evolve(FAILED, h=h, rejections=count))
+        state, h = decision.state, decision.h
+        if h < controller.bounds.minimum:
+            break
+    assert h < controller.bounds.minimum
+
+
+@every_controller
+def test_a_good_step_is_accepted(controller):
+    assert controller.update(controller.init(), GOOD).accept
+
+
+@pytest.mark.parametrize(
+    "controller", [c for c in CONTROLLERS if not isinstance(c, Geometric)], ids=lambda c: type(c).__name__
+)
+def test_a_sharp_turn_is_rejected(controller):
+    decision = controller.update(controller.init(), evolve(GOOD, angle=1.2))
+    assert not decision.accept
+    assert decision.h < GOOD.h
+
+
+@every_controller
+def test_the_ceiling_holds(controller):
+    bounded = evolve(controller, bounds=Bounds(minimum=1e-6, initial=0.1, maximum=0.1))
+    decision = bounded.update(bounded.init(), evolve(GOOD, angle=1e-9, distance=1e-12, contraction=1e-9, iterations=1))
+    assert decision.accept
+    assert decision.h <= 0.1
+
+
+@pytest.mark.parametrize("controller", [IterationCount(), AllgowerGeorg(), Curvature()], ids=lambda c: type(c).__name__)
+def test_an_easy_step_is_lengthened_but_not_after_a_rejection(controller):
+    easy = evolve(GOOD, angle=1e-3, distance=1e-9, contraction=1e-3, iterations=1)
+    assert controller.update(controller.init(), easy).h > easy.h
+    if not isinstance(controller, IterationCount):
+        assert controller.update(controller.init(), evolve(easy, rejections=1)).h <= easy.h
+
+
+def test_the_papers_backtracking():
+    controller = Geometric(ratio=0.6, bounds=Bounds(minimum=1e-6, initial=1.0))
+    h, steps = controller.bounds.initial, []
+    for l in range(4):
+        steps.append(h)
+        h = controller.update((), evolve(FAILED, h=h, rejections=l)).h
+    assert steps == pytest.approx([1.0, 0.6, 0.36, 0.216])
+    # Success: l starts at 0 again, whatever the step was.
+    assert controller.update((), evolve(GOOD, h=0.216)).h == 1.0
+    # It looks at convergence alone, as the paper does.
+    assert controller.update((), evolve(GOOD, angle=3.0, distance=5.0)).accept
+
+
+def test_a_fixed_step_is_restored_after_a_failure():
+    controller = Fixed(Bounds(initial=0.2))
+    assert controller.update((), evolve(FAILED, h=0.2)).h == pytest.approx(0.1)
+    assert controller.update((), evolve(GOOD, h=0.1, rejections=1)).h == 0.2
+
+
+@pytest.mark.parametrize(("iterations", "factor"), [(3, 1.0), (1, 2.0 ** (2 / 3)), (6, 0.5), (9, 0.5)])
+def test_iteration_count_scales_by_the_excess(iterations, factor):
+    decision = IterationCount(target=3).update((), evolve(GOOD, iterations=iterations))
+    assert decision.h == pytest.approx(factor * GOOD.h)
+
+
+@pytest.mark.parametrize(
+    ("change", "factor"),
+    [
+        # Angle over its goal: the step is divided by the ratio.
+        ({"angle": 0.36}, 1.2),
+        # Distance (relative to h) and contraction over theirs: by the root of order p + 1 = 4.
+        ({"distance": 0.1 * 0.1 * 1.4}, 1.4**0.25),
+        ({"contraction": 0.3 * 1.4}, 1.4**0.25),
+        # The worst decides.
+        ({"angle": 0.33, "contraction": 0.3 * 1.4}, 1.1),
+        # A measure below its goal lengthens the step, but not by more than the acceleration.
+        ({"angle": 0.2}, 0.2 / 0.3),
+        ({}, 0.5),
+    ],
+)
+def test_allgower_georg_divides_by_the_worst_factor(change, factor):
+    calm = evolve(GOOD, angle=1e-6, distance=0.0, contraction=0.0)
+    decision = AllgowerGeorg(contraction=0.3, distance=0.1, angle=0.3).update((), evolve(calm, **change))
+    assert decision.accept
+    assert decision.h == pytest.approx(GOOD.h / factor)
+
+
+@pytest.mark.parametrize("change", [{"angle": 0.46}, {"distance": 0.0151}, {"contraction": 0.46}])
+def test_allgower_georg_rejects_beyond_the_deceleration(change):
+    controller = AllgowerGeorg(contraction=0.3, distance=0.1, angle=0.3, deceleration=1.5)
+    decision = controller.update((), evolve(GOOD, **change))
+    assert not decision.accept
+    assert decision.h < GOOD.h
+
+
+def test_allgower_georg_shortens_by_twice_the_deceleration_at_most():
+    assert AllgowerGeorg(deceleration=1.5).update((), evolve(GOOD, angle=3.0)).h == pytest.approx(GOOD.h / 3.0)
+
+
+def test_curvature_extrapolates_linearly():
+    controller = Curvature(contraction=0.1, initial_distance=1e-2, growth=100.0, max_angle=0.4)
+    angle, h = 0.1, 0.1
+    curvature = 2.0 * sin(angle / 2.0) / h
+    first = controller.update(controller.init(), evolve(GOOD, h=h, angle=angle, contraction=0.1))
+    assert first.h == pytest.approx(min(sqrt(2.0 * 1e-2 / curvature), 0.4 / curvature))
+    # A second step of the same length and twice the curvature: three times the curvature is expected ahead.
+    second = controller.update(first.state, evolve(GOOD, h=h, angle=2.0 * angle, contraction=0.1))
+    doubled = 2.0 * sin(angle) / h
+    ahead = doubled + 0.5 * (doubled - curvature)
+    assert second.h == pytest.approx(min(sqrt(2.0 * 1e-2 / ahead), 0.4 / ahead))
+
+
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda: Bounds(minimum=0.0), "minimum"),
+        (lambda: Bounds(minimum=1.0, initial=0.1), "minimum"),
+        (lambda: Bounds(minimum=0.01, maximum=0.001), "maximum"),
+        (lambda: Bounds(initial=-1.0), "initial"),
+        (lambda: Geometric(ratio=1.0), "ratio"),
+        (lambda: IterationCount(target=0), "target"),
+        (lambda: AllgowerGeorg(deceleration=1.0), "deceleration"),
+        (lambda: Curvature(growth=1.0), "growth"),
+    ],
+)
+def test_bad_settings_are_named(make, name):
+    with pytest.raises(ValueError, match=name):
+        make()

@@ -1,0 +1,100 @@
+"""Ends at which the path is not a function of the parameter that Newton's method could find."""
+
+import numpy as np
+import pytest
+
+import continuation
+from continuation import Status
+from problems.lcp.data.problem import LCP
+from problems.lcp.homotopies import WangHomotopy
+
+PRESETS = [continuation.FAST, continuation.DEFAULT, continuation.SERIES]
+
+
+def power(w):
+    return continuation.from_functions(
+        lambda y, lam: np.array([y[0] ** w - lam]),
+        lambda y, lam: (np.array([[w * y[0] ** (w - 1)]]), np.array([-1.0])),
+        start=([1.0], 1.0),
+    )
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@pytest.mark.parametrize("w", [2, 3, 4])
+def test_powers_of_the_parameter(w, preset):
+    path = continuation.trace(power(w), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.lam == 0.0
+    assert abs(path.endpoint.y[0]) <= 1e-11
+    assert path.winding_number == w
+    assert f"^(1/{w})" in path.message
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+def test_a_regular_end_is_landed_on_and_not_extrapolated(preset):
+    path = continuation.trace(power(1), preset=preset)
+    assert path.endpoint.u.tolist() == [0.0, 0.0]
+    assert path.winding_number is None
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+def test_two_coupled_roots_where_the_jacobian_loses_two_ranks(preset):
+    homotopy = continuation.from_functions(
+        lambda y, lam: np.array([y[0] ** 2 - lam, y[1] ** 2 - 2.0 * lam * (1.0 + y[0])]), start=([1.0, 2.0], 1.0)
+    )
+    path = continuation.trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y, 0.0, atol=1e-11)
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+def test_a_root_that_mixes_with_regular_components(preset):
+    homotopy = continuation.from_functions(
+        lambda y, lam: np.array([(y[0] - 1.0) ** 2 - lam * (1.0 + y[1]), y[1] - np.sin(y[0]) - lam]),
+        start=([1.75, 1.23], 0.25),
+    )
+    path = continuation.trace(homotopy, preset=preset)
+    np.testing.assert_allclose(path.endpoint.y, [1.0, np.sin(1.0)], atol=1e-11)
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+def test_a_double_end_of_a_complementarity_problem(preset):
+    # x = 0 and w = 0 at once in both components: x ~ sqrt(lam).
+    problem = LCP(np.array([[2.0, 1.0], [1.0, 2.0]]), np.zeros(2))
+    path = continuation.trace(WangHomotopy(problem, x0=[1.0, 2.0]), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert np.abs(path.endpoint.y).max() <= 1e-10
+    assert path.winding_number == 2
+    assert path.end_error is not None
+    assert path.end_error <= 1e-8
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@pytest.mark.parametrize("size", [0.0, 1.0, 10.0, 100.0])
+def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_the_path(preset, size):
+    """H_y = lam^2: round-off of `size` 1e-16 in H leaves y 1e-6 at lam = 1e-4, and at the target any y solves H = 0.
+
+    So neither a landing nor a crossing there is an end; the limit is, to the tolerance.
+    """
+    homotopy = continuation.from_functions(
+        lambda y, lam: np.array([(lam**2 * (y[0] - np.exp(lam)) + size) - size]),
+        lambda y, lam: (np.array([[lam**2]]), np.array([2.0 * lam * (y[0] - np.exp(lam)) - lam**2 * np.exp(lam)])),
+        start=([np.e], 1.0),
+    )
+    path = continuation.trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.end_error is not None
+    assert path.end_error < 1e-8
+    assert abs(path.endpoint.y[0] - 1.0) <= 10.0 * path.end_error + 1e-14
+
+
+@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
+    """A homotopy that jumps at the target itself: the path has the limit 0, where H(0, 0) = -1."""
+    homotopy = continuation.from_functions(
+        lambda y, lam: np.array([y[0] - lam if lam > 0.0 else y[0] - 1.0]),
+        lambda y, lam: (np.array([[1.0]]), np.array([-1.0])),
+        start=([1.0], 1.0),
+    )
+    path = continuation.trace(homotopy, preset=preset)
+    assert path.status is not Status.REACHED_TARGET

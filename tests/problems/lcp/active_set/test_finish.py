@@ -1,0 +1,174 @@
+"""Faces, the finish from a guess, the guess from coarser problems, and the wrapped homotopy."""
+
+import itertools
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import continuation
+from problems.lcp import LCP, KKTHomotopy, Structure, WangHomotopy, certify
+from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.finish import Finish, Finishing
+from problems.lcp.active_set.multigrid_guess import guess, suitable
+from problems.paper import EXAMPLES
+
+
+def faces(A, q):
+    return Faces(Structure(LCP(A, q)))
+
+
+def storages(A):
+    return {"dense": A, "banded": sp.csr_array(A), "sparse": sp.csr_array(A)}
+
+
+@pytest.mark.parametrize("storage", ["dense", "banded", "sparse"])
+def test_a_face_is_solved_alike_in_every_storage(storage, monkeypatch):
+    if storage == "sparse":
+        monkeypatch.setattr("problems.lcp.data.matrix_structure.WIDEST_BAND", 0)
+    n = 30
+    rng = np.random.default_rng(3)
+    A = np.diag(4.0 + rng.random(n)) + np.diag(rng.standard_normal(n - 1), 1) + np.diag(rng.standard_normal(n - 1), -1)
+    q = rng.standard_normal(n)
+    active = rng.random(n) < 0.5
+    x, w = faces(storages(A)[storage], q).face(active).point(np.zeros(n))
+    expected = np.zeros(n)
+    expected[active] = np.linalg.solve(A[np.ix_(active, active)], -q[active])
+    np.testing.assert_allclose(x, expected, atol=1e-14)
+    assert (w[active] == 0.0).all()
+    np.testing.assert_allclose(w[~active], (A @ expected + q)[~active], atol=1e-13)
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_a_singular_face_gives_its_point_nearest_to_the_given_one(symmetric):
+    # Both rows say x1 + x2 = 1 (the second twice, where A is not symmetric).
+    A = np.array([[1.0, 1.0], [1.0, 1.0]]) if symmetric else np.array([[1.0, 1.0], [2.0, 2.0]])
+    q = -A @ [0.5, 0.5]
+    face = faces(A, q).face(np.array([True, True]))
+    assert not face.exact
+    x, w = face.point(np.array([0.9, 0.3]))
+    np.testing.assert_allclose(w, 0.0, atol=1e-12)
+    assert (x > 0.0).all()
+    if symmetric:
+        np.testing.assert_allclose(x, [0.8, 0.2], atol=1e-6)
+
+
+def test_an_inconsistent_face_is_never_certified():
+    finish = Finish(faces([[1.0, 1.0], [1.0, 1.0]], [-1.0, -2.0]), 1e-10)
+    assert finish.settle(np.array([True, True]), 0) is None
+
+
+def test_the_finish_needs_one_factorisation_from_the_right_guess():
+    for example in EXAMPLES:
+        solution = np.array([float(value) for value in example.solutions[0]])
+        finish = Finish(Faces(Structure(example.problem)), 1e-12)
+        x = finish.settle(solution > 0.0, 0)
+        assert finish.counts.factorizations == 1
+        np.testing.assert_allclose(x, solution, rtol=1e-13)
+
+
+def test_no_active_set_is_tried_twice():
+    finish = Finish(faces([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), 1e-10)
+    for active in itertools.product([False, True], repeat=2):
+        assert finish.settle(np.array(active), 10) is None
+    spent = finish.counts.factorizations
+    assert spent <= 4
+    assert finish.settle(np.array([True, True]), 10) is None
+    assert finish.counts.factorizations == spent
+
+
+def test_corrections_solve_a_p_matrix_from_any_guess():
+    rng = np.random.default_rng(0)
+    M, S = rng.standard_normal((2, 40, 40))
+    problem = LCP(M @ M.T / 40 + np.eye(40) + (S - S.T) / 6, rng.standard_normal(40))
+    for _ in range(5):
+        finish = Finish(Faces(Structure(problem)), 1e-13)
+        x = finish.settle(rng.random(40) < 0.5, 30)
+        assert certify(problem, x).solves(1e-13)
+
+
+def test_a_face_whose_signs_depend_on_round_off_is_corrected():
+    # |A| is 4e10 here, so the elimination alone cannot tell x[j] = 3e-9 from a negative number.
+    n = 20_000
+    t = np.arange(1, n + 1) / (n + 1)
+    A = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), dtype=float) * (n + 1.0) ** 2
+    problem = LCP(A, A @ np.maximum(0.15 - 16 * (t - 0.35) ** 2, 0.1 - 16 * (t - 0.7) ** 2) + 0.5)
+    finish = Finish(Faces(Structure(problem)), 1e-12)
+    x = finish.settle(guess(problem) > 0.0, 10)
+    assert certify(problem, x).solves(1e-12)
+    assert finish.counts.factorizations <= 6
+
+
+def test_the_cascade_guesses_the_contact_set_of_a_membrane():
+    m = 40
+    T = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(m, m), dtype=float)
+    eye = sp.eye_array(m, dtype=float)
+    A = sp.csr_array(sp.kron(T, eye) + sp.kron(eye, T))
+    t = np.arange(1, m + 1) / (m + 1)
+    bump = 0.3 - 3.0 * ((t[:, None] - 0.5) ** 2 + (t[None] - 0.5) ** 2).ravel()
+    problem = LCP(A, A @ bump + 5.0 / (m + 1) ** 2)
+    assert suitable(Structure(problem))
+    near = Finish(Faces(Structure(problem)), 1e-12)
+    assert near.settle(guess(problem) > 0.0, 20) is not None
+    far = Finish(Faces(Structure(problem)), 1e-12)
+    assert far.settle(problem.q < 0.0, 100) is not None
+    assert 2 * near.counts.factorizations < far.counts.factorizations
+
+
+def test_the_cascade_refuses_matrices_of_another_kind():
+    n = 500
+    assert not suitable(Structure(LCP(np.eye(3), -np.ones(3))))
+    assert not suitable(Structure(LCP(sp.eye_array(n) * -1.0, -np.ones(n))))
+    positive = sp.diags_array([1.0, 2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n), dtype=float)
+    assert not suitable(Structure(LCP(positive, -np.ones(n))))
+
+
+@pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
+def test_a_finishing_homotopy_ends_exactly_and_sooner(make):
+    example = EXAMPLES[3]
+    homotopy = make(example.problem, example.x0)
+    finish = Finish(Faces(homotopy.structure), 1e-14)
+    path = continuation.trace(Finishing(homotopy, finish))
+    assert path.status is continuation.Status.REACHED_TARGET
+    assert "finish" in path.message
+    assert example.problem.natural_residual(path.endpoint.y[:3]) <= 1e-14
+    assert path.endpoint.lam == 0.0
+    pure = continuation.trace(homotopy)
+    assert path.counts.factorizations + finish.counts.factorizations < pure.counts.factorizations
+    # Up to the finish it is the same path.
+    same = len(path) - 1
+    np.testing.assert_array_equal(path.u[:same], pure.u[:same])
+
+
+def test_a_finishing_homotopy_read_back_has_no_finish_but_the_same_path():
+    example = EXAMPLES[1]
+    wrapped = Finishing(KKTHomotopy(example.problem, example.x0), Finish(Faces(Structure(example.problem)), 1e-12))
+    again = Finishing.from_archive(wrapped.archive_data())
+    assert again.finish(np.zeros(6), 1e-9) is None
+    np.testing.assert_array_equal(again.start()[0], wrapped.start()[0])
+
+
+def test_the_proximal_method_solves_rank_deficient_problems():
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        M = rng.standard_normal((40, 20))
+        A = M @ M.T / 40
+        x = np.maximum(rng.standard_normal(40), 0.0)
+        w = np.where(x == 0.0, np.abs(rng.standard_normal(40)), 0.0)
+        problem = LCP(A, w - A @ x)
+        finish = Finish(Faces(Structure(problem)), 1e-12)
+        found = finish.proximal_active_set(problem.q < 0.0)
+        assert found is not None
+        assert certify(problem, found).solves(1e-12)
+        assert finish.certificate.solves(1e-12)
+    assert Finish(Faces(Structure(problem)), 1e-12).proximal_active_set() is None
+
+
+def test_corrections_that_go_in_circles_are_given_up():
+    # On Murty's matrix the changes do not become fewer for long; patience ends that.
+    n = 64
+    problem = LCP(np.eye(n) + np.triu(np.full((n, n), 2.0), 1), -np.ones(n))
+    patient, impatient = (Finish(Faces(Structure(problem)), 1e-12) for _ in range(2))
+    assert patient.settle(problem.q < 0.0, n) is not None
+    assert impatient.settle(problem.q < 0.0, n, patience=3) is None
+    assert 2 * impatient.counts.factorizations < patient.counts.factorizations

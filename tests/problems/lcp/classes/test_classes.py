@@ -1,0 +1,445 @@
+"""Exact matrix classes: known members, certificates checked from the definitions, implications between classes."""
+
+from __future__ import annotations
+
+import itertools
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from problems.lcp import classes
+from problems.lcp.classes import ExactMatrix, classify
+from problems.lcp.classes.exact import determinant, principal_minors
+from problems.lcp.classes.simplex import at_least, equal, feasible_point
+from problems.lcp.data.problem import LCP
+from problems.lcp.reference.enumeration import solve_by_enumeration
+from problems.lcp.strategies import CLASSES, matrices
+
+ORDERS = st.integers(1, 3)
+ANY = st.sampled_from(CLASSES).flatmap(lambda cls: matrices(cls, ORDERS))
+
+HORN = [[1, -1, 1, 1, -1], [-1, 1, -1, 1, 1], [1, -1, 1, -1, 1], [1, 1, -1, 1, -1], [-1, 1, 1, -1, 1]]
+
+
+def leibniz(rows):
+    total = 0
+    for permutation in itertools.permutations(range(len(rows))):
+        inversions = sum(a > b for a, b in itertools.combinations(permutation, 2))
+        term = (-1) ** inversions
+        for i, j in enumerate(permutation):
+            term *= rows[i][j]
+        total += term
+    return total
+
+
+def sub(rows, chosen):
+    return [[rows[i][j] for j in chosen] for i in chosen]
+
+
+def fractions_of(A):
+    return [[Fraction(v) for v in row] for row in np.asarray(A, dtype=float).tolist()]
+
+
+def times(rows, x):
+    return [sum(a * v for a, v in zip(row, x, strict=True)) for row in rows]
+
+
+@given(matrices("any", st.integers(1, 5)))
+def test_determinant_is_the_sum_over_permutations(A):
+    rows = A.astype(int).tolist()
+    assert determinant(rows) == leibniz(rows)
+
+
+@given(matrices("any", st.integers(1, 5)))
+@example(np.zeros((4, 4)))
+@example(np.fliplr(np.eye(4)))
+def test_principal_minors_are_the_determinants_of_the_principal_submatrices(A):
+    rows = A.astype(int).tolist()
+    minors = principal_minors(rows)
+    for mask in range(1 << len(rows)):
+        chosen = [i for i in range(len(rows)) if mask >> i & 1]
+        assert minors[mask] == (leibniz(sub(rows, chosen)) if chosen else 1)
+
+
+@given(st.integers(1, 4), st.integers(1, 4), st.data())
+def test_exactly_one_of_a_linear_system_and_its_farkas_alternative_is_feasible(m, n, data):
+    """Farkas: M x = b, x >= 0 has a solution, or y'M >= 0 with y'b < 0 has one, never both."""
+    entry = st.integers(-3, 3)
+    M = [[data.draw(entry) for _ in range(n)] for _ in range(m)]
+    b = [data.draw(entry) for _ in range(m)]
+    x = feasible_point([equal(row, right) for row, right in zip(M, b, strict=True)], n)
+    transposed = [[*column, *(-v for v in column)] for column in zip(*M, strict=True)]
+    alternative = [at_least(row) for row in transposed] + [at_least([-v for v in b] + b, 1)]
+    y = feasible_point(alternative, 2 * m)
+    assert (x is None) != (y is None)
+    if x is not None:
+        assert min(x) >= 0
+        assert times(M, x) == b
+    else:
+        assert min(y) >= 0
+        assert all(times([c.row], y)[0] >= c.right for c in alternative)
+
+
+def test_bland_ends_on_beales_cycling_problem():
+    """Beale 1955: the largest-coefficient rule cycles here. Feasible at cost at most -1/20, infeasible below it."""
+    rows = [[25, -6000, -4, 900], [50, -9000, -2, 300], [0, 0, 100, 0], [75, -15000, 2, -600]]
+    limits = [0, 0, 100]
+
+    def attempt(cost):
+        system = [at_least([-v for v in row], -limit) for row, limit in zip(rows, limits, strict=False)]
+        return feasible_point([*system, at_least(rows[3], cost)], 4)
+
+    assert attempt(5) is not None
+    assert attempt(6) is None
+
+
+KNOWN = [
+    (
+        "identity",
+        np.eye(3),
+        {"P", "PSD", "K", "K0", "strictly copositive", "E", "Q", "P_*", "nondegenerate", "R0"},
+        {"N"},
+    ),
+    ("P, not PSD", [[1, 3], [0, 1]], {"P", "sufficient", "Q"}, {"PSD", "Z", "almost P"}),
+    ("skew", [[0, 1], [-1, 0]], {"PSD", "P0", "sufficient", "Q0"}, {"P", "Q", "R0", "nondegenerate"}),
+    ("P0, not row sufficient", [[0, 1], [0, 0]], {"P0", "E0", "copositive"}, {"row sufficient", "P_*", "R0", "S"}),
+    ("row, not column sufficient", [[1, 1], [0, 0]], {"row sufficient", "Q0"}, {"column sufficient", "P_*", "Q"}),
+    ("column, not row sufficient", [[1, 0], [1, 0]], {"column sufficient"}, {"row sufficient", "sufficient"}),
+    ("nondegenerate, not row sufficient", [[1, 1], [1, -1]], {"nondegenerate", "S"}, {"row sufficient", "Q0", "Q"}),
+    ("I - 2J", np.eye(4) - 2, {"N", "N0", "N-bar"}, {"almost N", "P0", "Q", "S"}),
+    ("N of the first kind", [[-1, 2], [3, -1]], {"N", "Q"}, {"E0", "N of exact order k"}),
+    ("almost N", [[-2, 1], [1, -2]], {"almost N", "N of exact order k", "almost N-bar"}, {"N", "N0", "N-bar"}),
+    ("N-bar, not N", -np.ones((3, 3)), {"N0", "N-bar"}, {"N", "nondegenerate"}),
+    ("almost N0", [[0, 1, 1], [1, 0, 1], [1, 1, 0]], {"almost N0"}, {"almost N", "N0", "N-bar"}),
+    ("almost P", [[1, 2], [2, 1]], {"almost P", "nondegenerate", "strictly copositive", "Q", "almost P0"}, {"P0"}),
+    ("Horn", HORN, {"copositive", "E0"}, {"PSD", "strictly copositive", "P0", "almost copositive"}),
+    (
+        "zero",
+        np.zeros((2, 2)),
+        {"PSD", "N0", "N-bar", "copositive", "E0", "Q0", "K0", "E0^s"},
+        {"P", "E", "R0", "Q", "K"},
+    ),
+    ("Lyusternik", [[2, -1], [-1, 2]], {"K", "P", "PSD", "Z", "E"}, {"N0"}),
+]
+
+
+@pytest.mark.parametrize(("A", "yes", "no"), [row[1:] for row in KNOWN], ids=[row[0] for row in KNOWN])
+def test_known_matrices(A, yes, no):
+    result = classify(A)
+    assert {name for name in yes if result[name].holds is not True} == set()
+    assert {name for name in no if result[name].holds is not False} == set()
+
+
+PAPER = {
+    1: ([[-1, 2], [3, -1]], {"N", "nondegenerate", "Q"}, {"P0", "row sufficient"}),
+    2: ([[1, -1], [-1, 1]], {"PSD", "P0", "K0", "P_*"}, {"nondegenerate", "Q"}),
+    3: ([[1, 1], [0, 0]], {"Q0", "P0", "row sufficient"}, {"nondegenerate", "column sufficient", "Q"}),
+    4: ([[0, 1, 1], [2, 0, 1], [-4, -5, 0]], {"E0^s", "E0", "Q0"}, {"P0", "nondegenerate", "Q"}),
+    5: ([[-1, 2, 1], [1, -0.5, -0.25], [-0.5, -1, -1]], {"nondegenerate"}, {"N", "P0", "Q0"}),
+    6: ([[1, -2, 0], [0, 1, -2], [-2, 0, 1]], {"almost copositive", "Z", "nondegenerate", "Q0"}, {"P0", "Q"}),
+    7: (
+        [[-1, 1, 1, 1], [1, 0, 0, 0], [1, 0, 0, -1], [1, 0, -1, 0]],
+        {"almost N-bar", "almost N0", "Q"},
+        {"P0", "nondegenerate", "almost N", "R0"},
+    ),
+    8: (
+        [[-2, -2, -2, 2], [-2, -1, -3, 3], [-2, -3, -1, 3], [2, 3, 3, 0]],
+        {"almost N0", "almost N-bar", "S"},
+        {"P0", "nondegenerate", "Q", "Q0"},
+    ),
+    9: (
+        [[0, 0, 0, 1, 2], [0, 0, -1, -1, 2], [0, -1, 0, -1, 1], [1, -1, -1, 0, 0], [2, 1, 0, 0, 0]],
+        {"N0 of exact order k", "S"},
+        {"P0", "nondegenerate", "N-bar of exact order k", "Q0"},
+    ),
+    10: (
+        [[0, -90, -80, -70, 0], [-90, -2, -2, -2, 2], [-70, -2, -1, -3, 3], [-50, -2, -3, -0.8, 3], [0, 2, 3, 3, 0]],
+        {"N-bar of exact order k", "N0 of exact order k"},
+        {"P0", "nondegenerate", "S", "Q0"},
+    ),
+}
+
+
+@pytest.mark.parametrize("number", PAPER)
+def test_the_ten_matrices_of_the_paper(number):
+    """Each class that the paper prints is confirmed; only examples 2 and 3 are P0, only 1, 5 and 6 nondegenerate."""
+    A, yes, no = PAPER[number]
+    result = classify(A)
+    assert {name for name in yes if result[name].holds is not True} == set()
+    assert {name for name in no if result[name].holds is not False} == set()
+
+
+@pytest.mark.parametrize("number", [9, 10])
+def test_the_exact_order_of_the_last_two_matrices_is_two(number):
+    A = PAPER[number][0]
+    assert classes.is_n0_of_exact_order(A).certificate.value == 2
+    assert classes.is_n0_of_exact_order(A, 2).holds is True
+    assert classes.is_n0_of_exact_order(A, 1).holds is False
+
+
+def minor_holds(sign, value):
+    return {"positive": value > 0, "nonnegative": value >= 0, "negative": value < 0, "nonpositive": value <= 0}[sign]
+
+
+@given(ANY)
+def test_a_violating_minor_is_the_minor_that_it_says(A):
+    rows = fractions_of(A)
+    signs = {"P": "positive", "P0": "nonnegative", "N": "negative", "N0": "nonpositive"}
+    result = classify(A)
+    for name, sign in signs.items():
+        minors = [
+            leibniz(sub(rows, chosen))
+            for order in range(1, len(rows) + 1)
+            for chosen in itertools.combinations(range(len(rows)), order)
+        ]
+        assert result[name].holds == all(minor_holds(sign, value) for value in minors)
+        if not result[name].holds:
+            certificate = result[name].certificate
+            assert leibniz(sub(rows, certificate.indices)) == certificate.value
+            assert not minor_holds(sign, certificate.value)
+
+
+@given(ANY)
+def test_a_vector_that_refutes_a_class_does_so_by_the_definition(A):
+    rows, columns = fractions_of(A), fractions_of(A.T)
+    result = classify(A)
+
+    def refuting(name):
+        return result[name].certificate.vector if result[name].holds is False else None
+
+    def products(name, matrix=rows):
+        x = refuting(name)
+        return None if x is None else (x, [v * y for v, y in zip(x, times(matrix, x), strict=True)])
+
+    if (found := products("PSD")) is not None:
+        assert sum(found[1]) < 0
+    if (found := products("copositive")) is not None:
+        assert min(found[0]) >= 0 > sum(found[1])
+    if (found := products("strictly copositive")) is not None:
+        assert min(found[0]) >= 0 >= sum(found[1])
+        assert any(found[0])
+    for name, matrix in (("column sufficient", rows), ("row sufficient", columns)):
+        if (found := products(name, matrix)) is not None:
+            assert max(found[1]) <= 0 > min(found[1])
+    if (found := products("E0")) is not None:
+        assert all(p < 0 for v, p in zip(*found, strict=True) if v)
+        assert max(found[0]) > 0
+    if (found := products("E")) is not None:
+        assert all(p <= 0 for v, p in zip(*found, strict=True) if v)
+        assert max(found[0]) > 0
+    for name in ("R0", "E0^s"):
+        if (found := products(name)) is not None:
+            assert max(found[0]) > 0 == sum(found[1])
+            assert min(*found[0], *times(rows, found[0])) >= 0
+            assert name == "R0" or max(times(columns, found[0])) > 0
+    y = result["S"].certificate.vector
+    image = times(rows if result["S"].holds else columns, y)
+    assert min(y) >= 0 < max(y)
+    assert min(image) > 0 if result["S"].holds else max(image) <= 0
+
+
+@given(ANY)
+def test_no_small_vector_contradicts_a_yes(A):
+    """The definitions themselves on all integer vectors in {-2, ..., 2}^n."""
+    result = classify(A)
+    for x in itertools.product(range(-2, 3), repeat=len(A)):
+        image = A @ np.array(x, dtype=float)
+        p, nonnegative = np.array(x) * image, min(x) >= 0 and any(x)
+        reversed_signs = p.max() <= 0 and p.min() < 0
+        on_support = [v for u, v in zip(x, p, strict=True) if u]
+        contradicted = {
+            "PSD": p.sum() < 0,
+            "column sufficient": reversed_signs,
+            "P": any(x) and p.max() <= 0,
+            "P0": any(x) and max(on_support) < 0,
+            "copositive": nonnegative and p.sum() < 0,
+            "strictly copositive": nonnegative and p.sum() <= 0,
+            "E0": nonnegative and max(on_support) < 0,
+            "E": nonnegative and max(on_support) <= 0,
+            "R0": nonnegative and p.sum() == 0 and image.min() >= 0,
+        }
+        assert [name for name, bad in contradicted.items() if bad and result[name].holds] == []
+        kappa = result["P_*"].certificate.value
+        if result["P_*"].holds and len(A) <= 2:
+            assert (1 + 4 * float(kappa) + 1e-9) * p[p > 0].sum() + p[p <= 0].sum() >= -1e-9
+
+
+IMPLIED = {
+    "P": {"nondegenerate", "P0", "row sufficient", "column sufficient", "E", "R0", "Q", "S"},
+    "PSD": {"P0", "sufficient", "copositive", "P_*", "Q0"},
+    "K": {"P", "Z", "K0"},
+    "K0": {"P0", "Z"},
+    "row sufficient": {"P0", "Q0", "E0"},
+    "column sufficient": {"P0"},
+    "sufficient": {"row sufficient", "column sufficient", "P_*"},
+    "P_*": {"sufficient"},
+    "P0": {"E0"},
+    "strictly copositive": {"copositive", "E", "Q"},
+    "copositive": {"E0"},
+    "E": {"E0", "R0", "Q"},
+    "Z": {"Q0"},
+    "Q": {"Q0", "S"},
+    "N": {"N0", "N-bar", "nondegenerate"},
+    "N-bar": {"N0"},
+    "almost N": {"almost N0", "almost N-bar", "nondegenerate", "R0"},
+    "almost copositive": set(),
+}
+
+
+@given(ANY)
+@settings(max_examples=200)
+def test_the_implications_between_the_classes(A):
+    """CPS, figure 3.13.2 and sections 3.3-3.11; N is R0 too, tested by the enumeration of LCP(0, A)."""
+    result = classify(A)
+    holds = {name for name, membership in result.items() if membership.holds}
+    denied = {name for name, membership in result.items() if membership.holds is False}
+    for name in holds & IMPLIED.keys():
+        if name == "almost N" and len(A) == 1:
+            continue
+        assert IMPLIED[name] & denied == set(), name
+    if "S" in holds and "Q0" in holds:
+        assert "Q" in holds
+    if {"E0", "R0"} <= holds:
+        assert "Q" not in denied
+    assert ("N" in holds) <= ("R0" in holds)
+
+
+@given(matrices("any", ORDERS), st.data())
+def test_q_and_q0_agree_with_enumeration(A, data):
+    """A yes survives random right-hand sides; a no comes with a feasible q that has no solution, or with S refuted."""
+    n = len(A)
+    q0, q = classes.is_q0(A), classes.is_q(A)
+    right = np.array([data.draw(st.integers(-5, 5)) for _ in range(n)], dtype=float)
+    rows = [at_least(row, -int(v)) for row, v in zip(A.astype(int).tolist(), right, strict=True)]
+    solvable = solve_by_enumeration(LCP(A, right)).solvable
+    if q.holds:
+        assert solvable
+    if q0.holds and feasible_point(rows, n) is not None:
+        assert solvable
+    if not q0.holds:
+        witness = q0.certificate.vector
+        system = [at_least(row, -int(v)) for row, v in zip(A.astype(int).tolist(), witness, strict=True)]
+        assert feasible_point(system, n) is not None
+        assert not solve_by_enumeration(LCP(A, np.array([float(v) for v in witness]))).solvable
+
+
+@given(st.sampled_from(("any", "N", "Z")).flatmap(lambda cls: matrices(cls, ORDERS)))
+def test_a_sequence_that_shows_a_closure_has_the_strict_signs(A):
+    """The perturbed matrices of the certificate are N-matrices for small t, exactly."""
+    membership = classes.is_n_bar(A)
+    if membership.holds and membership.certificate.perturbation is not None:
+        B, C = (np.array(part, dtype=object) for part in membership.certificate.perturbation)
+        for t in (Fraction(1, 10**9), Fraction(1, 10**12)):
+            assert classes.is_n(np.array(fractions_of(A), dtype=object) + t * B + t * t * C).holds
+
+
+def test_a_closure_is_refuted_by_a_minor_or_by_the_signature_and_shown_by_a_sequence():
+    """A triangle of positive cycle product has a positive minor; the paper's example 9 has the minors only."""
+    assert classes.is_n_bar([[0, 1, 0], [0, 0, 1], [1, 0, 0]]).certificate.value == 1
+    assert "S A S" in classes.is_n_bar_of_exact_order(PAPER[9][0], 2).certificate.sentence
+    shown = classes.is_n_bar([[0, 1, 1], [0, 0, -1], [0, 0, 0]])
+    assert shown.holds
+    assert shown.certificate.perturbation is not None
+
+
+@pytest.mark.parametrize(
+    ("A", "kappa"),
+    [
+        ([[0, 1], [-2, 0]], 0.25),
+        ([[1, 4], [0, 1]], 0.75),
+        ([[0, 1], [-1, 0]], 0),
+        ([[1, -9], [0, 1]], (81 / 4 - 1) / 4),
+    ],
+)
+def test_the_handicap_of_order_two(A, kappa):
+    """Closed forms: max(|b/c|, |c/b|) = 1 + 4 kappa for a zero diagonal, b^2 / 4 for a unit triangle."""
+    value = classes.is_p_star(A).certificate.value
+    assert 0 <= kappa - value < 1e-20 + 1e-11 * kappa
+
+
+def test_the_handicap_of_larger_order_is_called_a_lower_bound():
+    A = [[1, 0, 0], [-3, 1, 0], [-3, -3, 1]]
+    membership = classes.is_p_star(A)
+    assert membership.holds
+    assert "lower bound only" in membership.certificate.sentence
+    assert membership.certificate.value >= Fraction(9, 16) - Fraction(1, 4)
+
+
+def test_floats_are_taken_as_the_rationals_that_they_are():
+    """0.1 + 0.2 - 0.3 is 2^-54, not zero; 0.8 is not 4/5."""
+    assert classes.is_p([[0.1 + 0.2 - 0.3]]).holds
+    assert classes.is_n([[0.3 - 0.1 - 0.2]]).holds
+    assert classes.is_nondegenerate([[0.1, 0.3], [0.1, 0.3]]).certificate.value == 0
+    assert ExactMatrix.of([[0.8]]).minor(1) == Fraction(0.8) != Fraction(4, 5)
+    assert ExactMatrix.of([[Fraction(4, 5)]]).minor(1) == Fraction(4, 5)
+    tiny = np.diag([1e-300, 1.0])
+    assert classes.is_p(tiny).holds
+    assert classes.is_psd(tiny - np.diag([2e-300, 0.0])).holds is False
+
+
+@pytest.mark.parametrize(
+    "cast", [np.asarray, sp.csr_array, sp.coo_array, lambda a: a.astype(np.int64), lambda a: a.tolist()]
+)
+def test_every_form_of_the_same_matrix_has_the_same_classes(cast):
+    A = np.array([[2.0, -1.0], [0.0, 3.0]])
+    assert classify(cast(A)) == classify(A)
+
+
+def test_large_integers_do_not_wrap_around():
+    A = np.full((2, 2), 2**62, dtype=np.int64)
+    A[0, 0] += 1
+    assert classes.is_p(A).holds
+
+
+@pytest.mark.parametrize(
+    ("bad", "words"),
+    [
+        ([[1.0, np.nan], [0.0, 1.0]], "finite"),
+        ([[1.0, 2.0]], r"square matrix, found shape \(1, 2\)"),
+        (np.zeros((0, 0)), "square"),
+        ([[1j]], "real numbers, found complex"),
+        ([["a"]], "real numbers, found str"),
+    ],
+)
+def test_bad_input_is_refused_by_name(bad, words):
+    with pytest.raises(ValueError, match="A: expected .*" + words):
+        classify(bad)
+
+
+def test_beyond_the_limits_the_answer_is_not_decided_with_the_reason():
+    A = np.eye(13) + np.triu(np.ones((13, 13)), 1) * 9
+    result = classify(A)
+    assert result["P"].holds is None
+    assert "stops at n = 12, found n = 13" in str(result["P"])
+    assert result["Z"].holds is False
+    assert result["PSD"].holds is False
+    assert result["row sufficient"].holds is None
+    assert result["Q"].holds is None
+    laplacian = 2 * np.eye(40) - np.eye(40, k=1) - np.eye(40, k=-1)
+    assert classes.is_k(laplacian).holds
+    assert classes.is_psd(laplacian).holds
+    assert classes.is_row_sufficient(laplacian).holds
+    assert classes.is_k(laplacian - 0.1 * np.eye(40)).holds is False
+
+
+def test_exact_order_out_of_range_is_refused():
+    with pytest.raises(ValueError, match="k: expected 1 <= k < n = 2, found 2"):
+        classes.is_n_of_exact_order(np.eye(2), 2)
+
+
+def test_a_membership_has_no_truth_value():
+    with pytest.raises(TypeError, match=r"read \.holds"):
+        bool(classes.is_p(np.eye(2)))
+
+
+def test_the_table_has_one_line_a_class():
+    result = classify([[0, 1], [0, 0]])
+    lines = classes.table(result).splitlines()
+    assert len(lines) == len(result)
+    assert lines[0].split()[:2] == ["PSD", "no"]
+    assert any(line.startswith("row sufficient") and " no " in line for line in lines)
+    assert all(len(line) < 110 + 60 for line in lines)

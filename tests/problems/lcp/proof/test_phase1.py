@@ -1,0 +1,139 @@
+"""Phase I: a point of F = {x > 0, A x + q > 0}, or the exact proof that F is empty, against exact truth."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from problems.lcp import LCP
+from problems.lcp.proof.farkas import empty_interior
+from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, is_strictly_feasible, strictly_feasible_start
+from problems.paper import COUNTEREXAMPLES, EXAMPLES
+
+SMALL = st.integers(-2, 2)
+
+
+def fraction_array(values):
+    return np.vectorize(Fraction, otypes=[object])(np.asarray(values, dtype=float))
+
+
+def dense(problem):
+    return problem.A.toarray() if problem.sparse else problem.A
+
+
+def check_start(problem, x0):
+    assert min(x0) > 0
+    assert min(fraction_array(dense(problem)) @ fraction_array(x0) + fraction_array(problem.q)) > 0
+
+
+def check_proof(problem, proof):
+    y = np.array(proof.y, dtype=object)
+    assert min(y) >= 0
+    assert max(y) > 0
+    assert max(fraction_array(dense(problem)).T @ y) <= 0
+    assert fraction_array(problem.q) @ y == proof.gap
+    assert proof.gap <= 0
+
+
+def interior_is_empty(A, q):
+    """Fourier and Motzkin's elimination in integers: strict inequalities a.x + b > 0, all of them, exactly."""
+    n = len(q)
+    system = {tuple([int(i == j) for j in range(n)] + [0]) for i in range(n)}
+    system |= {tuple([int(v) for v in row] + [int(b)]) for row, b in zip(A, q)}
+    for j in range(n):
+        positive = [row for row in system if row[j] > 0]
+        negative = [row for row in system if row[j] < 0]
+        system = {row for row in system if row[j] == 0}
+        system |= {
+            tuple(-low[j] * a + up[j] * b for a, b in zip(up, low)) for up in positive for low in negative
+        }
+    return any(row[-1] <= 0 for row in system)
+
+
+def test_elimination_knows_simple_truths():
+    assert interior_is_empty(np.array([[0]]), np.array([0]))
+    assert interior_is_empty(np.array([[-1]]), np.array([0]))
+    assert not interior_is_empty(np.array([[-1]]), np.array([1]))
+    assert not interior_is_empty(np.array([[1]]), np.array([-5]))
+    assert interior_is_empty(np.array([[1, -1], [-1, 1]]), np.array([0, 0]))
+
+
+@given(st.data(), st.integers(1, 3), st.booleans())
+@settings(deadline=None, max_examples=150)
+def test_start_or_proof_against_exact_truth(data, n, sparse):
+    A = data.draw(arrays(np.int64, (n, n), elements=SMALL))
+    q = data.draw(arrays(np.int64, n, elements=SMALL))
+    problem = LCP(sp.csr_array(A) if sparse else A, q)
+    if interior_is_empty(A, q):
+        with pytest.raises(NoStrictlyFeasiblePoint) as caught:
+            strictly_feasible_start(problem)
+        assert caught.value.certificate is not None
+        check_proof(problem, caught.value.certificate)
+        assert "proved exactly" in str(caught.value)
+    else:
+        check_start(problem, strictly_feasible_start(problem))
+        assert empty_interior(problem) is None
+
+
+@pytest.mark.parametrize("sparse", [False, True])
+def test_the_paper_has_strictly_feasible_starts(sparse):
+    for item in (*EXAMPLES, *COUNTEREXAMPLES):
+        problem = LCP(sp.csr_array(item.A) if sparse else item.A, item.q)
+        check_start(problem, strictly_feasible_start(problem))
+        assert is_strictly_feasible(problem, item.x0)
+        assert not is_strictly_feasible(problem, -item.x0)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_rows_and_columns_over_sixteen_orders_of_magnitude(seed):
+    rng = np.random.default_rng(seed)
+    n = 12
+    A = rng.standard_normal((n, n))
+    q = 1.0 - A @ rng.uniform(0.5, 1.5, n)
+    rows, columns = 10.0 ** rng.uniform(-8, 8, n), 10.0 ** rng.uniform(-8, 8, n)
+    problem = LCP(rows[:, None] * A * columns, rows * q)
+    check_start(problem, strictly_feasible_start(problem))
+
+
+def test_infeasible_is_told_from_no_interior():
+    with pytest.raises(NoStrictlyFeasiblePoint, match="no solution") as infeasible:
+        strictly_feasible_start(LCP([[-1.0]], [-1.0]))
+    assert infeasible.value.certificate.no_feasible_point
+    with pytest.raises(NoStrictlyFeasiblePoint, match="may still have solutions") as thin:
+        strictly_feasible_start(LCP([[1.0, -1.0], [-1.0, 1.0]], [0.0, 0.0]))
+    assert not thin.value.certificate.no_feasible_point
+    assert thin.value.certificate.gap == 0
+    assert isinstance(thin.value, ValueError)
+
+
+def test_large_sparse_start():
+    n = 3000
+    A = sp.diags_array([-np.ones(n - 1), 2.0 * np.ones(n), -np.ones(n - 1)], offsets=[-1, 0, 1])
+    problem = LCP(A, -np.full(n, 0.5) / n**2)
+    x0 = strictly_feasible_start(problem)
+    assert is_strictly_feasible(problem, x0)
+
+
+def test_boundary_points_are_not_strictly_feasible():
+    """The exact value of 0.1 * 3 - 0.3 in floats, 2.8e-17, decides, not the rounded one."""
+    problem = LCP([[0.1]], [-0.3])
+    for x in (np.array([3.0]), np.nextafter(np.array([3.0]), 0.0)):
+        truth = Fraction(0.1) * Fraction(x[0]) - Fraction(0.3)
+        assert is_strictly_feasible(problem, x) == (truth > 0)
+    assert not is_strictly_feasible(LCP([[1.0]], [-1.0]), np.array([1.0]))
+
+
+def test_empty_by_a_combination_of_rows_that_no_pair_shows():
+    """Three half-spaces with empty intersection, any two of which meet."""
+    A, q = np.array([[1.0, -2, 0], [0, 1, -2], [-2, 0, 1]]), -np.ones(3)
+    for dropped in range(3):
+        kept = np.arange(3) != dropped
+        pair = LCP(kept[:, None] * A, np.where(kept, q, 1.0))
+        check_start(pair, strictly_feasible_start(pair))
+    proof = empty_interior(LCP(A, q))
+    check_proof(LCP(A, q), proof)
+    assert min(proof.y) > 0

@@ -1,0 +1,191 @@
+"""Brute force over the complementary faces: closed forms, theorems of existence and uniqueness, exactness."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from problems.lcp.classes.simplex import at_least, feasible_point
+from problems.lcp.data.problem import LCP
+from problems.lcp.reference.enumeration import LARGEST, solve_by_enumeration
+from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, lcps, near_singular_lcps, planted_lcps
+
+ORDERS = st.integers(1, 4)
+
+
+def exactly_solves(problem, solution):
+    rows = zip(problem.A.tolist(), problem.q.tolist(), strict=True)
+    w = tuple(sum((Fraction(a) * v for a, v in zip(row, solution.x, strict=True)), Fraction(q)) for row, q in rows)
+    return w == solution.w and min(*solution.x, *w) >= 0 and not any(a * b for a, b in zip(solution.x, w, strict=True))
+
+
+def test_two_by_two_in_closed_form():
+    """[[2, 1], [1, 2]], q = (-5, -6): x = (4/3, 7/3)."""
+    found = solve_by_enumeration(LCP([[2, 1], [1, 2]], [-5, -6]))
+    assert [s.x for s in found.solutions] == [(Fraction(4, 3), Fraction(7, 3))]
+    assert found.complete
+    assert found.solvable
+    assert found.solutions[0].faces == ((0, 1),)
+    assert found.solutions[0].strictly_complementary
+    np.testing.assert_array_equal(found.points, [[4 / 3, 7 / 3]])
+
+
+@pytest.mark.parametrize(
+    ("A", "q"), [([[0, 1], [0, 0]], [-1, 1]), ([[1, 1], [1, -1]], [-1, -2])], ids=["P0", "nondegenerate"]
+)
+def test_the_counterexamples_to_the_papers_theorem_have_no_solution(A, q):
+    """Strictly feasible, P0 or nondegenerate, and unsolvable."""
+    found = solve_by_enumeration(LCP(A, q))
+    assert not found.solvable
+    assert found.solutions == ()
+    assert found.complete
+
+
+def test_the_edge_of_solvability_is_decided_exactly():
+    """x (A x + q) with A = -1: solutions 0 and q while q >= 0, none once q is below zero by the smallest float."""
+    smallest = 5e-324
+    assert [s.x for s in solve_by_enumeration(LCP([[-1]], [smallest])).solutions] == [(0,), (Fraction(smallest),)]
+    assert len(solve_by_enumeration(LCP([[-1]], [0])).solutions) == 1
+    assert not solve_by_enumeration(LCP([[-1]], [-smallest])).solvable
+    assert not solve_by_enumeration(LCP([[0, 1], [0, 0]], [-1, smallest])).solvable
+    assert solve_by_enumeration(LCP([[0, 1], [0, 0]], [-1, 0])).solvable
+
+
+@pytest.mark.parametrize(
+    ("A", "q"),
+    [
+        ([[0]], [0]),
+        ([[1, 1], [1, 1]], [-1, -1]),
+        ([[0, 1], [0, 0]], [-1, 0]),
+        ([[0, 0, 0], [0, 0, 0], [0, 0, 1]], [0, 1, -1]),
+    ],
+    ids=["ray", "segment", "quadrant", "ray and a point"],
+)
+def test_a_continuum_is_reported_as_incomplete(A, q):
+    problem = LCP(A, q)
+    found = solve_by_enumeration(problem)
+    assert found.solvable
+    assert not found.complete
+    assert all(exactly_solves(problem, s) for s in found.solutions)
+
+
+def test_a_singular_face_with_one_point_is_complete():
+    """The paper's example 7: the solution is degenerate, and one of its faces has a singular submatrix."""
+    A = [[-1, 1, 1, 1], [1, 0, 0, 0], [1, 0, 0, -1], [1, 0, -1, 0]]
+    found = solve_by_enumeration(LCP(A, [-1, 1, -1, 1]))
+    assert [s.x for s in found.solutions] == [(1, 0, 2, 0)]
+    assert found.complete
+    assert found.solutions[0].faces == ((0, 2), (0, 2, 3))
+    assert not found.solutions[0].strictly_complementary
+    cornered = solve_by_enumeration(LCP([[0, 0], [-1, -1]], [0, 0]))
+    assert [s.x for s in cornered.solutions] == [(0, 0)]
+    assert cornered.complete
+    touching = solve_by_enumeration(LCP([[0]], [1]))
+    assert [s.x for s in touching.solutions] == [(0,)]
+    assert touching.complete
+
+
+COUNTS = {
+    1: ([[-1, 2], [3, -1]], [1, -0.5], 1),
+    2: ([[1, -1], [-1, 1]], [-0.5, 2], 1),
+    3: ([[1, 1], [0, 0]], [-1, 1], 1),
+    4: ([[0, 1, 1], [2, 0, 1], [-4, -5, 0]], [-4, -7, 10], 3),
+    5: ([[-1, 2, 1], [1, -0.5, -0.25], [-0.5, -1, -1]], [-0.25, -0.1, 3], 2),
+    6: ([[1, -2, 0], [0, 1, -2], [-2, 0, 1]], [-1, 1, 7], 2),
+    8: ([[-2, -2, -2, 2], [-2, -1, -3, 3], [-2, -3, -1, 3], [2, 3, 3, 0]], [-1001, -500, -500, -500], 1),
+    9: (
+        [[0, 0, 0, 1, 2], [0, 0, -1, -1, 2], [0, -1, 0, -1, 1], [1, -1, -1, 0, 0], [2, 1, 0, 0, 0]],
+        [-2, -1, 7, 2, -1],
+        2,
+    ),
+    10: (
+        [[0, -90, -80, -70, 0], [-90, -2, -2, -2, 2], [-70, -2, -1, -3, 3], [-50, -2, -3, -0.8, 3], [0, 2, 3, 3, 0]],
+        [400, 50, 30, 20, -10],
+        2,
+    ),
+}
+
+
+@pytest.mark.parametrize("number", COUNTS)
+def test_the_number_of_solutions_of_the_papers_examples(number):
+    A, q, count = COUNTS[number]
+    found = solve_by_enumeration(LCP(A, q))
+    assert (len(found.solutions), found.complete) == (count, True)
+    assert all(s.strictly_complementary for s in found.solutions)
+
+
+@given(lcps("any", ORDERS))
+def test_every_solution_solves_exactly_and_they_are_distinct(problem):
+    found = solve_by_enumeration(problem)
+    assert all(exactly_solves(problem, s) for s in found.solutions)
+    assert len({s.x for s in found.solutions}) == len(found.solutions)
+    assert all(problem.relative_residual(point) < 1e-15 for point in found.points)
+
+
+@given(lcps("P", ORDERS))
+def test_a_p_matrix_has_exactly_one_solution_for_every_q(problem):
+    """Samelson, Thrall and Wesler 1958; CPS, theorem 3.3.7."""
+    found = solve_by_enumeration(problem)
+    assert len(found.solutions) == 1
+    assert found.complete
+
+
+@given(st.sampled_from(("PSD", "Z", "row_sufficient")).flatmap(lambda cls: lcps(cls, ORDERS)))
+def test_for_q0_matrices_solvable_means_feasible(problem):
+    """PSD, Z and row sufficient matrices are Q0 (CPS, sections 3.1, 3.11 and 3.5); an exact linear program decides."""
+    rows = zip(problem.A.astype(int).tolist(), problem.q.astype(int).tolist(), strict=True)
+    feasible = feasible_point([at_least(row, -right) for row, right in rows], problem.n) is not None
+    assert solve_by_enumeration(problem).solvable == feasible
+
+
+@given(lcps("PSD", ORDERS))
+def test_the_solutions_of_a_monotone_problem_are_one_or_a_continuum(problem):
+    """The solution set is convex (CPS, theorem 3.1.7): two isolated solutions cannot be."""
+    found = solve_by_enumeration(problem)
+    if found.complete:
+        assert len(found.solutions) <= 1
+
+
+@given(planted_lcps("degenerate", "any", ORDERS))
+def test_a_planted_solution_is_found(pair):
+    problem, x = pair
+    found = solve_by_enumeration(problem)
+    assert tuple(map(Fraction, x)) in {s.x for s in found.solutions} or not found.complete
+
+
+@given(feasible_lcps("any", ORDERS), st.data())
+def test_scaling_and_permutation_move_the_solutions_and_nothing_else(pair, data):
+    """D A E, D q has the solutions x / E, and P A P', P q the permuted ones."""
+    problem, _ = pair
+    n = problem.n
+    factor = st.sampled_from((0.25, 0.5, 2.0, 8.0))
+    left, right = (np.array([data.draw(factor) for _ in range(n)]) for _ in range(2))
+    order = data.draw(st.permutations(range(n)))
+    moved = LCP((left[:, None] * problem.A * right)[np.ix_(order, order)], (left * problem.q)[order])
+    before, after = solve_by_enumeration(problem), solve_by_enumeration(moved)
+    assert before.complete == after.complete
+    if before.complete:
+        expected = {tuple(s.x[i] / Fraction(right[i]) for i in order) for s in before.solutions}
+        assert {s.x for s in after.solutions} == expected
+
+
+@given(st.one_of(near_singular_lcps(), badly_scaled_lcps()))
+def test_hard_numbers_are_exact_too(pair):
+    problem, _ = pair
+    assert all(exactly_solves(problem, s) for s in solve_by_enumeration(problem).solutions)
+
+
+def test_sparse_and_dense_agree():
+    A = np.diag([2.0, 3.0, 4.0]) - np.eye(3, k=1)
+    q = [-1.0, 1.0, -3.0]
+    assert solve_by_enumeration(LCP(A, q)) == solve_by_enumeration(LCP(sp.csr_array(A), q))
+
+
+def test_a_large_problem_is_refused():
+    with pytest.raises(ValueError, match=f"problem: expected n <= {LARGEST} .* found n = 15"):
+        solve_by_enumeration(LCP(np.eye(15), np.ones(15)))

@@ -1,0 +1,205 @@
+"""Restarts: reproducible, in any order, over an executor, and given up when they are not worth following."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+import continuation
+from problems import lcp
+from problems.lcp.homotopies.starts import natural_units
+from problems.lcp.search.restarts import (
+    FAR,
+    NEAR,
+    SPREAD,
+    Restart,
+    light,
+    restart_start,
+    reweighted,
+    search_preset,
+    trace_light,
+)
+
+PLANTED = 30
+
+
+def planted(seed, n=PLANTED):
+    """A random problem that is neither monotone nor P, with a solution."""
+    rng = np.random.default_rng(seed)
+    A = rng.standard_normal((n, n)) / np.sqrt(n)
+    x = np.maximum(rng.standard_normal(n), 0.0)
+    w = np.where(x == 0.0, np.abs(rng.standard_normal(n)), 0.0)
+    return lcp.LCP(A, w - A @ x)
+
+
+def restart(problem, k, **changes):
+    settings = {"name": "kkt", "bands": FAR, "seed": 0, "tolerance": 1e-10, "options": {}} | changes
+    return Restart(structure=lcp.Structure(problem), k=k, **settings)
+
+
+@pytest.mark.parametrize("bands", [FAR, NEAR])
+def test_starts_are_centred_positive_and_at_their_distance(bands):
+    problem = planted(1)
+    x, w = natural_units(problem)
+    for k in range(20):
+        start = restart_start(problem, np.random.default_rng(k), k, bands)
+        assert min(a.min() for a in (start.x0, start.z1, start.z2, start.w0)) > 0.0
+        first, second = start.x0 * start.z1, start.w0 * start.z2
+        np.testing.assert_allclose(first, first[0], rtol=1e-12)
+        np.testing.assert_allclose(second, second[0], rtol=1e-12)
+        scale = np.sqrt(first[0] / (x * w))
+        low, high = bands[k % len(bands)]
+        assert 10**low <= scale <= 10**high
+        spread = np.log(start.x0 / (scale * x))
+        assert 0.5 * SPREAD <= spread.std() <= 1.5 * SPREAD
+        # Where the two products are equal a central point of the LCP is one of the path.
+        assert 0.4 <= second[0] / first[0] <= 2.5
+
+
+def test_a_restart_depends_on_seed_and_number_alone():
+    problem = planted(2)
+    first, again = restart(problem, 3).trace(continuation.Budget()), restart(problem, 3).trace(continuation.Budget())
+    np.testing.assert_array_equal(first.u, again.u)
+    other = restart(problem, 4).trace(continuation.Budget())
+    assert not np.array_equal(first.steps[0].u, other.steps[0].u)
+    reseeded = restart(problem, 3, seed=1).homotopy()
+    assert not np.array_equal(reseeded.origin.x0, restart(problem, 3).homotopy().origin.x0)
+
+
+def test_large_products_at_a_failed_end_gain_weight():
+    problem = next(p for p in map(planted, range(50)) if not lcp.solve(p, "kkt", restarts=0).solved)
+    path = lcp.solve(problem, "kkt", restarts=0).path
+    x = path.endpoint.y[:PLANTED]
+    products = np.maximum(x, 0.0) * np.maximum(problem.w(x), 0.0)
+    weights = reweighted(problem, None, path)
+    np.testing.assert_allclose(np.log(weights).mean(), 0.0, atol=1e-14)
+    gains = 1.0 + np.sqrt(products / products.max())
+    np.testing.assert_allclose(weights, gains / np.exp(np.log(gains).mean()), rtol=1e-6)
+    twice = reweighted(problem, weights, path)
+    np.testing.assert_allclose(twice, weights**2, rtol=1e-5)
+    for _ in range(30):
+        weights = reweighted(problem, weights, path)
+    assert weights.max() == 100.0
+    assert weights.min() >= 0.01
+
+
+def test_a_solution_gains_nothing():
+    problem = lcp.LCP(np.eye(2), [-1.0, 1.0])
+    path = lcp.solve(problem, "kkt", finish=False).path
+    path.steps[-1] = evolve(path.endpoint, u=np.array([1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))
+    assert reweighted(problem, None, path) is None
+    weights = np.array([2.0, 0.5])
+    assert reweighted(problem, weights, path) is weights
+    del path.steps[:]
+    assert reweighted(problem, weights, path) is weights
+
+
+def test_weights_move_the_path_and_not_the_solutions():
+    problem = planted(5)
+    weights = np.exp(np.random.default_rng(1).normal(0.0, 0.2, PLANTED))
+    solved = 0
+    for k in range(5):
+        even, weighted = restart(problem, k), restart(problem, k, weights=weights)
+        np.testing.assert_array_equal(weighted.homotopy().origin.x0, even.homotopy().origin.x0)
+        np.testing.assert_allclose(weighted.homotopy().problem.A, weights[:, None] * problem.A, rtol=1e-15)
+        np.testing.assert_allclose(weighted.homotopy().origin.w0, weights * even.homotopy().origin.w0, rtol=1e-15)
+        for one in (even, weighted):
+            homotopy = one.homotopy()
+            np.testing.assert_allclose(homotopy.c2, homotopy.c2[0], rtol=1e-12)
+        path = weighted.trace(continuation.Budget())
+        if path.status is continuation.Status.REACHED_TARGET:
+            solved += 1
+            assert lcp.certify(problem, path.endpoint.y[:PLANTED]).solves(1e-10)
+    assert solved
+
+
+def test_the_end_of_a_weighted_path_is_not_called_stationary(monkeypatch):
+    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
+    search_ends = []
+    monkeypatch.setattr("problems.lcp.search.search.Search.best", lambda self: search_ends.extend(self.ends))
+    lcp.solve(problem, "kkt", finish=False, restarts=3)
+    assert len(search_ends) == 4
+    assert search_ends[0].stationary
+    assert not any(end.stationary for end in search_ends[2:])
+
+
+def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
+    monkeypatch.setattr("problems.lcp.search.restarts.SMALLEST", 1e-2)
+    problem = planted(3)
+    paths = [restart(problem, k).trace(continuation.Budget()) for k in range(6)]
+    given_up = [k for k, path in enumerate(paths) if path.message.startswith("Given up")]
+    assert given_up
+    for k in given_up:
+        assert paths[k].status is continuation.Status.INTERRUPTED
+        assert not lcp.certify(problem, np.maximum(paths[k].endpoint.y[:PLANTED], 0.0)).solves(1e-6)
+    pure = restart(problem, given_up[0], tolerance=None).trace(continuation.Budget())
+    assert not pure.message.startswith("Given up")
+
+
+def test_solve_restarts_reproducibly_and_says_how_often():
+    problem = next(p for p in map(planted, range(50)) if not lcp.solve(p, "kkt", restarts=0).solved)
+    solution = lcp.solve(problem, "kkt", restarts=300, seed=5)
+    assert solution.solved
+    assert lcp.certify(problem, solution.x).solves(1e-10)
+    again = lcp.solve(problem, "kkt", restarts=300, seed=5)
+    np.testing.assert_array_equal(again.x, solution.x)
+    assert len(again.paths) == len(solution.paths)
+    assert f"random start {len(solution.paths) - 1} (seed 5)" in solution.message
+    assert solution.path is solution.paths[-1]
+
+
+def test_an_executor_finds_what_one_process_finds():
+    problem = next(p for p in map(planted, range(50)) if not lcp.solve(p, "kkt", restarts=0).solved)
+    with ThreadPoolExecutor(2) as executor:
+        solution = lcp.solve(problem, "kkt", restarts=300, executor=executor)
+    assert solution.solved
+    assert lcp.certify(problem, solution.x).solves(1e-10)
+    assert all(len(path) <= 2 for path in solution.paths[1:])
+
+
+def test_over_an_executor_a_restart_goes_on_from_one_before_it(monkeypatch):
+    monkeypatch.setattr("problems.lcp.search.search.IN_FLIGHT", 1)
+    problem = planted(17)
+    alone = lcp.solve(problem, "kkt", restarts=300, seed=2)
+    with ThreadPoolExecutor(2) as executor:
+        spread = lcp.solve(problem, "kkt", restarts=300, seed=2, executor=executor)
+    np.testing.assert_array_equal(alone.x, spread.x)
+    assert len(alone.paths) == len(spread.paths) > 3
+
+
+def test_an_executor_stops_at_the_count():
+    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
+    with ThreadPoolExecutor(2) as executor:
+        solution = lcp.solve(problem, "kkt", restarts=5, executor=executor)
+    assert solution.outcome is lcp.Outcome.STATIONARY
+    assert len(solution.paths) == 6
+    assert "Restarts from random starts: 5" in solution.message
+
+
+def test_every_attempt_is_in_the_archive(tmp_path):
+    from continuation.archive import open_archive
+
+    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
+    file = tmp_path / "all.h5"
+    solution = lcp.solve(problem, restarts=3, archive=file)
+    with open_archive(file) as archive:
+        assert len(archive) == len(solution.paths) == 5
+        # Wang's path has 2n unknowns, the others 3n: the shorter one is filled up.
+        assert sorted({int(np.isfinite(path.y[0]).sum()) for path in archive}) == [4, 6]
+
+
+def test_light_paths_keep_their_ends():
+    path = restart(planted(0), 0).trace(continuation.Budget())
+    first, last, points = path.steps[0], path.endpoint, len(path)
+    kept = light(path)
+    assert points > 2
+    assert len(kept) == 2
+    np.testing.assert_array_equal(kept.steps[0].u, first.u)
+    np.testing.assert_array_equal(kept.endpoint.u, last.u)
+    assert len(trace_light(restart(planted(0), 0), continuation.Budget())) == 2
+
+
+def test_the_preset_factors_anew_only_where_that_is_cheap():
+    assert search_preset(50).corrector.reuse == 0.0
+    assert search_preset(500).corrector.reuse > 0.0

@@ -1,0 +1,196 @@
+"""Hypothesis strategies: what they draw is what they promise, exactly, and counterexamples shrink to small integers."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, find, given, settings
+from hypothesis import strategies as st
+
+from problems import hypothesis_hook
+from problems.lcp import classes
+from problems.lcp import strategies as mine
+from problems.lcp.data.problem import LCP
+from problems.lcp.reference.enumeration import solve_by_enumeration
+
+TESTS = {
+    "P": classes.is_p,
+    "P0": classes.is_p0,
+    "PSD": classes.is_psd,
+    "K": classes.is_k,
+    "Z": classes.is_z,
+    "N": classes.is_n,
+    "nondegenerate": classes.is_nondegenerate,
+    "row_sufficient": classes.is_row_sufficient,
+    "copositive": classes.is_copositive,
+}
+
+HUNT = settings(max_examples=5000, database=None, suppress_health_check=list(HealthCheck))
+
+
+def slack(problem, x):
+    """A x + q in rational arithmetic."""
+    rows = zip(problem.A.tolist(), problem.q.tolist(), strict=True)
+    return [sum((Fraction(a) * Fraction(v) for a, v in zip(row, x, strict=True)), Fraction(q)) for row, q in rows]
+
+
+def solves(problem, x):
+    w = slack(problem, x)
+    return min(*x, *w) >= 0 and not any(a * b for a, b in zip(map(Fraction, x), w, strict=True))
+
+
+@pytest.mark.parametrize("cls", TESTS)
+def test_matrices_belong_to_their_class(cls):
+    @given(mine.matrices(cls))
+    def belongs(A):
+        assert A.dtype == np.float64
+        assert A.shape == (len(A), len(A))
+        membership = TESTS[cls](A)
+        assert membership.holds, str(membership)
+
+    belongs()
+
+
+def test_every_class_has_a_test_here():
+    assert set(mine.CLASSES) == {*TESTS, "any"}
+
+
+@pytest.mark.parametrize("cls", mine.CLASSES)
+def test_the_order_asked_for_is_the_order_drawn(cls):
+    @given(mine.matrices(cls, 3), mine.matrices(cls, st.sampled_from((2, 5))))
+    @settings(max_examples=20)
+    def has_order(A, B):
+        assert A.shape == (3, 3)
+        assert len(B) in (2, 5)
+
+    has_order()
+
+
+HUNTED = {
+    "P but not PSD": ("P", lambda A: not classes.is_psd(A).holds),
+    "P0 but not P": ("P0", lambda A: not classes.is_p(A).holds and A.any()),
+    "P0 but not row sufficient": ("P0", lambda A: not classes.is_row_sufficient(A).holds),
+    "PSD but not symmetric": ("PSD", lambda A: (A != A.T).any()),
+    "row but not column sufficient": ("row_sufficient", lambda A: not classes.is_column_sufficient(A).holds),
+    "row sufficient, neither PSD nor P": (
+        "row_sufficient",
+        lambda A: classes.is_sufficient(A).holds and not classes.is_psd(A).holds and not classes.is_p(A).holds,
+    ),
+    "N of the first kind": ("N", lambda A: (A > 0).any()),
+    "copositive but not PSD": ("copositive", lambda A: not classes.is_psd(A).holds),
+    "Z but not K": ("Z", lambda A: not classes.is_k(A).holds),
+    "nondegenerate but not Q0": ("nondegenerate", lambda A: not classes.is_q0(A).holds),
+    "nondegenerate and not P": ("nondegenerate", lambda A: not classes.is_p(A).holds),
+}
+
+
+@pytest.mark.parametrize(("cls", "condition"), HUNTED.values(), ids=HUNTED)
+def test_the_classes_are_reached_beyond_their_subclasses_and_shrink(cls, condition):
+    A = find(mine.matrices(cls, 2), condition, settings=HUNT)
+    assert np.abs(A).max() <= 4
+
+
+def test_an_unknown_class_is_refused():
+    with pytest.raises(ValueError, match=r"cls: expected one of any, P, .*found 'Q'"):
+        mine.matrices("Q")
+
+
+@given(mine.lcps("PSD", 3))
+def test_lcps_have_the_matrix_asked_for(problem):
+    assert problem.n == 3
+    assert classes.is_psd(problem.A).holds
+
+
+@pytest.mark.parametrize("cls", ["any", "P0", "copositive"])
+def test_the_start_of_feasible_problems_is_strictly_feasible(cls):
+    @given(mine.feasible_lcps(cls))
+    def strictly_feasible(pair):
+        problem, x0 = pair
+        assert min(x0) > 0
+        assert min(slack(problem, x0)) > 0
+
+    strictly_feasible()
+
+
+@given(mine.planted_lcps("strict", "P0"))
+def test_a_planted_strict_solution_solves_and_is_strictly_complementary(pair):
+    problem, x = pair
+    assert solves(problem, x)
+    assert all(a + b > 0 for a, b in zip(x, slack(problem, x), strict=True))
+    assert tuple(map(Fraction, x)) in {s.x for s in solve_by_enumeration(problem).solutions if s.isolated} or not (
+        solve_by_enumeration(problem).complete
+    )
+
+
+@given(mine.planted_lcps("degenerate", "PSD"))
+def test_a_planted_degenerate_solution_solves_and_has_a_zero_pair(pair):
+    problem, x = pair
+    assert solves(problem, x)
+    assert any(a == b == 0 for a, b in zip(x, slack(problem, x), strict=True))
+
+
+@given(mine.two_solution_lcps(), mine.planted_lcps("many"))
+def test_two_planted_solutions_are_distinct_and_both_solve(triple, pair):
+    problem, x, y = triple
+    assert solves(problem, x)
+    assert solves(problem, y)
+    assert (x != y).any()
+    found = solve_by_enumeration(problem)
+    assert len(found.solutions) >= 2 or not found.complete
+    assert solves(*pair)
+    assert not solve_by_enumeration(pair[0]).complete or len(solve_by_enumeration(pair[0]).solutions) >= 2
+
+
+@pytest.mark.parametrize(("arguments", "words"), [(("lots",), "kind: .*'lots'"), (("many", "P"), "cls: .*'P'")])
+def test_unknown_kinds_are_refused(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        mine.planted_lcps(*arguments)
+
+
+@given(mine.near_singular_lcps(st.integers(2, 4)))
+def test_near_singular_problems_are_a_power_of_two_from_singular_and_strictly_feasible(pair):
+    problem, x0 = pair
+    assert min(x0) > 0
+    assert min(slack(problem, x0)) > 0
+    whole = np.round(problem.A)
+    moved = np.abs(problem.A - whole)
+    assert np.count_nonzero(moved) == 1
+    assert 2.0**-40 <= moved.max() <= 2.0**-10
+    assert classes.ExactMatrix.of(whole).minors[-1] == 0
+
+
+@given(mine.badly_scaled_lcps("P"))
+def test_badly_scaled_problems_keep_their_class_and_start(pair):
+    problem, x0 = pair
+    assert classes.is_p(problem.A).holds
+    assert min(x0) > 0
+    assert min(slack(problem, x0)) > 0
+    assert len(solve_by_enumeration(problem).solutions) == 1
+
+
+def test_bad_scales_reach_ratios_of_1e15():
+    def ratio(pair):
+        sizes = np.abs(pair[0].A[pair[0].A != 0])
+        return sizes.size and sizes.max() / sizes.min() > 1e15
+
+    find(mine.badly_scaled_lcps("any", 2), ratio, settings=HUNT)
+
+
+def test_the_hook_registers_the_problem_type_for_from_type():
+    hypothesis_hook.register()
+    problem = find(st.from_type(LCP), lambda p: p.n == 2 and p.q.any(), settings=HUNT)
+    assert isinstance(problem, LCP)
+
+
+def test_the_hook_imports_nothing():
+    """A session with Hypothesis and without LCPs pays for nothing."""
+    code = (
+        "import sys, hypothesis; from problems.hypothesis_hook import register; register(); "
+        "assert 'numpy' not in sys.modules and 'problems.lcp' not in sys.modules"
+    )
+    environment = {"HYPOTHESIS_NO_PLUGINS": "1", "PYTHONPATH": ":".join(sys.path)}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
