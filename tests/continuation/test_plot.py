@@ -65,7 +65,7 @@ def test_against_arclength(path, axes):
     s = line.get_xdata()
     assert s[0] == 0
     assert s[-1] == path.arclength[-1]
-    assert (np.diff(s) > 0).all()
+    np.testing.assert_allclose(line.get_ydata(), path(s)[:, 1], atol=2e-3)
     (mark,) = marks(axes)
     assert mark.get_xdata()[0] == path.turning_points[0].arclength
     assert axes.get_ylabel() == "$y_{2}$"
@@ -146,13 +146,19 @@ def test_a_single_point_can_be_drawn(axes):
     homotopy = continuation.from_functions(lambda y, lam: y - lam, start=([1.0], 1.0))
     path = continuation.trace(homotopy, budget=continuation.Budget(steps=1))
     plot_components(continuation.Path(path.steps[:1]), axes)
+    (point,) = axes.get_lines()
+    assert (list(point.get_xdata()), list(point.get_ydata()), point.get_marker()) == ([1.0], [1.0], ".")
     plot_steps(continuation.Path(path.steps[:1]), axes)
+    assert len(axes.get_lines()[1].get_xdata()) == 0
 
 
 def test_without_axes_a_figure_is_made(path):
     from matplotlib import pyplot
 
+    before = pyplot.get_fignums()
     axes = plot_steps(path)
+    assert axes.figure.number not in before
+    np.testing.assert_array_equal(axes.get_lines()[0].get_ydata(), np.diff(path.arclength))
     pyplot.close(axes.figure)
 
 

@@ -140,18 +140,23 @@ class KKTHomotopy:
         """(H_y, H_lam) in full, of order 3n, sparse as A is: for reference, the engine uses `bordered`."""
         s, n, mu = self._system(y, lam), self.n, 1.0 - lam
         column = np.concatenate([s.column, -s.c1, s.z2 * s.rho - s.c2])
-        eye = sp.eye_array(n)
-        rows = [
-            [
-                sp.csr_array(mu * self.structure.symmetrized) + lam * eye,
-                -mu * eye,
-                -mu * sp.csr_array(self.structure.transpose),
-            ],
-            [sp.diags_array(s.z1), sp.diags_array(s.x), None],
-            [sp.diags_array(s.z2) @ sp.csr_array(self.problem.A), None, sp.diags_array(s.w)],
-        ]
-        whole = sp.block_array(rows, format="csr")
-        return (whole if self.problem.sparse else whole.toarray()), column
+        if self.problem.sparse:
+            eye = sp.eye_array(n)
+            rows = [
+                [mu * self.structure.symmetrized + lam * eye, -mu * eye, -mu * self.structure.transpose],
+                [sp.diags_array(s.z1), sp.diags_array(s.x), None],
+                [sp.diags_array(s.z2) @ self.problem.A, None, sp.diags_array(s.w)],
+            ]
+            return sp.block_array(rows, format="csr"), column
+        whole, i = np.zeros((3 * n, 3 * n)), np.arange(n)
+        whole[:n, :n] = mu * self.structure.symmetrized
+        whole[i, i] += lam
+        whole[i, n + i] = -mu
+        whole[:n, 2 * n :] = -mu * self.structure.transpose
+        whole[n + i, i], whole[n + i, n + i] = s.z1, s.x
+        whole[2 * n :, :n] = s.z2[:, None] * self.problem.A
+        whole[2 * n + i, 2 * n + i] = s.w
+        return whole, column
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
