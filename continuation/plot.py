@@ -99,12 +99,11 @@ class Drawing:
 
         The path at given arclengths (`Path.__call__`) integrates its speed for each: 0.5 s of the 4 s of the demo.
         """
-        t = np.arange(_count(len(steps)))
-        t = t / t.size
+        inner = np.linspace(0.0, 1.0, _count(len(steps)), endpoint=False)[1:]
         s, u = [], []
         for before, after in pairwise(steps):
-            segment = after.segment
-            points = np.array([before.u, *(segment.at(float(x)) for x in t[1:]), after.u])
+            assert after.segment is not None
+            points = np.array([before.u, *map(after.segment.at, inner), after.u])
             weights = np.ones(points.shape[1]) if after.weights is None else after.weights
             chords = np.sqrt(np.diff(points, axis=0) ** 2 @ weights)
             behind = np.append(0.0, np.cumsum(chords[:-1])) / max(chords.sum(), np.finfo(float).tiny)

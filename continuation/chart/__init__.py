@@ -30,12 +30,13 @@ from continuation.chart.errors import (
 from continuation.chart.front import excess, on_front
 from continuation.chart.ladder import Ladder, Rung, longest_steps, orders, tolerances
 from continuation.chart.methods import traced
+from continuation.chart.model import Answer, Failure, Method, Problem
 from continuation.chart.profile import Profile, draw_profile
 from continuation.chart.results import WORK, Results, Row
 from continuation.chart.run import run
 from continuation.chart.scaling import Scaling, draw_scaling, exponents
 from continuation.chart.store import read, write
-from continuation.chart.study import Answer, Failure, Figure, Method, Problem, Study
+from continuation.chart.study import Figure, Study
 from continuation.chart.sweep import Sweep, draw_sweep
 from continuation.chart.table import Table, runs, summary
 from continuation.chart.truth import Truth, reference

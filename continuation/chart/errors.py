@@ -11,7 +11,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.auditing import arclength as quadrature
-from continuation.chart.study import Answer, Problem
+from continuation.chart.model import Answer, Problem
 from continuation.correctors import MoorePenrose
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator

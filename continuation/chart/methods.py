@@ -7,7 +7,7 @@ from inspect import signature
 from typing import Any
 
 from continuation.chart.ladder import Rung
-from continuation.chart.study import Answer, Method, Problem
+from continuation.chart.model import Answer, Method, Problem
 from continuation.path import Path
 from continuation.step.tracer import Tracer
 from continuation.tracing import trace

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from attrs import field, frozen
 
-from continuation.chart.study import Failure
+from continuation.chart.model import Failure
 from continuation.counts import Counts
 
 

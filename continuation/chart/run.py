@@ -8,8 +8,9 @@ from collections.abc import Callable
 
 from continuation.archive.provenance import now, software
 from continuation.chart.ladder import Rung
+from continuation.chart.model import Answer, Failure, Method, Problem
 from continuation.chart.results import Results, Row
-from continuation.chart.study import Answer, Failure, Method, Problem, Study
+from continuation.chart.study import Study
 from continuation.chart.threads import pinned
 from continuation.chart.verdict import verdict
 from continuation.counts import Counts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from continuation.chart.errors import distance
-from continuation.chart.study import Answer, Failure, Problem
+from continuation.chart.model import Answer, Failure, Problem
 from continuation.chart.truth import ARRIVED
 from continuation.path import Path
 from continuation.status import Status

@@ -2,6 +2,8 @@
 
 from continuation.jets.array import Jet
 from continuation.jets.calculus import directional_derivatives, evaluate, jacobian, path_series, taylor, variable
+from continuation.jets.dispatch import FUNCTIONS
+from continuation.jets.functions import RULES
 from continuation.jets.series import JetDomainError
 
 __all__ = [
@@ -14,3 +16,5 @@ __all__ = [
     "taylor",
     "variable",
 ]
+
+FUNCTIONS.update(RULES)

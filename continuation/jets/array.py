@@ -12,11 +12,7 @@ from scipy.sparse import issparse
 from continuation.arrays import Array
 from continuation.jets import ufuncs
 from continuation.jets.algebra import TAYLOR, Algebra
-
-
-def unknown(operation: str) -> TypeError:
-    """The error for what jets cannot do."""
-    return TypeError(f"jets do not know {operation}; write it with numpy functions that they know, or give a jacobian")
+from continuation.jets.dispatch import call, unknown
 
 
 def _operator(ufunc: np.ufunc, *, swapped: bool = False) -> Callable[[Jet, Any], Any]:
@@ -34,6 +30,14 @@ def _in_place(ufunc: np.ufunc) -> Callable[[Jet, Any], Any]:
         self.c[...] = result.c
         return self
 
+    return method
+
+
+def _method(function: Any) -> Callable[..., Any]:
+    def method(self: Jet, *args: Any, **keywords: Any) -> Any:
+        return function(self, *args, **keywords)
+
+    method.__doc__ = f"`numpy.{function.__name__}`."
     return method
 
 
@@ -139,8 +143,6 @@ class Jet:
         return out
 
     def __array_function__(self, function: Any, types: Any, args: Any, keywords: Any) -> Any:
-        from continuation.jets.functions import call  # here, since the functions are built on this class
-
         return call(function, args, keywords)
 
     # --- operators ----------------------------------------------------------------------------------------
@@ -199,25 +201,8 @@ class Jet:
         order = range(self.ndim)[::-1] if not axes else [range(self.ndim)[axis] for axis in axes]
         return wrap(self.c.transpose(0, *(axis + 1 for axis in order)), self.algebra)
 
-    def sum(self, axis: Any = None, keepdims: bool = False) -> Any:
-        """`numpy.sum`."""
-        return np.sum(self, axis=axis, keepdims=keepdims)
-
-    def mean(self, axis: Any = None, keepdims: bool = False) -> Any:
-        """`numpy.mean`."""
-        return np.mean(self, axis=axis, keepdims=keepdims)
-
-    def prod(self, axis: Any = None, keepdims: bool = False) -> Any:
-        """`numpy.prod`."""
-        return np.prod(self, axis=axis, keepdims=keepdims)
-
-    def cumsum(self, axis: Any = None) -> Any:
-        """`numpy.cumsum`."""
-        return np.cumsum(self, axis=axis)
-
-    def dot(self, other: Any) -> Any:
-        """`numpy.dot`."""
-        return np.dot(self, other)
+    sum, mean, prod = _method(np.sum), _method(np.mean), _method(np.prod)
+    cumsum, dot = _method(np.cumsum), _method(np.dot)
 
 
 class ArrayJet(Jet):

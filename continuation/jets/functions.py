@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable
 from typing import Any
 
@@ -10,25 +9,8 @@ import numpy as np
 from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 
 from continuation.arrays import Array
-from continuation.jets.array import Jet, as_jet, common, gather, operand, unknown, wrap
-
-
-def call(function: Any, args: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-    """Run a numpy function on jets; TypeError, naming the function, if it is not known in this form."""
-    name = f"{function.__module__}.{function.__name__}"
-    rule = FUNCTIONS.get(function)
-    if rule is None:
-        raise unknown(name)
-    try:
-        with np.errstate(all="ignore"):
-            return rule(*args, **keywords)
-    except TypeError:
-        try:
-            inspect.signature(rule).bind(*args, **keywords)
-        except TypeError as mismatch:
-            raise unknown(f"{name} with these arguments ({mismatch})") from None
-        raise
-
+from continuation.jets.array import Jet, as_jet, common, gather, operand, wrap
+from continuation.jets.dispatch import unknown
 
 # --- reductions -------------------------------------------------------------------------------------------
 
@@ -282,7 +264,7 @@ def _split(ary: Jet, indices_or_sections: Any, axis: int = 0) -> list[Jet]:
     return [_moved(np.take)(ary, part, axis) for part in places]
 
 
-FUNCTIONS: dict[Any, Callable[..., Any]] = {
+RULES: dict[Any, Callable[..., Any]] = {
     np.sum: _sum,
     np.mean: _mean,
     np.prod: _prod,

@@ -16,6 +16,7 @@ from continuation.counts import Counts
 from problems import lcp
 from problems.charts import rivals
 from problems.charts.families import planted
+from problems.charts.rivals import Solved, Solver
 from problems.lcp import LCP
 from problems.lcp.reference import ReferenceResult, lemke, min_newton, modulus
 from problems.paper import EXAMPLES
@@ -70,11 +71,7 @@ def solver(name: str, **options: Any) -> Method:
     return Method(name, run, laddered=False)
 
 
-Direct = Callable[[LCP], tuple[Array | None, Counts, str]]
-"""A solver: LCP to (x or None, counts, how it ended)."""
-
-
-def direct(name: str, solve: Direct) -> Method:
+def direct(name: str, solve: Solver) -> Method:
     """A solver that the ladder does not concern."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
@@ -89,8 +86,8 @@ def direct(name: str, solve: Direct) -> Method:
 def references() -> list[Method]:
     """Lemke, modulus and min-Newton; a pivot of Lemke's tableau, 4 n^2 operations, counts as 6/n factorisations."""
 
-    def counted(solve: Callable[[LCP], ReferenceResult], pivots: bool = False) -> Direct:
-        def run(problem: LCP) -> tuple[Array | None, Counts, str]:
+    def counted(solve: Callable[[LCP], ReferenceResult], pivots: bool = False) -> Solver:
+        def run(problem: LCP) -> Solved:
             result = solve(problem)
             work = -(-6 * result.iterations // problem.n) if pivots else result.factorizations
             counts = Counts(factorizations=work, solves=result.iterations, accepted=result.iterations)
@@ -129,7 +126,7 @@ def _unfinished(path: continuation.Path | None) -> bool:
 def studies(size: Size, compare: bool) -> Sequence[Study]:
     """The ten examples, and generated families over sizes."""
     rungs = {"smoke": (1e-6,), "moderate": (1e-4, 1e-8), "full": (1e-3, 1e-5, 1e-7, 1e-9)}[size]
-    outside = rivals.lcp_solvers() if compare else []
+    outside = [direct(name, solve) for name, solve in rivals.lcp_solvers().items()] if compare else []
     homotopies = [path(f"{name}", make) for name, make in MAKERS.items()]
     series = [path(f"{name}, series", MAKERS[name], preset=continuation.SERIES) for name in ("KKT", "Wang")]
     whole = [solver("KKT, finish", homotopy="kkt"), solver("solve, auto")]

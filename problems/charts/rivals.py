@@ -17,6 +17,12 @@ from continuation.chart import Answer, Method, Problem, Rung
 from continuation.counts import Counts
 from problems.lcp import LCP
 
+Solved = tuple[Array | None, Counts, str]
+"""x, None where the solver itself disowns it; what it cost; how it ended."""
+
+Solver = Callable[[LCP], Solved]
+"""A solver of the LCP that traces no path."""
+
 LONGEST = 1000
 """Steps of the plain loop."""
 
@@ -78,18 +84,16 @@ def _loop(problem: Problem, rung: Rung) -> Answer:
     raise ArithmeticError(f"the plain loop did not arrive in {counts.accepted} steps")
 
 
-def lcp_solvers() -> list[Method]:
-    """Those of quantecon, PIQP and Clarabel that can be imported; `lcp_notes` names the others."""
-    from problems.charts.lcp import direct
-
-    found = []
+def lcp_solvers() -> dict[str, Solver]:
+    """By name, those of quantecon, PIQP and Clarabel that can be imported; `lcp_notes` names the others."""
+    found: dict[str, Solver] = {}
     for name, (module, solve) in _LCP.items():
         if not _installed(module):
             continue
         library = import_module(module)
         # Once beforehand, for a library that compiles itself at its first call.
         solve(library, LCP(np.eye(1), -np.ones(1)))
-        found.append(direct(name, partial(solve, library)))
+        found[name] = partial(solve, library)
     return found
 
 
@@ -110,10 +114,6 @@ def _installed(module: str) -> bool:
     except ImportError:
         return False
     return True
-
-
-Solved = tuple[Array | None, Counts, str]
-"""x, None where the solver itself disowns it; what it cost; how it ended."""
 
 
 def _quantecon(library: Any, problem: LCP) -> Solved:

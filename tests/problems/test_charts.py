@@ -99,7 +99,7 @@ def test_an_outside_solver_is_judged_by_the_certificate_unless_it_says_itself_th
     study = chart.Study(
         name="outside",
         problems=[chart.Problem("one", lcp.LCP(np.eye(5), np.ones(5)))],
-        methods=rivals.lcp_solvers(),
+        methods=[lcp_charts.direct(name, solve) for name, solve in rivals.lcp_solvers().items()],
         errors=[lcp_charts.RESIDUAL],
         repeats=0,
     )

@@ -1,0 +1,82 @@
+"""No import circles, and an engine that knows no problems: all imports, those inside functions and for types too."""
+
+import ast
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def modules(root, *packages):
+    """Dotted name to source of every module; a package goes by its own name."""
+    files = [file for package in packages for file in sorted((root / package).rglob("*.py"))]
+    return {
+        ".".join((file.parent if file.stem == "__init__" else file.with_suffix("")).relative_to(root).parts): file
+        for file in files
+    }
+
+
+def imports(name, file):
+    """Every dotted name that a module imports, `from a import b` as a.b; Python's own import of parents is no part."""
+    package = name.split(".") if file.stem == "__init__" else name.split(".")[:-1]
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else []
+            source = ".".join([*above, *([node.module] if node.module else [])])
+            yield from (f"{source}.{alias.name}" for alias in node.names)
+
+
+def graph(root, *packages):
+    """The modules that each module imports; a name that is no module comes from the module that holds it."""
+    known = modules(root, *packages)
+    found = {}
+    for name, file in known.items():
+        wanted = (target if target in known else target.rpartition(".")[0] for target in imports(name, file))
+        found[name] = {target for target in wanted if target in known and target != name}
+    return found
+
+
+def circle(found):
+    """One circle of the graph, as a list of names; empty where there is none."""
+    try:
+        TopologicalSorter(found).prepare()
+    except CycleError as error:
+        return error.args[1]
+    return []
+
+
+def test_no_module_imports_itself_by_way_of_others():
+    assert circle(graph(ROOT, "continuation", "problems")) == []
+
+
+def test_the_engine_imports_no_problems():
+    outside = {
+        (name, target)
+        for name, file in modules(ROOT, "continuation").items()
+        for target in imports(name, file)
+        if target.split(".")[0] == "problems"
+    }
+    assert outside == set()
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("from room.other import f", "from room import one"),
+        ("from . import other", "def g():\n    from .one import f"),
+        ("import room.other", "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import room.one"),
+    ],
+    ids=["absolute", "inside a function", "for types"],
+)
+def test_a_circle_is_seen_however_it_is_written(tmp_path, one, other):
+    room = tmp_path / "room"
+    room.mkdir()
+    for name, text in (("__init__", ""), ("one", one), ("other", other)):
+        (room / f"{name}.py").write_text(text)
+    assert set(circle(graph(tmp_path, "room"))) == {"room.one", "room.other"}
+    (room / "other.py").write_text("")
+    assert circle(graph(tmp_path, "room")) == []
