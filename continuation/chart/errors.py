@@ -111,7 +111,20 @@ def _dropped(problem: Problem, points: Array) -> Array:
 
 
 def observed(name: str, label: str) -> Error:
-    """A scalar that the homotopy (its `observe`) or the method reports at the end and that is zero at a solution."""
+    """A scalar that the homotopy (its `observe`) or the method reports at the end and that is zero at a solution.
+
+    Parameters
+    ----------
+    name : str
+        The key in `Answer.observed`.
+    label : str
+        Of an axis.
+
+    Returns
+    -------
+    Error
+        NaN where nothing of that name is reported.
+    """
     return Error(name, label, lambda problem, answer: float(answer.observed.get(name, math.nan)))
 
 

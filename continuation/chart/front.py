@@ -23,7 +23,20 @@ def coordinates(row: Row, error: str, work: str) -> tuple[float, float] | None:
 
 
 def on_front(rows: Sequence[Row], error: str, work: str) -> list[Row]:
-    """The rows of one problem that no other row beats, by falling error."""
+    """The rows of one problem that no other row beats, by falling error.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+    error : str
+        A name in `Row.errors`.
+    work : str
+        One of `WORK`.
+
+    Returns
+    -------
+    list of Row
+    """
     points = [(point, row) for row in rows if (point := coordinates(row, error, work)) is not None]
     best = [
         (point, row)
@@ -37,6 +50,19 @@ def excess(results: Results, error: str, work: str) -> dict[tuple[str, str, floa
     """How many times the work of the best run that is at least as accurate; 1 on the front, infinite for failures.
 
     Keyed by (problem, method, rung); a method without a rung has the key's last entry 0.
+
+    Parameters
+    ----------
+    results : Results
+    error : str
+        One of `results.errors`.
+    work : str
+        One of `WORK`.
+
+    Raises
+    ------
+    ValueError
+        If the error or the work is none of the results'.
     """
     results.check(error, work)
     found = {}

@@ -57,22 +57,51 @@ class Rung:
     value: float
 
     def apply(self, options: Mapping[str, Any]) -> Options:
-        """The options of a trace with this value set."""
+        """The options of a trace with this value set.
+
+        Parameters
+        ----------
+        options : mapping
+            For `continuation.trace`.
+
+        Returns
+        -------
+        dict
+            New options.
+        """
         return self.ladder.change(dict(options), self.value)
 
 
 def tolerances(*values: float) -> Ladder:
-    """The tolerance of the trace."""
+    """The tolerance of the trace.
+
+    Parameters
+    ----------
+    *values : float
+        Positive.
+    """
     return Ladder("tolerance", values, lambda options, value: {**options, "tolerance": value})
 
 
 def longest_steps(*values: float) -> Ladder:
-    """The longest step that the controller may take, in arclength of the metric; the first step is no longer."""
+    """The longest step that the controller may take, in arclength of the metric; the first step is no longer.
+
+    Parameters
+    ----------
+    *values : float
+        Positive.
+    """
     return Ladder("longest step", values, _limited)
 
 
 def orders(*values: int) -> Ladder:
-    """The order of the Taylor predictor of the options (or preset), which must have one."""
+    """The order of the Taylor predictor of the options (or preset), which must have one.
+
+    Parameters
+    ----------
+    *values : int
+        Positive.
+    """
     return Ladder("order", values, _of_order)
 
 

@@ -53,6 +53,16 @@ def profile_table(results: Results, work: str) -> Table:
 def draw_profile(results: Results, work: str) -> Figure:
     """Draw the profiles, one panel a family: the fraction solved against the factor over the best work.
 
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+
+    Returns
+    -------
+    matplotlib Figure
+
     Raises
     ------
     ImportError

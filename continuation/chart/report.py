@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path as File
-from typing import Any
 
 from continuation.chart.looks import DOTS_PER_INCH
 from continuation.chart.results import Results
 from continuation.chart.store import write
-from continuation.chart.study import Study
+from continuation.chart.study import Study, SupportsTable
 from continuation.chart.table import Table, runs, summary
 
 
@@ -47,9 +46,8 @@ def tables(study: Study, results: Results) -> dict[str, Table]:
     """What the figures say, as tables by title: the summary by method, and the tables that the figures have."""
     found = {"Methods": summary(results)}
     for figure in study.figures:
-        make: Any = getattr(figure, "table", None)
-        if make is not None:
-            found[figure.name] = make(results)
+        if isinstance(figure, SupportsTable):
+            found[figure.name] = figure.table(results)
     return found
 
 

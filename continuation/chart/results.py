@@ -59,7 +59,13 @@ class Row:
         return self.failure == Failure.BUDGET and self.counts == Counts()
 
     def work(self, name: str) -> float:
-        """One of `WORK` by name, not below its least."""
+        """One of `WORK` by name, not below its least.
+
+        Parameters
+        ----------
+        name : str
+            One of `WORK`.
+        """
         measure = WORK[name]
         return max(measure.of(self), measure.least)
 
@@ -130,16 +136,35 @@ class Results:
         """Names in order of appearance."""
         return list(dict.fromkeys(row.method for row in self.rows))
 
-    def of(
-        self, *, problem: str | None = None, family: str | None = None, method: str | None = None
-    ) -> Sequence[Row]:
-        """The rows with the given names."""
+    def of(self, *, problem: str | None = None, family: str | None = None, method: str | None = None) -> Sequence[Row]:
+        """The rows with the given names.
+
+        Parameters
+        ----------
+        problem, family, method : str, optional
+            Only rows of that name; all by default.
+
+        Returns
+        -------
+        sequence of Row
+        """
         wanted = {"problem": problem, "family": family, "method": method}
         given = {name: value for name, value in wanted.items() if value is not None}
         return [row for row in self.rows if all(getattr(row, name) == value for name, value in given.items())]
 
     def check(self, error: str | None = None, work: str | None = None) -> None:
-        """Raise ValueError for an error or a work that the results do not have."""
+        """Refuse an error or a work that the results do not have.
+
+        Parameters
+        ----------
+        error : str, optional
+        work : str, optional
+
+        Raises
+        ------
+        ValueError
+            Naming what there is.
+        """
         if error is not None and error not in self.errors:
             raise ValueError(f"error: expected one of {', '.join(self.errors)}, found {error!r}")
         if work is not None and work not in WORK:

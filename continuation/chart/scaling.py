@@ -21,6 +21,17 @@ def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
     """The exponent p of work ~ n^p for each (family, method), by least squares on logarithms; NaN below `FITTED` sizes.
 
     A size with several runs counts with their mean; failures are left out.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+
+    Raises
+    ------
+    ValueError
+        If the error or the work is none of the results'.
     """
     results.check(work=work)
     found = {}
@@ -57,6 +68,16 @@ def scaling_table(results: Results, work: str) -> Table:
 
 def draw_scaling(results: Results, work: str) -> Figure:
     """Draw work against n, one panel a family; the label of each line has its exponent.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+
+    Returns
+    -------
+    matplotlib Figure
 
     Raises
     ------

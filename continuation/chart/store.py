@@ -48,6 +48,16 @@ _ERROR = "error_"
 def write(results: Results, file: str | PathLike[str]) -> File:
     """Write results to a new file.
 
+    Parameters
+    ----------
+    results : Results
+    file : path
+        Must not exist.
+
+    Returns
+    -------
+    pathlib.Path
+
     Raises
     ------
     ArchiveError
@@ -101,6 +111,15 @@ def _put(h5: Any, column: Column, values: list[Any]) -> None:
 
 def read(file: str | PathLike[str]) -> Results:
     """Read the results of a study.
+
+    Parameters
+    ----------
+    file : path
+        Written by `write`.
+
+    Returns
+    -------
+    Results
 
     Raises
     ------

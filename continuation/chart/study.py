@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from attrs import field, frozen
 from attrs.validators import ge
@@ -12,10 +12,11 @@ from continuation.chart.errors import Error
 from continuation.chart.ladder import Ladder, tolerances
 from continuation.chart.model import Method, Problem
 from continuation.chart.results import WORK, Results
+from continuation.chart.table import Table
 
 
 class Figure(Protocol):
-    """A picture of results, or a table of them."""
+    """A picture of results; with a table of them where it has the method of `SupportsTable` too."""
 
     @property
     def name(self) -> str:
@@ -23,7 +24,34 @@ class Figure(Protocol):
         ...
 
     def draw(self, results: Results) -> Any:
-        """The matplotlib figure."""
+        """The matplotlib figure.
+
+        Parameters
+        ----------
+        results : Results
+
+        Returns
+        -------
+        matplotlib Figure
+        """
+        ...
+
+
+@runtime_checkable
+class SupportsTable(Protocol):
+    """Capability of a figure: the same as a table."""
+
+    def table(self, results: Results) -> Table:
+        """What it shows, in numbers.
+
+        Parameters
+        ----------
+        results : Results
+
+        Returns
+        -------
+        Table
+        """
         ...
 
 

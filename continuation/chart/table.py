@@ -134,9 +134,7 @@ def summary(results: Results, error: str | None = None) -> Table:
     return Table(head, lines)
 
 
-def _line(
-    method: str, rows: Sequence[Row], far: dict[str, dict[tuple[str, str, float], float]]
-) -> tuple[Cell, ...]:
+def _line(method: str, rows: Sequence[Row], far: dict[str, dict[tuple[str, str, float], float]]) -> tuple[Cell, ...]:
     cells: list[Cell] = [method, len(rows), sum(not row.failed for row in rows), _failures(rows)]
     for table in far.values():
         values = [value for (_, name, _), value in table.items() if name == method and math.isfinite(value)]

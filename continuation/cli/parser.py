@@ -42,7 +42,19 @@ class Subparsers(Protocol):
     """What a command registers itself with: the `add_parser` of argparse."""
 
     def add_parser(self, name: str, **options: Any) -> argparse.ArgumentParser:
-        """A parser for a new command; `help` is its line in the list of commands."""
+        """A parser for a new command.
+
+        Parameters
+        ----------
+        name : str
+            Of the command.
+        **options
+            As for `argparse.ArgumentParser`, and `help`, the line in the list of commands.
+
+        Returns
+        -------
+        argparse.ArgumentParser
+        """
         ...
 
 

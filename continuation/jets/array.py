@@ -37,7 +37,13 @@ def _method(function: Any) -> Callable[..., Any]:
     def method(self: Jet, *args: Any, **keywords: Any) -> Any:
         return function(self, *args, **keywords)
 
-    method.__doc__ = f"`numpy.{function.__name__}`."
+    method.__doc__ = f"""`numpy.{function.__name__}` of this jet.
+
+    Parameters
+    ----------
+    *args, **keywords
+        As for that function.
+    """
     return method
 
 
@@ -76,7 +82,18 @@ class Jet:
         return len(self.c) - 1
 
     def coefficient(self, k: int) -> Array:
-        """The coefficient of s**k, an array of the jet's shape."""
+        """The coefficient of s**k, an array of the jet's shape.
+
+        Parameters
+        ----------
+        k : int
+            From 0 to `order`.
+
+        Raises
+        ------
+        ValueError
+            For another k.
+        """
         if not 0 <= operator.index(k) <= self.order:
             raise ValueError(f"k is {k}; expected 0 <= k <= {self.order}, the order of this jet")
         return np.asarray(self.c[k])
@@ -182,7 +199,13 @@ class Jet:
         return wrap(self.c.copy(), self.algebra)
 
     def reshape(self, *shape: Any) -> Jet:
-        """The same entries in another shape; a view where that is possible."""
+        """The same entries in another shape; a view where that is possible.
+
+        Parameters
+        ----------
+        *shape : int
+            Or one tuple of them.
+        """
         (shape,) = shape if len(shape) == 1 else (shape,)
         return wrap(self.c.reshape(len(self.c), *np.atleast_1d(shape)), self.algebra)
 
@@ -195,7 +218,13 @@ class Jet:
         return self.ravel().copy()
 
     def transpose(self, *axes: Any) -> Jet:
-        """The axes in another order (reversed unless given), as a view."""
+        """The axes in another order (reversed unless given), as a view.
+
+        Parameters
+        ----------
+        *axes : int
+            Or one tuple of them.
+        """
         if len(axes) == 1 and not isinstance(axes[0], int):
             (axes,) = axes
         order = range(self.ndim)[::-1] if not axes else [range(self.ndim)[axis] for axis in axes]

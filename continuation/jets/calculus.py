@@ -39,7 +39,13 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
 
 
 def evaluate(jet: Jet, s: Any) -> Array:
-    """The polynomial's value at `s`: shape ``(*s.shape, *jet.shape)``."""
+    """The polynomial's value at `s`: shape ``(*s.shape, *jet.shape)``.
+
+    Parameters
+    ----------
+    jet : Jet
+    s : array_like
+    """
     s = np.asarray(s, dtype=float)
     s = s.reshape((*s.shape, *(1,) * jet.ndim))
     out = np.zeros_like(s)
@@ -76,7 +82,25 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
 
 
 def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int) -> Array:
-    """Derivatives of s -> f(x + s v) at 0, of orders 0 to `order`: shape (order + 1, *shape of f)."""
+    """Derivatives of s -> f(x + s v) at 0, of orders 0 to `order`.
+
+    Parameters
+    ----------
+    f : callable
+        A function of an array, written in numpy functions that jets know.
+    x, v : array_like
+        Point and direction; `v` is broadcast to the shape of `x`.
+    order : int
+
+    Returns
+    -------
+    ndarray, (order + 1, *shape of f)
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
+    """
     c = taylor(f, x, order, v)
     factorials = np.array([float(factorial(k)) for k in range(len(c))])
     return np.asarray(c * factorials.reshape(-1, *(1,) * (c.ndim - 1)))
@@ -86,7 +110,23 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
     """The Jacobian of f: R^m -> R^n at x, without truncation error: shape (n, m).
 
     The directions go through `f` together (128 at a time), so `f` is called once for m <= 128.
-    An `f` of any shape gives ``(*shape, m)``. Raises as `taylor` does.
+
+    Parameters
+    ----------
+    f : callable
+        Written in numpy functions that jets know; of any shape, which gives ``(*shape, m)``.
+    x : array_like, shape (m,)
+
+    Returns
+    -------
+    ndarray, (n, m)
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
+    ValueError
+        If x is no vector.
     """
     x = _numbers(x, "x")
     if x.ndim != 1 or len(x) == 0:

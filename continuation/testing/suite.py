@@ -120,7 +120,25 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
 def run_checks(
     homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
 ) -> tuple[Result, ...]:
-    """Run all checks that apply, and collect what came of them; the parameters are those of `check_homotopy`."""
+    """Run all checks that apply, and collect what came of them.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    expected_failed_checks : mapping of str to str, optional
+    steps : int, optional
+        All as for `check_homotopy`.
+
+    Returns
+    -------
+    tuple of Result
+        In the order of the checks.
+
+    Raises
+    ------
+    ValueError
+        If an expected failure is none of the checks.
+    """
     expected = dict(expected_failed_checks or {})
     known = [rule.name for rule in RULES]
     unknown = [name for name in expected if name not in known]

@@ -40,7 +40,12 @@ class BrownAlmostLinear:
 
     @quiet
     def jacobian(self, x: Array) -> Array:
-        """F'(x), shape (n, n)."""
+        """F'(x), shape (n, n).
+
+        Parameters
+        ----------
+        x : Array of shape (n,)
+        """
         # Products of all but one, from both sides: dividing prod x by x_k would fail at x_k = 0.
         before = np.cumprod(np.concatenate((np.ones(1), x[:-1])))
         after = np.cumprod(np.concatenate((np.ones(1), x[:0:-1])))[::-1]
@@ -51,5 +56,10 @@ def brown(n: int) -> BrownAlmostLinear:
     """Brown's almost linear function of n unknowns: ``F = brown(n)``, with ``F.jacobian``.
 
     ``fixed_point(F, a, F.jacobian)`` is then the classical test path.
+
+    Parameters
+    ----------
+    n : int
+        Number of equations and unknowns.
     """
     return BrownAlmostLinear(n)

@@ -39,7 +39,15 @@ class BuiltOnFunction(Protocol):
         ...
 
     def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) from slope = F'(y)."""
+        """(H_y, H_lam) from slope = F'(y).
+
+        Parameters
+        ----------
+        slope : Matrix
+            F'(y), shape (n, n).
+        y : Array of shape (n,)
+        lam : float
+        """
         ...
 
 

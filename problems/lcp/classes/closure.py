@@ -13,7 +13,7 @@ import random
 from typing import Any
 
 from problems.lcp.classes.exact import ExactMatrix, index_sets, principal_minors
-from problems.lcp.classes.membership import Evidence, Membership, Rows
+from problems.lcp.classes.membership import Evidence, Membership, Rows, matrix_class
 from problems.lcp.classes.minors import SIGNS, judge, of_exact_order, two_signs
 
 N_BAR = "Mohan, Parthasarathy and Sridhar, N-bar matrices and the class Q, 1992"
@@ -27,20 +27,27 @@ TRIALS = 400
 """Perturbations tried, from a fixed seed, before the answer is `not decided`."""
 
 
-def is_n_bar(A: Any) -> Membership:
+@matrix_class
+def is_n_bar(matrix: ExactMatrix) -> Membership:
     """N-bar: the limit of a sequence of N-matrices."""
-    matrix = ExactMatrix.of(A)
     return _limit(matrix, "N-bar", matrix.n, N_BAR)
 
 
-def is_almost_n_bar(A: Any) -> Membership:
+@matrix_class
+def is_almost_n_bar(matrix: ExactMatrix) -> Membership:
     """Almost N-bar: the limit of a sequence of almost N-matrices."""
-    matrix = ExactMatrix.of(A)
     return _limit(matrix, "almost N-bar", matrix.n - 1, ALMOST_N_BAR)
 
 
 def is_n_bar_of_exact_order(A: Any, k: int | None = None) -> Membership:
-    """N-bar of exact order k: the limit of N-matrices of exact order k; k as in `is_n_of_exact_order`."""
+    """N-bar of exact order k: the limit of N-matrices of exact order k.
+
+    Parameters
+    ----------
+    A : array_like, shape (n, n)
+    k : int, optional
+        As for `is_n_of_exact_order`.
+    """
     return of_exact_order(A, "N-bar", k, lambda matrix, name, last: _limit(matrix, name, last, N_BAR_EXACT))
 
 

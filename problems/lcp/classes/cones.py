@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import Any
 
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices
-from problems.lcp.classes.membership import CPS, Evidence, Membership, show_set, show_vector, undecided
+from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, show_vector, undecided
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point, positive_point
 
 LARGEST = 10
@@ -70,32 +69,37 @@ def _homogeneous_solution(matrix: ExactMatrix, support: Indices) -> list[Constra
     return [equal(row) if i in support else at_least(row) for i, row in enumerate(block)]
 
 
-def is_semimonotone(A: Any) -> Membership:
+@matrix_class
+def is_semimonotone(matrix: ExactMatrix) -> Membership:
     """E0: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i >= 0."""
     words = ("(Ax)_i < 0 wherever x_i > 0", "no x has (Ax)_i < 0 wherever x_i > 0")
-    return _by_supports(ExactMatrix.of(A), "E0", _all_negative, words, CPS + ", section 3.9")
+    return _by_supports(matrix, "E0", _all_negative, words, CPS + ", section 3.9")
 
 
-def is_strictly_semimonotone(A: Any) -> Membership:
+@matrix_class
+def is_strictly_semimonotone(matrix: ExactMatrix) -> Membership:
     """E: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i > 0."""
     words = ("(Ax)_i <= 0 wherever x_i > 0", "no x has (Ax)_i <= 0 wherever x_i > 0")
-    return _by_supports(ExactMatrix.of(A), "E", _all_nonpositive, words, CPS + ", section 3.9")
+    return _by_supports(matrix, "E", _all_nonpositive, words, CPS + ", section 3.9")
 
 
-def is_r0(A: Any) -> Membership:
+@matrix_class
+def is_r0(matrix: ExactMatrix) -> Membership:
     """R0: LCP(0, A) has no solution but zero."""
     words = ("Ax >= 0 and x'Ax = 0: it solves LCP(0, A)", "LCP(0, A) has no nonzero solution")
-    return _by_supports(ExactMatrix.of(A), "R0", _homogeneous_solution, words, CPS + ", section 3.8")
+    return _by_supports(matrix, "R0", _homogeneous_solution, words, CPS + ", section 3.8")
 
 
-def is_copositive(A: Any) -> Membership:
+@matrix_class
+def is_copositive(matrix: ExactMatrix) -> Membership:
     """Copositive (C0): x'Ax >= 0 for x >= 0. For the symmetric part that is E0 (CPS, section 3.9)."""
-    return _copositive(ExactMatrix.of(A), "copositive", _all_negative, "nonnegative")
+    return _copositive(matrix, "copositive", _all_negative, "nonnegative")
 
 
-def is_strictly_copositive(A: Any) -> Membership:
+@matrix_class
+def is_strictly_copositive(matrix: ExactMatrix) -> Membership:
     """Strictly copositive (C): x'Ax > 0 for nonzero x >= 0. For the symmetric part that is E (CPS, section 3.9)."""
-    return _copositive(ExactMatrix.of(A), "strictly copositive", _all_nonpositive, "positive")
+    return _copositive(matrix, "strictly copositive", _all_nonpositive, "positive")
 
 
 def _copositive(matrix: ExactMatrix, name: str, build: Build, wanted: str) -> Membership:
@@ -116,9 +120,9 @@ def quadratic_form(matrix: ExactMatrix, x: Sequence[Fraction]) -> Fraction:
     return sum((v * y for v, y in zip(x, matrix.image(x), strict=True)), Fraction(0))
 
 
-def is_almost_copositive(A: Any) -> Membership:
+@matrix_class
+def is_almost_copositive(matrix: ExactMatrix) -> Membership:
     """Almost C0: every principal submatrix of order n - 1 copositive, A itself not."""
-    matrix = ExactMatrix.of(A)
     cited = "Dutta, Das and Jana, Bounded Homotopy Path Approach, section 2"
     plain = is_copositive(matrix)
     if plain.holds is None:
@@ -135,12 +139,12 @@ def is_almost_copositive(A: Any) -> Membership:
     return Membership("almost copositive", True, certificate, cited)
 
 
-def is_semimonotone_star(A: Any) -> Membership:
+@matrix_class
+def is_semimonotone_star(matrix: ExactMatrix) -> Membership:
     """E0^s as the paper prints it: x'Ax = 0, Ax >= 0, x >= 0 imply A'x <= 0.
 
     Jana, Das and Sinha, whose class it is, ask for E0 as well; the sentence says whether that holds.
     """
-    matrix = ExactMatrix.of(A)
     cited = "Dutta, Das and Jana, section 2; Jana, Das and Sinha, On semimonotone star matrices, 2018, ask for E0 too"
     if matrix.n > LARGEST_STAR:
         return undecided("E0^s", matrix.n, LARGEST_STAR, cited)
@@ -159,9 +163,9 @@ def is_semimonotone_star(A: Any) -> Membership:
     return Membership("E0^s", True, Evidence(sentence), cited)
 
 
-def is_s(A: Any) -> Membership:
+@matrix_class
+def is_s(matrix: ExactMatrix) -> Membership:
     """S: Ax > 0 for some x > 0, so that every LCP(q, A) has a strictly feasible point. One linear program."""
-    matrix = ExactMatrix.of(A)
     cited = CPS + ", section 3.1; Ville's theorem"
     x = positive_point([at_least(row, 1) for row in matrix.entries], matrix.n)
     if x is not None:

@@ -95,11 +95,22 @@ class ExactMatrix:
         return tuple(principal_minors(self.entries))
 
     def minor(self, mask: int) -> Fraction:
-        """The principal minor of the index set `mask`, in the units of A."""
+        """The principal minor of the index set `mask`, in the units of A.
+
+        Parameters
+        ----------
+        mask : int
+            Bit i is set where the index i belongs to the set.
+        """
         return Fraction(self.minors[mask], self.scale ** mask.bit_count())
 
     def image(self, x: Sequence[Fraction]) -> tuple[Fraction, ...]:
-        """A x, in the units of A."""
+        """A x, in the units of A.
+
+        Parameters
+        ----------
+        x : sequence of n Fraction
+        """
         products = (sum((a * v for a, v in zip(row, x, strict=True)), Fraction(0)) for row in self.entries)
         return tuple(product / self.scale for product in products)
 

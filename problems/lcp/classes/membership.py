@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from functools import wraps
+from inspect import Parameter, Signature, cleandoc
+from typing import Any
 
 from attrs import frozen
+
+from problems.lcp.classes.exact import ExactMatrix
 
 Rows = tuple[tuple[int, ...], ...]
 
@@ -69,6 +74,47 @@ class Membership:
 ANSWERS: Mapping[bool | None, str] = {True: "yes", False: "no", None: "not decided"}
 
 Classification = Mapping[str, Membership]
+
+
+_SECTIONS = """
+
+Parameters
+----------
+A : array_like or scipy sparse, shape (n, n)
+    Each float is taken as the rational number that it is.
+
+Returns
+-------
+Membership
+
+Raises
+------
+ValueError
+    If A is not a square matrix of finite real numbers.
+"""
+
+
+def matrix_class(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], Membership]:
+    """Make a test of exact matrices one of any matrix, and say so in its docstring.
+
+    Parameters
+    ----------
+    test : callable
+        An `ExactMatrix` to its `Membership`.
+
+    Returns
+    -------
+    callable
+        Any matrix, see `ExactMatrix.of`, to its `Membership`.
+    """
+
+    @wraps(test)
+    def of(A: Any) -> Membership:
+        return test(ExactMatrix.of(A))
+
+    of.__doc__ = cleandoc(f"{test.__doc__}") + _SECTIONS
+    of.__signature__ = Signature([Parameter("A", Parameter.POSITIONAL_OR_KEYWORD)])  # type: ignore[attr-defined]
+    return of
 
 
 def undecided(name: str, n: int, limit: int, cited: str) -> Membership:

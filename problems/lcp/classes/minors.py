@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
-from problems.lcp.classes.membership import CPS, Evidence, Membership, show_set, undecided
+from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, undecided
 
 LARGEST = 12
 """Largest order of the tests that read all 2^n - 1 principal minors."""
@@ -55,47 +55,51 @@ def _all_right(n: int, rule: Rule) -> str:
     return f"the principal minors of order 1 to {change} are {signs[0]}, those of higher order {signs[change]}"
 
 
-def is_p(A: Any) -> Membership:
+@matrix_class
+def is_p(matrix: ExactMatrix) -> Membership:
     """P: all principal minors positive."""
-    return judge(ExactMatrix.of(A), "P", lambda _: "positive", CPS + ", section 3.3")
+    return judge(matrix, "P", lambda _: "positive", CPS + ", section 3.3")
 
 
-def is_p0(A: Any) -> Membership:
+@matrix_class
+def is_p0(matrix: ExactMatrix) -> Membership:
     """P0: all principal minors nonnegative."""
-    return judge(ExactMatrix.of(A), "P0", lambda _: "nonnegative", CPS + ", section 3.4")
+    return judge(matrix, "P0", lambda _: "nonnegative", CPS + ", section 3.4")
 
 
-def is_almost_p(A: Any) -> Membership:
+@matrix_class
+def is_almost_p(matrix: ExactMatrix) -> Membership:
     """Almost P: the proper principal minors positive, the determinant negative."""
-    matrix = ExactMatrix.of(A)
     return judge(matrix, "almost P", two_signs("positive", matrix.n - 1, "negative"), EXACT_ORDER)
 
 
-def is_almost_p0(A: Any) -> Membership:
+@matrix_class
+def is_almost_p0(matrix: ExactMatrix) -> Membership:
     """Almost P0: the proper principal minors nonnegative, the determinant negative."""
-    matrix = ExactMatrix.of(A)
     return judge(matrix, "almost P0", two_signs("nonnegative", matrix.n - 1, "negative"), EXACT_ORDER)
 
 
-def is_n(A: Any) -> Membership:
+@matrix_class
+def is_n(matrix: ExactMatrix) -> Membership:
     """N: all principal minors negative."""
-    return judge(ExactMatrix.of(A), "N", lambda _: "negative", PAPER)
+    return judge(matrix, "N", lambda _: "negative", PAPER)
 
 
-def is_n0(A: Any) -> Membership:
+@matrix_class
+def is_n0(matrix: ExactMatrix) -> Membership:
     """N0: all principal minors nonpositive."""
-    return judge(ExactMatrix.of(A), "N0", lambda _: "nonpositive", PAPER)
+    return judge(matrix, "N0", lambda _: "nonpositive", PAPER)
 
 
-def is_almost_n(A: Any) -> Membership:
+@matrix_class
+def is_almost_n(matrix: ExactMatrix) -> Membership:
     """Almost N: the proper principal minors negative, the determinant positive (N of exact order 1)."""
-    matrix = ExactMatrix.of(A)
     return judge(matrix, "almost N", two_signs("negative", matrix.n - 1, "positive"), PAPER)
 
 
-def is_almost_n0(A: Any) -> Membership:
+@matrix_class
+def is_almost_n0(matrix: ExactMatrix) -> Membership:
     """Almost N0: the proper principal minors nonpositive, the determinant positive (N0 of exact order 1)."""
-    matrix = ExactMatrix.of(A)
     return judge(matrix, "almost N0", two_signs("nonpositive", matrix.n - 1, "positive"), PAPER)
 
 
@@ -114,7 +118,14 @@ def is_n_of_exact_order(A: Any, k: int | None = None) -> Membership:
 
 
 def is_n0_of_exact_order(A: Any, k: int | None = None) -> Membership:
-    """N0 of exact order k: principal minors nonpositive up to order n - k, positive beyond; k as for N."""
+    """N0 of exact order k: principal minors nonpositive up to order n - k, positive beyond.
+
+    Parameters
+    ----------
+    A : array_like, shape (n, n)
+    k : int, optional
+        As for `is_n_of_exact_order`.
+    """
     return of_exact_order(
         A,
         "N0",
@@ -147,14 +158,15 @@ def of_exact_order(A: Any, base: str, k: int | None, test: Callable[[ExactMatrix
     return Membership(name, False, Evidence(reasons), EXACT_ORDER)
 
 
-def is_nondegenerate(A: Any) -> Membership:
+@matrix_class
+def is_nondegenerate(matrix: ExactMatrix) -> Membership:
     """Nondegenerate: all principal minors nonzero."""
-    return judge(ExactMatrix.of(A), "nondegenerate", lambda _: "nonzero", CPS + ", section 3.6")
+    return judge(matrix, "nondegenerate", lambda _: "nonzero", CPS + ", section 3.6")
 
 
-def is_z(A: Any) -> Membership:
+@matrix_class
+def is_z(matrix: ExactMatrix) -> Membership:
     """Z: off-diagonal entries nonpositive."""
-    matrix = ExactMatrix.of(A)
     cited = CPS + ", section 3.11"
     for i, row in enumerate(matrix.entries):
         for j, entry in enumerate(row):
@@ -165,9 +177,9 @@ def is_z(A: Any) -> Membership:
     return Membership("Z", True, Evidence("no off-diagonal entry is positive"), cited)
 
 
-def is_k(A: Any) -> Membership:
+@matrix_class
+def is_k(matrix: ExactMatrix) -> Membership:
     """K: Z and P (nonsingular M-matrix), read off the leading principal minors, so polynomial in n."""
-    matrix = ExactMatrix.of(A)
     cited = CPS + ", section 3.11 (Fiedler and Pták 1962)"
     z = is_z(matrix)
     if not z.holds:
@@ -185,9 +197,9 @@ def is_k(A: Any) -> Membership:
     return Membership("K", True, Evidence("Z, and all leading principal minors are positive"), cited)
 
 
-def is_k0(A: Any) -> Membership:
+@matrix_class
+def is_k0(matrix: ExactMatrix) -> Membership:
     """K0: Z and P0."""
-    matrix = ExactMatrix.of(A)
     z = is_z(matrix)
     part = z if not z.holds else is_p0(matrix)
     return Membership("K0", part.holds, part.certificate, PAPER)

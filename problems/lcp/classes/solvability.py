@@ -11,7 +11,7 @@ from attrs import define, evolve
 from problems.lcp.classes.cones import is_r0, is_s, is_semimonotone
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices, over_common_denominator, simplest, solve
 from problems.lcp.classes.faces import face_point
-from problems.lcp.classes.membership import CPS, Evidence, Membership, show_vector
+from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_vector
 from problems.lcp.classes.minors import is_p, is_z
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, feasible_point, positive_point
 from problems.lcp.classes.sufficiency import is_row_sufficient
@@ -25,14 +25,14 @@ BUDGET = 4000
 Normals = list[list[int]]
 
 
-def is_q0(A: Any) -> Membership:
+@matrix_class
+def is_q0(matrix: ExactMatrix) -> Membership:
     """Q0: LCP(q, A) has a solution whenever it is feasible.
 
     Z and row sufficient matrices are Q0. Otherwise, for n up to `LARGEST_COVER`: A is Q0 exactly when the full
     complementary cones cover pos[I, -A]; they are subtracted from it one by one with exact linear programs, and what is
     left over is a q that is feasible and has no solution.
     """
-    matrix = ExactMatrix.of(A)
     cited = CPS + ", sections 3.2, 3.5 and 3.11"
     for name, test in _SUFFICIENT_FOR_Q0.items():
         if test(matrix).holds:
@@ -43,9 +43,9 @@ def is_q0(A: Any) -> Membership:
 _SUFFICIENT_FOR_Q0: dict[str, Callable[[Any], Membership]] = {"Z": is_z, "row sufficient": is_row_sufficient}
 
 
-def is_q(A: Any) -> Membership:
+@matrix_class
+def is_q(matrix: ExactMatrix) -> Membership:
     """Q: LCP(q, A) has a solution for every q. Q is the intersection of Q0 and S; E0 and R0 together imply it."""
-    matrix = ExactMatrix.of(A)
     cited = CPS + ", sections 3.1, 3.2 and 3.9"
     s = is_s(matrix)
     if not s.holds:

@@ -6,13 +6,12 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import Any
 
 from attrs import evolve
 
 from problems.lcp.classes.cones import columns, embed, quadratic_form
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices, simplest
-from problems.lcp.classes.membership import CPS, Evidence, Membership, show_set, show_vector, undecided
+from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, show_vector, undecided
 from problems.lcp.classes.minors import is_p, is_p0
 from problems.lcp.classes.simplex import Point, at_most, positive_point
 
@@ -26,9 +25,9 @@ VALIAHO = "Väliaho, P_*-matrices are just sufficient, Linear Algebra Appl. 239 
 HANDICAP = "Kojima, Megiddo, Noma and Yoshise, 1991; Väliaho, Linear Algebra Appl. 253 (1997) 279-298"
 
 
-def is_psd(A: Any) -> Membership:
+@matrix_class
+def is_psd(matrix: ExactMatrix) -> Membership:
     """PSD: x'Ax >= 0 for all x; A need not be symmetric. Polynomial in n."""
-    matrix = ExactMatrix.of(A)
     cited = CPS + ", section 3.1"
     if matrix.n > LARGEST_DENSE:
         return undecided("PSD", matrix.n, LARGEST_DENSE, cited)
@@ -63,14 +62,16 @@ def _negative_direction(S: list[list[Fraction]]) -> Point | None:
     return (-sum((t * y for t, y in zip(top[1:], below)), Fraction(0)) / pivot, *below)
 
 
-def is_column_sufficient(A: Any) -> Membership:
+@matrix_class
+def is_column_sufficient(matrix: ExactMatrix) -> Membership:
     """Column sufficient: x_i (Ax)_i <= 0 for all i implies x_i (Ax)_i = 0 for all i."""
-    return _sufficient(ExactMatrix.of(A), "column sufficient", "A")
+    return _sufficient(matrix, "column sufficient", "A")
 
 
-def is_row_sufficient(A: Any) -> Membership:
+@matrix_class
+def is_row_sufficient(matrix: ExactMatrix) -> Membership:
     """Row sufficient: the transpose is column sufficient. Exactly then every KKT point solves LCP(q, A), for all q."""
-    return _sufficient(ExactMatrix.of(A).transpose, "row sufficient", "A'")
+    return _sufficient(matrix.transpose, "row sufficient", "A'")
 
 
 def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
@@ -117,9 +118,9 @@ def _signs(m: int) -> Iterator[tuple[int, ...]]:
     return ((1, *rest) for rest in itertools.product((1, -1), repeat=m - 1))
 
 
-def is_sufficient(A: Any) -> Membership:
+@matrix_class
+def is_sufficient(matrix: ExactMatrix) -> Membership:
     """Sufficient: row and column sufficient."""
-    matrix = ExactMatrix.of(A)
     row, column = is_row_sufficient(matrix), is_column_sufficient(matrix)
     failed = next((part for part in (row, column) if part.holds is False), None)
     if failed is not None:
@@ -130,13 +131,13 @@ def is_sufficient(A: Any) -> Membership:
     return undecided("sufficient", matrix.n, LARGEST_SIGNED, row.cited)
 
 
-def is_p_star(A: Any) -> Membership:
+@matrix_class
+def is_p_star(matrix: ExactMatrix) -> Membership:
     """P_*: (1 + 4 kappa) sum_{I+} x_i (Ax)_i + sum_{I-} x_i (Ax)_i >= 0 for all x and some kappa >= 0.
 
     P_* is the same as sufficient (Väliaho 1996), which decides it. The certificate's value is kappa itself where it is
     known exactly (zero for PSD) and otherwise a lower bound, as its sentence says; the paper's tau is 4 kappa.
     """
-    matrix = ExactMatrix.of(A)
     sufficient = is_sufficient(matrix)
     if not sufficient.holds:
         return Membership("P_*", sufficient.holds, sufficient.certificate, VALIAHO)

@@ -1,0 +1,100 @@
+"""Every public function says what its parameters are: a numpydoc section that names each of them.
+
+Public is what a package of `continuation` or `problems` lists in `__all__`: functions, and the methods of classes. A
+method that a protocol asks for (`prepare`, `residual`) may leave the description to the protocol.
+"""
+
+import importlib
+import inspect
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = sorted(
+    ".".join(file.parent.relative_to(ROOT).parts)
+    for top in ("continuation", "problems")
+    for file in (ROOT / top).rglob("__init__.py")
+)
+
+
+def documented(owner):
+    """The names in the Parameters (or, for data, Attributes) section of a docstring."""
+    text = inspect.cleandoc(owner.__doc__ or "")
+    found = re.search(r"^(?:Parameters|Attributes)\n-+\n(.*?)(?=^\S[^\n]*\n-+\n|\Z)", text, re.DOTALL | re.MULTILINE)
+    lines = found[1].splitlines() if found else []
+    heads = [line.split(":")[0] for line in lines if line and not line[0].isspace()]
+    return {name.strip(" *") for head in heads for name in head.split(",")}
+
+
+def parameters(function):
+    """What a caller gives."""
+    return {name for name in inspect.signature(function).parameters if name not in ("self", "cls")}
+
+
+def public(package):
+    """(label, object) of everything that a package exports."""
+    module = importlib.import_module(package)
+    for name in getattr(module, "__all__", ()):
+        value = getattr(module, name)
+        if inspect.isfunction(value) or inspect.isclass(value):
+            yield f"{package}.{name}", value
+
+
+def methods(cls):
+    """The public functions among the attributes of a class, by name; those of a class method unwrapped."""
+    for name, value in vars(cls).items():
+        function = value.__func__ if isinstance(value, (staticmethod, classmethod)) else value
+        if not name.startswith("_") and inspect.isfunction(function):
+            yield name, function
+
+
+@cache
+def protocols():
+    """What the protocols of all modules say of the methods that they ask for: method name to documented names."""
+    found = {}
+    for package in PACKAGES:
+        for module in (inspect.getmodule(value) for _, value in public(package)):
+            for value in vars(module).values():
+                if inspect.isclass(value) and getattr(value, "_is_protocol", False):
+                    for name, function in methods(value):
+                        found.setdefault(name, set()).update(documented(function))
+    return found
+
+
+def undocumented(package, asked_for):
+    """Labels of what leaves a parameter without a word, with the names of these."""
+    for label, value in public(package):
+        if inspect.isfunction(value):
+            missing = parameters(value) - documented(value)
+            if missing:
+                yield f"{label}: {', '.join(sorted(missing))}"
+            continue
+        for name, function in methods(value):
+            missing = parameters(function) - documented(function) - asked_for.get(name, set())
+            if missing:
+                yield f"{label}.{name}: {', '.join(sorted(missing))}"
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_parameter_is_documented(package):
+    assert list(undocumented(package, protocols())) == []
+
+
+def test_a_parameter_without_a_word_is_found(monkeypatch):
+    def plain(y, lam):
+        """The value.
+
+        Parameters
+        ----------
+        y : ndarray
+
+        Returns
+        -------
+        lam : float
+        """
+
+    monkeypatch.setattr(importlib.import_module("continuation"), "trace", plain)
+    assert list(undocumented("continuation", protocols()))[-1] == "continuation.trace: lam"
