@@ -8,7 +8,7 @@ from continuation import from_functions
 from continuation.plugins import available, make
 from continuation.testing import check_homotopy
 from problems import lcp
-from problems.bifurcation import Aircraft, Cusp, Pitchfork
+from problems.bifurcation import Aircraft, Bratu1D, Bratu2D, Cusp, ExponentialCosine, Pitchfork
 from problems.nonlinear import brown, fixed_point, newton
 
 SMALL = {
@@ -47,6 +47,7 @@ Q = np.array([-1.0, 2.0, -0.5, 1.0, -2.0, 0.3])
 
 OTHERS = {
     "pitchfork, imperfect": lambda: Pitchfork(0.1),
+    "pitchfork, imperfect to the other side": lambda: Pitchfork(-2.0),
     "cusp without folds": lambda: Cusp(-1.0),
     "aircraft, elevator down": lambda: Aircraft(-0.05),
     "fixed point without a derivative": lambda: fixed_point(brown(3), np.zeros(3)),
@@ -74,6 +75,11 @@ def test_plugin(name):
 @pytest.mark.parametrize("name", OTHERS)
 def test_other_homotopy(name):
     check_homotopy(OTHERS[name](), steps=25)
+
+
+@pytest.mark.parametrize("homotopy", [Bratu1D(1), Bratu2D(1), ExponentialCosine(1)], ids=repr)
+def test_the_smallest_of_a_family(homotopy):
+    check_homotopy(homotopy)
 
 
 def circle(y, lam):

@@ -11,23 +11,8 @@ import pytest
 
 import continuation
 from continuation.archive import PathLog, open_archive
-from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, commands, main
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, commands
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
-
-
-@pytest.fixture
-def run(capsys):
-    """main(argv) -> (status, stdout, stderr); bad input is always exactly one line on stderr."""
-
-    def call(*argv):
-        status = main([str(argument) for argument in argv])
-        captured = capsys.readouterr()
-        if status == BAD_INPUT:
-            assert captured.out == ""
-            assert captured.err.count("\n") == 1
-        return status, captured.out, captured.err
-
-    return call
 
 
 def save(folder, problem, name="problem.npz"):

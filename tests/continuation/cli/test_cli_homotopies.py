@@ -7,23 +7,8 @@ import pytest
 
 from continuation import chart
 from continuation.archive import open_archive
-from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, main
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
 from problems.bifurcation.truth import bratu
-
-
-@pytest.fixture
-def run(capsys):
-    """main(argv) -> (status, stdout, stderr); bad input is always exactly one line on stderr."""
-
-    def call(*argv):
-        status = main([str(argument) for argument in argv])
-        captured = capsys.readouterr()
-        if status == BAD_INPUT:
-            assert captured.out == ""
-            assert captured.err.count("\n") == 1
-        return status, captured.out, captured.err
-
-    return call
 
 
 @pytest.fixture
