@@ -213,8 +213,6 @@ def test_the_edge_of_the_domain_without_a_derivative_and_without_a_warning(resid
     path = trace(from_functions(residual, start=(y0, 0.0), target=2.0), budget=Budget(steps=300))
     assert path.status in (Status.LEFT_DOMAIN, Status.STEP_TOO_SMALL)
     assert 1.0 - nearest <= path.endpoint.lam <= 1.0
-    for step in path.steps:
-        assert abs(residual(step.y, step.lam)[0]) <= 1e-5
 
 
 def test_overflow_in_a_residual_makes_no_noise():
