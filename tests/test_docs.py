@@ -17,7 +17,11 @@ from continuation.cli.parser import Parser
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
-PAGES = [ROOT / "README.md", *sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.parts)]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    *sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.parts),
+]
 SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("plot_*.py"))
 NAMES = [str(path.relative_to(ROOT)) for path in PAGES]
 _SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -67,8 +71,15 @@ def test_the_commands_of_a_page_exist(page):
 
 def test_every_page_is_in_the_table_of_contents():
     listed = {line for tree in _TREE.findall((DOCS / "index.md").read_text()) for line in tree.split("\n")}
-    pages = {str(page.relative_to(DOCS).with_suffix("")) for page in PAGES[1:]} - {"index"}
+    pages = {str(page.relative_to(DOCS).with_suffix("")) for page in PAGES if DOCS in page.parents} - {"index"}
     assert [page for page in pages if not any(fnmatch(page, pattern) for pattern in listed)] == []
+
+
+def test_the_files_that_the_map_names_exist():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = re.findall(r"`((?:continuation|problems|tests|docs)/[\w/*.]*)`", text)
+    assert len(named) > 40
+    assert [name for name in named if not list(ROOT.glob(name))] == []
 
 
 def test_a_failing_block_is_named_with_its_line(tmp_path):
