@@ -24,7 +24,7 @@ SMOOTHNESS = 12
 """Points of the curve for every step, ..."""
 
 SAMPLES = 600
-"""... but no more than this in all: a path of many steps is smooth without, and dense output takes its time."""
+"""... but no more than this in all: a path of many steps is smooth without."""
 
 MOST_COMPONENTS = 12
 """More curves than this cannot be told apart in one picture."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from choosing_claims import CLAIMS, Charts
 
 from continuation import chart
-from continuation.chart.looks import DOTS_PER_INCH
+from continuation.chart.style import CHART_DPI
 from problems.charts import order
 
 PAGE = Path(__file__).with_name("choosing.md")
@@ -46,7 +46,7 @@ TABLE = re.compile(r"<!-- table (\S+) -->\n.*?<!-- end -->", re.DOTALL)
 def draw(charts):
     for study, figure in FIGURES.items():
         file = IMAGES / f"chart_{study}-{figure.name}.png"
-        figure.draw(charts[study]).savefig(file, dpi=DOTS_PER_INCH)
+        figure.draw(charts[study]).savefig(file, dpi=CHART_DPI)
         print(file)
 
 

@@ -1,6 +1,6 @@
-"""The paper's own algorithm, Steps 0-5, read word for word, for whoever wants to compare with it.
+"""The paper's own algorithm, Steps 0-5, as printed, for comparison.
 
-It is no part of the engine: its corrector stops after one iteration, its acceptance test, ||H|| <= 1, is absolute, and
+The engine does not use it: its corrector stops after one iteration, its acceptance test, ||H|| <= 1, is absolute, and
 its Step 4 may go on from a point that has failed every test. On example 1 that happens once, at the third point, and
 the algorithm ends at another KKT point. Where the text leaves a number open (a_0, the norms) the choice is noted; with
 these choices the iteration counts on the ten examples are 18, 21, 15, 24, 17, 24, 18, 3289, 27 and 1955.
@@ -59,7 +59,7 @@ class LiteralRun:
     u : Array of shape (iterations + 1, 3 n + 1)
         Every accepted point (x, z1, z2, lambda), the start first.
     ended_by : str
-        The sentence of the step that ended it.
+        The step that ended it, in words.
     claims_solution : bool
         Whether that step says "stop with the solution".
     problem : LCP

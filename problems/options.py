@@ -1,4 +1,4 @@
-"""Checks of the options that the problems take, and the rule that a wild iterate makes no noise."""
+"""Checks of the options of the problems, and the rule that overflow in an evaluation raises no warning."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from attrs import Attribute
 from continuation.arrays import Array
 
 quiet = np.errstate(over="ignore", invalid="ignore")
-"""Decorates an evaluation whose overflow is an honest inf or nan: the tracer judges it, no warning reaches a user."""
+"""Decorates an evaluation whose overflow is to give inf or nan without a warning: the tracer handles these."""
 
 
 def positive_integer(instance: Any, attribute: Attribute[Any], value: Any) -> None:

@@ -49,7 +49,7 @@ class Result:
 
     @property
     def solved(self) -> bool:
-        """Whether the certificate says so."""
+        """Whether the certificate holds."""
         return self.outcome == "SOLVED"
 
 

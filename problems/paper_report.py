@@ -28,7 +28,7 @@ TITLE = "The ten examples of Dutta, Das and Jana: y = (x, z1, z2), then NaN"
 
 @frozen(eq=False)
 class Row:
-    """One example: its accurate path, and what the literal algorithm made of it."""
+    """One example: its accurate path, and the run of the literal algorithm."""
 
     example: Example
     path: Path
@@ -120,7 +120,7 @@ def _cells(row: Row) -> tuple[str, ...]:
 
 
 def remarks(rows: Sequence[Row]) -> list[str]:
-    """What the table cannot say: false claims of the literal algorithm, paths that end before the target."""
+    """Remarks below the table: false claims of the literal algorithm, paths that end before the target."""
     found = [
         f"* Example {row.example.number}: the algorithm as printed claims to solve it at x = {show(row.literal.x)}, "
         f"where the natural residual is {row.literal.residual:.2g}: it has jumped to another path."

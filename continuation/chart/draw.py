@@ -8,8 +8,8 @@ from math import ceil, floor, inf, log10
 from attrs import frozen
 
 from continuation.chart.front import FLOOR, coordinates, on_front
-from continuation.chart.looks import Axes, Figure, few_ticks, handle, label, legend_below, look, panels, tidy
 from continuation.chart.results import WORK, Results, Row
+from continuation.chart.style import Axes, Figure, few_ticks, handle, label, legend_below, line_style, panels, tidy
 
 STRIP = 0.11
 """Width of the strip of failures, as a fraction of the panel."""
@@ -62,7 +62,7 @@ def draw(
         _panel(ax, rows, names, error, work)
         ax.set_title(name, fontsize="medium")
     label(axes, results.errors[error], WORK[work].label)
-    handles = [handle(look(k)) for k in range(len(names))]
+    handles = [handle(line_style(k)) for k in range(len(names))]
     legend_below(figure, [*handles, handle(_FRONT)], [*names, "Pareto front"])
     if [results.title] != shown:
         figure.suptitle(results.title, fontsize="medium")
@@ -95,7 +95,7 @@ def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, wo
         own = [row for row in rows if row.method == name]
         placed = [band.place(k, *points[id(row)]) for row in own if id(row) in points]
         if placed:
-            axes.plot(*zip(*placed), **look(k))
+            axes.plot(*zip(*placed), **line_style(k))
         failures += [(k, inf if row.spared else row.work(work)) for row in own if row.failed]
     front = [band.place(names.index(row.method), *points[id(row)]) for row in on_front(rows, error, work)]
     if front:
@@ -111,7 +111,7 @@ def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, wo
 
 @frozen
 class _Band:
-    """The left part of a panel, where errors are round-off: there a point's x is its method's column, and says no more.
+    """The left part of a panel, where errors are round-off: there a point's x is the column of its method.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class _Band:
 
     @property
     def _share(self) -> float:
-        """Of the panel's width: what its share of the points deserves, from a third to two thirds."""
+        """Of the panel's width: the fraction of the points, between one and two thirds."""
         return min(max(self.fraction, 1.0 / 3.0), 2.0 / 3.0)
 
     @property
@@ -185,8 +185,8 @@ def _failures(axes: Axes, failures: Sequence[tuple[int, float]], count: int) -> 
     lowest = axes.get_ylim()[0]
     for k, cost in failures:
         if cost < inf:
-            strip.plot([k], [max(cost, lowest)], clip_on=False, **{**look(k), "linestyle": "none"})
+            strip.plot([k], [max(cost, lowest)], clip_on=False, **{**line_style(k), "linestyle": "none"})
     # What a budget had not sufficed for at a smaller size: at the upper edge, where that is now.
     axes.set_ylim(axes.get_ylim())
     for k in {k for k, cost in failures if cost == inf}:
-        strip.plot([k], [axes.get_ylim()[1]], clip_on=False, **{**look(k), "linestyle": "none"})
+        strip.plot([k], [axes.get_ylim()[1]], clip_on=False, **{**line_style(k), "linestyle": "none"})

@@ -24,6 +24,7 @@ BETWEEN = (0.25, 0.5, 0.75)
 """Where in each step the dense output is compared with the curve."""
 
 _TIGHT = Tolerance(absolute=1e-12, relative=1e-12)
+"""Of the correction that drops a point onto the curve: the next Newton step would be below round-off."""
 
 
 @frozen
@@ -85,7 +86,7 @@ def _curve_distance(problem: Problem, answer: Answer) -> float:
 
 
 def _sampled(path: Path) -> Array:
-    # By the segments' own parameter: where exactly a point of the dense output lies does not matter to its distance.
+    # At values of the segments' own parameter: any points of the dense output will do.
     inner = [
         after.segment.at(t) if after.segment is not None else (1.0 - t) * before.u + t * after.u
         for before, after in pairwise(path.steps)

@@ -13,7 +13,7 @@ from continuation.step.tracer import Tracer
 from continuation.tracing import trace
 
 OPTIONS = frozenset(signature(Tracer).parameters) - {"homotopy"}
-"""What a trace may be told."""
+"""The options of a trace."""
 
 
 def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: Any) -> Method:

@@ -1,4 +1,4 @@
-"""What a study is made of: problems, methods, and the answers of one to the other."""
+"""Problems, methods, and what a method answers to a problem."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Problem:
     ----------
     name : str
     subject : Any
-        A homotopy, or whatever the methods of the study take.
+        A homotopy, or what else the methods of the study take.
     truth : Truth
     options : mapping
-        For `continuation.trace`, whatever the method: target, direction, events.
+        For `continuation.trace`, with every method: target, direction, events.
     n : int
         Size, for scaling; by default the subject's own.
     family : str
@@ -68,7 +68,7 @@ class Problem:
 
 @frozen(eq=False)
 class Answer:
-    """What one run of a method came to.
+    """The outcome of one run of a method.
 
     Attributes
     ----------

@@ -11,8 +11,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.chart.looks import Figure, handle, label, legend_below, look, panels, tidy
 from continuation.chart.results import WORK, Results
+from continuation.chart.style import Figure, handle, label, legend_below, line_style, panels, tidy
 from continuation.chart.table import Cell, Table
 
 
@@ -83,17 +83,17 @@ def draw_profile(results: Results, work: str) -> Figure:
             x = np.concatenate(([1.0], finite, [widest]))
             y = np.concatenate(([np.mean(values <= 1.0)], np.arange(1, finite.size + 1), [finite.size]))
             y[1:] /= values.size
-            ax.step(x, y, where="post", **{**look(k), "marker": ""})
+            ax.step(x, y, where="post", **{**line_style(k), "marker": ""})
             # Two markers a line, at places of its own, where lines run together.
             places = widest ** (((k + 0.5) / len(results.methods) + np.array([0.0, 0.5])) % 1.0)
-            ax.plot(places, [np.mean(values <= place) for place in places], **{**look(k), "linestyle": "none"})
+            ax.plot(places, [np.mean(values <= place) for place in places], **{**line_style(k), "linestyle": "none"})
         ax.set_xscale("log")
         ax.set_xlim(1.0, widest)
         ax.set_ylim(-0.03, 1.04)
         ax.set_title(family, fontsize="medium")
         tidy(ax)
     label(axes, f"{WORK[work].quantity},\nover the least of all methods", "fraction solved")
-    legend_below(figure, [handle(look(k)) for k in range(len(results.methods))], results.methods)
+    legend_below(figure, [handle(line_style(k)) for k in range(len(results.methods))], results.methods)
     figure.suptitle(results.title, fontsize="medium")
     return figure
 

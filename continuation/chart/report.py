@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path as File
 
-from continuation.chart.looks import DOTS_PER_INCH
 from continuation.chart.results import Results
 from continuation.chart.store import write
 from continuation.chart.study import Study, SupportsTable
+from continuation.chart.style import CHART_DPI
 from continuation.chart.table import Table, runs, summary
 
 
@@ -38,7 +38,7 @@ def report(study: Study, results: Results, folder: File) -> list[File]:
         except ImportError:
             break
         files.append(folder / f"{study.name}-{figure.name}.png")
-        drawing.savefig(files[-1], dpi=DOTS_PER_INCH)
+        drawing.savefig(files[-1], dpi=CHART_DPI)
     return files
 
 

@@ -30,7 +30,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
     ----------
     study : Study
     watch : callable, optional
-        Told of every row.
+        Called with every row.
 
     Returns
     -------
@@ -104,11 +104,11 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row 
 
 
 def _timed(problem: Problem, method: Method, rung: Rung) -> tuple[Answer, float]:
-    # The process's own time: what else the machine does takes no part, and BLAS has one thread.
+    # Processor time of this process, BLAS on one thread: independent of other load.
     begin = time.process_time()
     try:
         answer = method.run(problem, rung)
-    except Exception as error:  # A study reports whatever a method does; one bad method must not end it.
+    except Exception as error:  # An exception of one method is a failure in the results; the others still run.
         sentence = f"{type(error).__name__}: {error}"
         answer = Answer(counts=Counts(), failure=Failure.EXCEPTION, message=sentence)
     return answer, time.process_time() - begin

@@ -6,8 +6,8 @@ import numpy as np
 from attrs import frozen
 from scipy.optimize import isotonic_regression
 
-from continuation.chart.looks import Axes, Figure, few_ticks, handle, label, legend_below, look, panels, tidy
 from continuation.chart.results import WORK, Results
+from continuation.chart.style import Axes, Figure, few_ticks, handle, label, legend_below, line_style, panels, tidy
 from continuation.chart.table import Cell, Table
 
 FITTED = 3
@@ -96,9 +96,9 @@ def draw_scaling(results: Results, work: str) -> Figure:
             if not points:
                 continue
             power = powers[family, method]
-            ax.plot(*zip(*points), **look(k))
+            ax.plot(*zip(*points), **line_style(k))
             if not np.isnan(power):
-                ends.append((points[-1][1], f"$n^{{{power:.1f}}}$", look(k)["color"]))
+                ends.append((points[-1][1], f"$n^{{{power:.1f}}}$", line_style(k)["color"]))
         ax.set_xscale("log")
         ax.set_yscale("log")
         ax.set_title(family, fontsize="medium")
@@ -106,7 +106,7 @@ def draw_scaling(results: Results, work: str) -> Figure:
         tidy(ax)
         _name_ends(ax, ends)
     label(axes, "size $n$", WORK[work].label)
-    legend_below(figure, [handle(look(k)) for k in range(len(results.methods))], results.methods)
+    legend_below(figure, [handle(line_style(k)) for k in range(len(results.methods))], results.methods)
     figure.suptitle(results.title, fontsize="medium")
     return figure
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from attrs import frozen
 
-from continuation.chart.looks import Figure, handle, legend_below, look, panels, tidy
 from continuation.chart.results import WORK, Results, Row
+from continuation.chart.style import Figure, handle, legend_below, line_style, panels, tidy
 
 Chooser = Callable[[Row], float | None]
 """The value that the library chooses for a row's problem; None where it does not choose."""
@@ -45,12 +45,12 @@ def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Fi
                 continue
             least = min(row.work(work) for row in rows)
             values = [(row.rung, row.work(work) / least) for row in rows]
-            ax.plot(*zip(*values), **look(k))
+            ax.plot(*zip(*values), **line_style(k))
             ax.plot(*min(values, key=lambda pair: pair[1]), zorder=1, **_BEST)
             choice = chosen(rows[0]) if chosen is not None else None
             if choice is not None:
                 height = np.interp(choice, *np.array(values).T)
-                ax.plot(choice, height, zorder=4, **{**_CHOSEN, "markeredgecolor": look(k)["color"]})
+                ax.plot(choice, height, zorder=4, **{**_CHOSEN, "markeredgecolor": line_style(k)["color"]})
         ax.set_yscale("log")
         highest = max(2.0, ax.get_ylim()[1])
         ticks = [tick for tick in _TICKS if tick <= highest]
@@ -62,7 +62,7 @@ def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Fi
         tidy(ax)
     axes[0].set_ylabel(f"{WORK[work].quantity},\nover the least of the line")
     labels = [*results.problems, "least"]
-    handles = [*(handle(look(k)) for k in range(len(results.problems))), handle(_BEST)]
+    handles = [*(handle(line_style(k)) for k in range(len(results.problems))), handle(_BEST)]
     if chosen is not None:
         labels, handles = [*labels, "chosen by the library"], [*handles, handle(_CHOSEN)]
     legend_below(figure, handles, labels)

@@ -13,8 +13,8 @@ VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 def pinned(threads: int = 1) -> Iterator[str]:
     """Limit BLAS to `threads` for the block; yields what is in force, as text.
 
-    With threadpoolctl (the extra `chart`) the limit holds whatever the environment says. Without it nothing can be
-    changed any more, and the text tells what the environment variables were.
+    With threadpoolctl (the extra `chart`) the limit holds for any environment variables. Without it the number of
+    threads cannot be changed, and the text has the environment variables.
     """
     try:
         from threadpoolctl import threadpool_info, threadpool_limits

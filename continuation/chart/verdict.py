@@ -12,8 +12,7 @@ from continuation.status import Status
 def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
     """(failure, message) of an answer; the failure is empty where none is seen.
 
-    Arriving is not enough: with the wrong number of turning points the path has jumped, or left a loop out, even if it
-    found the end.
+    A path with the right end but the wrong number of turning points has jumped, or left out a loop.
     """
     if answer.failure:
         return answer.failure, answer.message

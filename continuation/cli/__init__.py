@@ -29,7 +29,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         0 done (solved), 1 not solved, 2 bad input, after one line on stderr that names the argument.
     """
-    parser = Parser(prog="continuation", description="Follow paths of solutions, and look at what was followed.")
+    parser = Parser(prog="continuation", description="Trace paths of solutions; inspect, plot and resume them.")
     parser.add_argument("--version", action="version", version=f"continuation {_version()}")
     register(parser.add_subparsers(title="commands", metavar="COMMAND", required=True))
     try:

@@ -123,7 +123,7 @@ def _one(study: Study, folder: Path, out: TextIO) -> None:
 
 
 def _watch(name: str) -> Watch | None:
-    """On a terminal, a line that tells how far the study is; nothing elsewhere."""
+    """On a terminal, a line with the progress of the study; nothing elsewhere."""
     if not sys.stderr.isatty():
         return None
 

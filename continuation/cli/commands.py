@@ -34,7 +34,7 @@ def _loaded(name: str, points: Sequence[EntryPoint]) -> Register:
         return _broken(name, f"expected one package that provides it, found {owners(points)}")
     try:
         loaded: Register = points[0].load()
-    except Exception as error:  # Whatever a foreign module raises while it is imported.
+    except Exception as error:  # Anything may be raised by the import of a foreign module.
         return _broken(name, f"{points[0].value} cannot be loaded: {type(error).__name__}: {error}")
     return loaded
 
@@ -44,7 +44,7 @@ def _broken(name: str, reason: str) -> Register:
         raise UsageError(name, reason)
 
     def add(subparsers: Subparsers) -> None:
-        # No prefix character, so that whatever the user passes is swallowed and the reason shown.
+        # No prefix character, so that any arguments are accepted and the reason is shown.
         parser = subparsers.add_parser(name, help="(cannot run; call it to see why)", prefix_chars="\0", add_help=False)
         parser.add_argument("rest", nargs="*", help=argparse.SUPPRESS)
         parser.set_defaults(run=complain)

@@ -74,7 +74,7 @@ def check_picture(option: str, file: str) -> None:
 
 
 def save(file: str, draw: Callable[[Any], None], size: tuple[float, float] = (7.0, 6.0)) -> None:
-    """Make a figure, have it drawn into, and write it; no window, whatever matplotlib's backend."""
+    """Make a figure, draw into it and write it; no window opens, with any backend of matplotlib."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout="constrained")

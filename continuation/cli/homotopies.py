@@ -1,4 +1,4 @@
-"""``continuation plugins``, ``trace`` and ``check``: homotopies by name, from whatever package they come."""
+"""``continuation plugins``, ``trace`` and ``check``: homotopies by name, from any installed package."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PRESETS = ("fast", "default", "conservative", "series")
 
 CHART_TOLERANCES = (1e-3, 1e-6, 1e-9)
 
-MOST_COMPONENTS = 10
+MOST_PRINTED = 10
 """Unknowns printed; --json prints all."""
 
 
@@ -206,8 +206,8 @@ def _as_text(title: str, path: Path) -> Iterator[str]:
     yield f"work       {counts}; {path.seconds:.2g} s"
     if path.steps:
         y = path.endpoint.y
-        shown = ", ".join(f"{value:.12g}" for value in y[:MOST_COMPONENTS])
-        more = f", ... ({y.size - MOST_COMPONENTS} more; --json prints all)" if y.size > MOST_COMPONENTS else ""
+        shown = ", ".join(f"{value:.12g}" for value in y[:MOST_PRINTED])
+        more = f", ... ({y.size - MOST_PRINTED} more; --json prints all)" if y.size > MOST_PRINTED else ""
         yield f"end        lam = {path.endpoint.lam:.12g}"
         yield f"           y = {shown}{more}"
 
@@ -275,7 +275,7 @@ def _homotopy(arguments: argparse.Namespace) -> tuple[Any, Mapping[str, Any]]:
         return plugins.make(arguments.name, values), values
     except (TypeError, ValueError) as error:
         key, _, complaint = str(error).partition(": ")
-        # Whatever else the plug-in complains of is about the homotopy as a whole.
+        # Any other error of the plug-in concerns the homotopy as a whole.
         raise UsageError(*((key, complaint) if key in {*values, *written} else (arguments.name, error))) from error
 
 
@@ -309,7 +309,7 @@ def _unknown(name: str) -> Iterator[None]:
 
 @contextmanager
 def _refused(name: str) -> Iterator[None]:
-    """What the engine says of the homotopy at its door, as a complaint; an error within the plug-in stays one."""
+    """Report as a usage error what a trace refuses; an error inside the plug-in is raised as it is."""
     try:
         yield
     except (TypeError, ValueError) as error:

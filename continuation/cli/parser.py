@@ -1,4 +1,4 @@
-"""What every command is made of: a parser whose complaints are one line, and the error that becomes such a line."""
+"""What every command uses: a parser with one-line error messages, and the exception that becomes such a line."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class UsageError(ValueError):
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that says what is wrong in one line, without the usage before it."""
+    """An argument parser with one-line error messages, without the usage before them."""
 
     def error(self, message: str) -> NoReturn:
         """Write the message to stderr and exit with status 2."""

@@ -1,4 +1,4 @@
-"""Jets: arrays whose entries are truncated power series, and which numpy takes for arrays."""
+"""Jets: arrays whose entries are truncated power series, accepted by numpy as arrays."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of numpy functions that jets know, and the call that looks them up."""
+"""The table of numpy functions that jets support, and the call that looks them up."""
 
 from __future__ import annotations
 

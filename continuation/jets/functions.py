@@ -236,7 +236,7 @@ def _ravel(a: Jet, order: str = "C") -> Jet:
 
 
 def _moved(function: Any) -> Callable[..., Jet]:
-    """A function that picks entries, or zeros: told by what it does to the places of the entries."""
+    """The rule of a function that only selects entries or zeros, found by applying it to the indices of the entries."""
 
     def rule(a: Any, *args: Any, **keywords: Any) -> Jet:
         if not isinstance(a, Jet):

@@ -1,4 +1,4 @@
-"""The conformance suite: whether a homotopy of somebody's own keeps the promises that the engine relies on.
+"""The conformance suite: whether a homotopy fulfils what the engine requires.
 
 ``check_homotopy(instance)`` runs it; ``homotopy_checks(instance)`` is for ``pytest.mark.parametrize``; from a shell it
 is ``continuation check module:Class``. Checks are chosen by the capabilities that the homotopy has.

@@ -1,4 +1,4 @@
-"""Checks of everything that says how the residual changes: Jacobian, differential, bordered solves, Taylor series."""
+"""Checks of derivatives: Jacobian, differential, bordered solves, Taylor series."""
 
 from __future__ import annotations
 
@@ -14,19 +14,28 @@ from continuation.point.linearization import Linearization
 from continuation.predictors.taylor import series_reach
 from continuation.testing.subject import Place, Subject, called, directions, fail
 
-ORDER = 6
-"""Of the Taylor coefficients that are compared."""
+COMPARED_ORDER = 6
+"""Of the Taylor coefficients that are compared: a wrong recurrence shows at order 2 or 3, and the jets cost order^2."""
 
-SOLVES = 1e-8
-"""Largest relative residual of a bordered solve."""
+SOLVE_ERROR = 1e-8
+"""Largest relative residual of a bordered solve: half of the digits."""
 
-SERIES = 1e-6
+SERIES_ERROR = 1e-6
 """Largest error of a Taylor coefficient, relative to the coefficient's size."""
+
+SMALL = 1e-6
+"""Relative error of a derivative that passes: a difference quotient is as good, a wrong formula is not."""
+
+ROUND_OFF = 1e-10
+"""The same for an entry that cancels, relative to the largest entry."""
+
+SURELY_REGULAR = 1e12
+"""Largest condition number for which the sign of a determinant in floats is trusted."""
 
 
 @frozen(eq=False)
 class JacobianAlone:
-    """A homotopy with nothing but its `jacobian`, so that this is what the engine takes its derivative from."""
+    """A homotopy without its other capabilities, so that the derivative is taken from `jacobian`."""
 
     start: Any
     residual: Any
@@ -53,12 +62,12 @@ def differential(subject: Subject) -> None:
             expected = reference @ v
             if found.shape != expected.shape:
                 fail(f"differential: {place.where} expected shape {expected.shape}, found {found.shape}")
-            allowed = 1e-6 * (np.abs(reference) @ np.abs(v)) + 1e-10 * float(np.abs(reference).max())
+            allowed = SMALL * (np.abs(reference) @ np.abs(v)) + ROUND_OFF * float(np.abs(reference).max())
             _compare("differential", place, "component", found, expected, allowed)
 
 
 def bordered(subject: Subject) -> None:
-    """`bordered` solves with [[H_y, H_lam], [border']], and knows the sign of its determinant."""
+    """`bordered` solves with [[H_y, H_lam], [border']], and gives the sign of its determinant."""
     for place in subject.places:
         matrix = subject.derivative(place)
         for border in directions(place.u.size, 2, 13):
@@ -79,22 +88,21 @@ def _check_solves(place: Place, whole: Array, system: Any) -> None:
         if z.shape != b.shape:
             fail(f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
         missed = np.abs(whole @ z - b)
-        # The size of what is added up in each equation: one that cancels cannot be held to its result. An equation in
-        # which all is round-off is held to the size that its coefficients and the solution allow.
+        # Relative to the terms of each equation, not to their sum, which may cancel; and to 1e-7 of the largest
+        # possible term, as an equation may consist of round-off only.
         largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
         relative = missed / (np.abs(whole) @ np.abs(z) + np.abs(b) + 1e-7 * largest)
         worst = int(np.argmax(np.where(np.isfinite(relative), relative, np.inf)))
-        if not relative[worst] <= SOLVES:
+        if not relative[worst] <= SOLVE_ERROR:
             row = "the border's equation" if worst == n else f"equation {worst}"
             fail(f"bordered: {place.where} the solution misses {row} by {missed[worst]:.3g}, "
-                 f"relative {relative[worst]:.3g}, expected at most {SOLVES:g}")  # fmt: skip
+                 f"relative {relative[worst]:.3g}, expected at most {SOLVE_ERROR:g}")  # fmt: skip
 
 
 def _check_sign(place: Place, whole: Array, sign: int) -> None:
     if sign not in (-1, 0, 1):
         fail(f"bordered: {place.where} expected a sign of -1, 0 (unknown) or 1, found {sign!r}")
-    # Near a singular matrix the sign is a matter of round-off.
-    if sign != 0 and np.linalg.cond(whole) < 1e12:
+    if sign != 0 and np.linalg.cond(whole) < SURELY_REGULAR:
         expected, logarithm = np.linalg.slogdet(whole)
         if sign != expected:
             size = f"{expected * np.exp(logarithm):.3g}" if abs(logarithm) < 700 else f"of sign {expected:+.0f}"
@@ -106,16 +114,17 @@ def taylor(subject: Subject) -> None:
     n = subject.start.u.size
     for place, point in subject.points():
         with called("taylor", place.where):
-            c = np.asarray(subject.homotopy.taylor(point, ORDER), dtype=float)
-        if c.shape != (ORDER + 1, n):
-            fail(f"taylor: {place.where} expected shape {(ORDER + 1, n)} at order {ORDER}, found {c.shape}")
+            c = np.asarray(subject.homotopy.taylor(point, COMPARED_ORDER), dtype=float)
+        if c.shape != (COMPARED_ORDER + 1, n):
+            shape = (COMPARED_ORDER + 1, n)
+            fail(f"taylor: {place.where} expected shape {shape} at order {COMPARED_ORDER}, found {c.shape}")
         for k, expected in ((0, point.u), (1, point.tangent)):
-            allowed = np.full(n, 1e-10 * float(np.abs(expected).max()) + 1e-300)
+            allowed = np.full(n, ROUND_OFF * float(np.abs(expected).max()))
             _compare("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
         by_jets = _series(subject, point)
         if by_jets is not None:
-            for k in range(2, ORDER + 1):
-                allowed = np.full(n, SERIES * max(float(np.abs(by_jets[k]).max()), _noise(by_jets, k)))
+            for k in range(2, COMPARED_ORDER + 1):
+                allowed = np.full(n, SERIES_ERROR * max(float(np.abs(by_jets[k]).max()), _noise(by_jets, k)))
                 _compare("taylor", place, f"coefficient {k}, component", c[k], by_jets[k], allowed)
         else:
             _check_order(subject, place, point, c)
@@ -125,7 +134,7 @@ def _series(subject: Subject, point: Linearization) -> Array | None:
     """The coefficients by jets, where the residual is written in numpy that they know."""
     try:
         with np.errstate(all="ignore"):
-            return path_series(subject.homotopy.residual, point.u, point.tangent, point.solve, ORDER)
+            return path_series(subject.homotopy.residual, point.u, point.tangent, point.solve, COMPARED_ORDER)
     except (TypeError, ArithmeticError, ValueError, AttributeError):
         return None
 
@@ -133,27 +142,27 @@ def _series(subject: Subject, point: Linearization) -> Array | None:
 def _noise(c: Array, k: int) -> float:
     """Size below which coefficient k does not matter on the scale of the ones before it."""
     largest = max(float(np.abs(c[1]).max()), *(float(np.abs(row).max()) ** (1.0 / j) for j, row in enumerate(c) if j))
-    return float(1e-6 * largest**k)
+    return float(SMALL * largest**k)
 
 
 def _check_order(subject: Subject, place: Place, point: Linearization, c: Array) -> None:
     """The residual along the series must vanish to its order, and the series stay in its own arclength."""
     along = c @ point.border
-    for k in range(2, ORDER + 1):
-        if abs(along[k]) > SERIES * float(np.abs(c[k]).max()) + 1e-12:
+    for k in range(2, COMPARED_ORDER + 1):
+        if abs(along[k]) > SERIES_ERROR * float(np.abs(c[k]).max()) + 1e-12:
             fail(f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}")
     h = 0.5 * min(series_reach(c, 1e-3), 1.0 + float(np.abs(c[0]).max()))
-    powers = np.arange(ORDER + 1)
+    powers = np.arange(COMPARED_ORDER + 1)
     sizes = []
     for t in (h, 0.5 * h):
         u = (t**powers) @ c
         with called("residual", f"{place.where}, {t:.3g} along the series"):
             sizes.append(float(np.abs(np.asarray(subject.homotopy.residual(u[:-1], float(u[-1])))).max()))
     floor = 1e-12 * (1.0 + float(np.abs(subject.derivative(place)).max()) * (1.0 + float(np.abs(c[0]).max())))
-    if sizes[1] > floor and not sizes[0] > 2.0**ORDER * sizes[1]:
+    if sizes[1] > floor and not sizes[0] > 2.0**COMPARED_ORDER * sizes[1]:
         order = np.log2(sizes[0] / sizes[1])
         fail(f"taylor: {place.where} the residual along the series falls like h^{order:.2g}, expected "
-             f"h^{ORDER + 1} ({sizes[0]:.3g} at h = {h:.3g})")  # fmt: skip
+             f"h^{COMPARED_ORDER + 1} ({sizes[0]:.3g} at h = {h:.3g})")  # fmt: skip
 
 
 def _compare(method: str, place: Place, what: str, found: Array, expected: Array, allowed: Array) -> None:

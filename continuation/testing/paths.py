@@ -22,7 +22,7 @@ from continuation.path import Path
 from continuation.status import Status
 from continuation.testing.subject import Place, Subject, called, directions, fail
 
-SHARP = 1e-6
+MAX_STEP_ERROR = 1e-6
 """Relative error of `max_step` that is let pass."""
 
 
@@ -45,12 +45,12 @@ def max_step_sharp(subject: Subject) -> None:
             if math.isinf(whole):
                 continue
             doubled = _longest(subject, place.where, place.u, 2.0 * v)
-            if abs(2.0 * doubled - whole) > SHARP * whole:
+            if abs(2.0 * doubled - whole) > MAX_STEP_ERROR * whole:
                 fail(f"max_step: {place.where} it is {whole:.6g} along v and {doubled:.6g} along 2 v, expected half")
             for share in (0.5, 0.999):
                 rest = (1.0 - share) * whole
                 left = _longest(subject, f"{place.where}, {share:g} of the way", place.u + share * whole * v, v)
-                if abs(left - rest) > SHARP * whole:
+                if abs(left - rest) > MAX_STEP_ERROR * whole:
                     fail(f"max_step: {place.where} it is {whole:.6g}; after {share:g} of that {rest:.6g} should be "
                          f"left, found {left:.6g}")  # fmt: skip
             inside = Place("", place.u + 0.999 * whole * v)

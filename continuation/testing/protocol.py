@@ -1,4 +1,4 @@
-"""Checks of the protocol: shapes, types, and that a homotopy is a function of its arguments and of nothing else."""
+"""Checks of the protocol: shapes, types, and that results depend on the arguments only."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ Call = Callable[..., Any]
 
 def start(subject: Subject) -> None:
     """`start` gives a finite vector and a number, and the residual fits it."""
-    _ = subject.start  # Asking is the check: the engine's own door, with its own sentences.
+    _ = subject.start  # It is checked when it is first asked for, as a trace checks it.
 
 
 def start_on_path(subject: Subject) -> None:
     """The start is on the path or near it, and H' has full rank there."""
-    _ = subject.first  # Asking is the check: the tracer begins so, and says in its own sentences why it cannot.
+    _ = subject.first  # Computed when it is first asked for, as a trace begins.
 
 
 def residual(subject: Subject) -> None:
@@ -85,7 +85,7 @@ def inputs_not_modified(subject: Subject) -> None:
 
 
 def repeatable(subject: Subject) -> None:
-    """The same arguments give the same bits, whatever was asked in between; and an answer once given stays."""
+    """The same arguments give the same bits after other calls, and no later call changes an earlier answer."""
     _check_start_is_new(subject)
     for place in subject.places:
         for name, method, arguments in _calls(subject, place):
@@ -112,7 +112,7 @@ def _check_start_is_new(subject: Subject) -> None:
         again = np.array(subject.homotopy.start()[0])
         y0[...] = kept
         if not np.array_equal(again, kept):
-            fail("start: it returns its own array; who changes y0 in place changes the homotopy (return a copy)")
+            fail("start: it returns its own array; changing y0 in place changes the homotopy (return a copy)")
 
 
 def metric(subject: Subject) -> None:

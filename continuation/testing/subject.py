@@ -1,4 +1,4 @@
-"""What the checks look at: the homotopy, a few points near its path, and a path traced once for all of them."""
+"""What is checked: the homotopy, at a few points near its path and on a path traced once for all checks."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ STEPS = 60
 """Longest path that the checks of whole paths trace."""
 
 FEWEST = 6
-"""A path with fewer points before its end is traced with shorter steps: two points would prove nothing."""
+"""A path with fewer points before its end is traced again with shorter steps."""
 
 STEPS_WITHOUT_TARGET = 12
-"""The same where the homotopy has no target: such a path may lead anywhere, and mostly to where nobody wants to go."""
+"""The same where the homotopy has no target, as the path may then leave the region for which it was written."""
 
 
 class CheckFailure(AssertionError):
@@ -46,7 +46,7 @@ def fail(sentence: str) -> NoReturn:
 
 @contextmanager
 def called(method: str, where: str) -> Iterator[None]:
-    """Turn whatever a method raises into the finding that it raises."""
+    """Report an exception of a method as a failed check."""
     try:
         with np.errstate(all="ignore"):
             yield
@@ -95,7 +95,7 @@ class Subject:
 
     @cached_property
     def start(self) -> Place:
-        """The start, checked at the engine's own door."""
+        """The start, checked as a trace checks it."""
         evaluator = self.evaluator
         with called("start", "called without arguments"):
             try:

@@ -50,7 +50,7 @@ RULES = (
     Rule("archive", paths.archive, after="trace"),
     Rule("resume", paths.resumed, after="trace"),
 )
-"""Cheap and basic ones first: the first message is then the one to mend first."""
+"""The basic and cheap ones first: correct the first failure first."""
 
 
 @frozen(eq=False)
@@ -85,7 +85,7 @@ class Check:
 
 @frozen
 class Result:
-    """What came of a check: its name, "passed", "failed", "failed as expected" or "not run", and the sentence."""
+    """The outcome of a check: its name, "passed", "failed", "failed as expected" or "not run", and the sentence."""
 
     name: str
     outcome: str
@@ -120,7 +120,7 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
 def run_checks(
     homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
 ) -> tuple[Result, ...]:
-    """Run all checks that apply, and collect what came of them.
+    """Run all checks that apply, and collect the outcomes.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def _run(check: Check, expected: Mapping[str, str]) -> Result:
 def check_homotopy(
     homotopy: Any, *, expected_failed_checks: Mapping[str, str] | None = None, steps: int | None = None
 ) -> tuple[Result, ...]:
-    """Whether a homotopy keeps the promises that the engine relies on.
+    """Whether a homotopy fulfils what the engine requires.
 
     Parameters
     ----------

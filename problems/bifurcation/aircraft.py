@@ -42,6 +42,7 @@ _ATTACK = 3
 
 _NEWTON_STEPS = 30
 _NEWTON_TOLERANCE = 1e-14
+"""For the equilibrium at aileron 0, from level flight: 4 steps suffice at the published elevators."""
 
 
 @frozen

@@ -119,7 +119,7 @@ def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
 
 
 def _unfinished(path: continuation.Path | None) -> bool:
-    """Whether the path itself tells of the failure."""
+    """Whether the status of the path is already a failure."""
     return path is not None and path.status is not continuation.Status.REACHED_TARGET
 
 

@@ -11,7 +11,7 @@ from attrs import frozen
 import continuation
 from continuation.chart import END_POINT, Problem, Results, Row, Study, Sweep, Table, orders, reference, traced
 from continuation.chart.catalogue import Size
-from continuation.chart.looks import Figure, handle, legend_below, look, panels, tidy
+from continuation.chart.style import Figure, handle, legend_below, line_style, panels, tidy
 from continuation.controllers import SeriesRange
 from continuation.predictors import Taylor
 from continuation.predictors.taylor import best_order
@@ -20,6 +20,7 @@ from problems.charts.families import planted
 from problems.charts.subjects import bratu, chandrasekhar
 
 ACCURACY = 1e-5
+"""That of the preset SERIES."""
 
 BUDGET = continuation.Budget(steps=500)
 
@@ -59,7 +60,7 @@ _REST: dict[str, Any] = {"corrector": continuation.SERIES.corrector, "controller
 
 
 def unknowns(row: Row) -> int:
-    """What `best_order` is told: all components of the point, which for a KKT path are 3n + 1."""
+    """The size that `best_order` takes: all components of the point, which for a KKT path are 3n + 1."""
     return 3 * row.n + 1 if row.family.startswith("KKT") else row.n + 1
 
 
@@ -114,13 +115,13 @@ class CostModel:
         for k, (problem, (f, slope)) in enumerate(self.fits(results, method).items()):
             rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
             K = np.array([row.rung for row in rows])
-            axes.plot(K, [row.seconds / row.counts.accepted for row in rows], **{**look(k), "linestyle": "none"})
-            axes.plot(K, slope * (f + K), **{**look(k), "marker": ""})
+            axes.plot(K, [row.seconds / row.counts.accepted for row in rows], **{**line_style(k), "linestyle": "none"})
+            axes.plot(K, slope * (f + K), **{**line_style(k), "marker": ""})
             labels.append(f"{problem}: f = {f:.1f}")
         axes.set_yscale("log")
         axes.set_xlabel("order K")
         axes.set_ylabel("time a step (s)")
         axes.set_title(f"Cost of a step, {method}: points measured, lines b (f + K)", fontsize="medium")
         tidy(axes)
-        legend_below(figure, [handle(look(k)) for k in range(len(labels))], labels)
+        legend_below(figure, [handle(line_style(k)) for k in range(len(labels))], labels)
         return figure

@@ -28,10 +28,9 @@ LONGEST = 1000
 
 
 def scipy_loop() -> Method:
-    """Keller's pseudo-arclength continuation as one writes it in an afternoon with scipy.
+    """Keller's pseudo-arclength continuation in its simplest form, with scipy.
 
-    For dense homotopies with a target. It takes what its corrector takes and knows no turning points, so that a loop
-    which it leaves out goes unseen here.
+    For dense homotopies with a target. It detects no turning points, so that a loop that it leaves out is not noticed.
     """
     return Method("plain scipy loop", _loop)
 

@@ -1,4 +1,4 @@
-"""Who solves what fraction of random problems, and at what cost: performance profiles over families and seeds."""
+"""Which fraction of random problems each method solves, and at what cost: performance profiles."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Hypothesis strategies: matrices of a class and problems with a property, built from integers so that they shrink.
 
-Members are constructed, not filtered. Hypothesis is needed here and nowhere else in the package.
+Members are constructed, not filtered. No other module of the package needs Hypothesis.
 """
 
 from __future__ import annotations

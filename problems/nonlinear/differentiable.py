@@ -8,7 +8,7 @@ from typing import Generic, Protocol, TypeVar
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
-from problems.nonlinear.door import Jacobian, check_jacobian_shape
+from problems.nonlinear.start_checks import Jacobian, check_jacobian_shape
 from problems.options import quiet
 
 

@@ -9,8 +9,8 @@ from attrs import field, frozen
 from continuation.arrays import Array, Matrix
 from problems.bibliography import CHOW_MALLET_PARET_YORKE
 from problems.nonlinear.differentiable import Differentiable
-from problems.nonlinear.door import Function, Jacobian, start_vector, value_at
 from problems.nonlinear.identity import blend_with_identity
+from problems.nonlinear.start_checks import Function, Jacobian, start_vector, value_at
 from problems.options import quiet
 
 

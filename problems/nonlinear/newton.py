@@ -10,7 +10,7 @@ from continuation.arrays import Array, Matrix
 from continuation.bibliography import ALLGOWER_GEORG
 from problems.bibliography import KELLER
 from problems.nonlinear.differentiable import Differentiable
-from problems.nonlinear.door import Function, Jacobian, start_vector, value_at
+from problems.nonlinear.start_checks import Function, Jacobian, start_vector, value_at
 from problems.options import quiet
 
 

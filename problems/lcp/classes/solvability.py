@@ -19,7 +19,7 @@ from problems.lcp.classes.sufficiency import is_row_sufficient
 LARGEST_COVER = 5
 """Largest order for which the complementary cones are subtracted from the cone of feasible right-hand sides."""
 
-BUDGET = 4000
+MOST_PROGRAMS = 4000
 """Most linear programs spent on that subtraction before the answer is `not decided`."""
 
 Normals = list[list[int]]
@@ -68,7 +68,7 @@ def _by_cover(matrix: ExactMatrix, name: str, scope: str, cited: str) -> Members
     try:
         witness = search.leftover([])
     except _BudgetSpentError:
-        sentence = f"the complementary cones were not subtracted within {BUDGET} linear programs"
+        sentence = f"the complementary cones were not subtracted within {MOST_PROGRAMS} linear programs"
         return Membership(name, None, Evidence(sentence), cited)
     if witness is None:
         return Membership(name, True, Evidence(f"the full complementary cones cover {scope}"), cited)
@@ -109,7 +109,7 @@ class _Subtraction:
         return None
 
     def _interior(self, region: Normals) -> Point | None:
-        if self.spent >= BUDGET:
+        if self.spent >= MOST_PROGRAMS:
             raise _BudgetSpentError
         self.spent += 1
         n, entries = self.matrix.n, self.matrix.entries

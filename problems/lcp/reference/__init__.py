@@ -1,4 +1,4 @@
-"""Reference methods for comparison: Lemke's pivots, the modulus iteration, a damped min-Newton. Not the product."""
+"""Reference methods for comparison: Lemke's pivots, the modulus iteration, a damped min-Newton."""
 
 from problems.lcp.reference.lemke import lemke
 from problems.lcp.reference.modulus import modulus

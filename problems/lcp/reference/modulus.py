@@ -14,6 +14,7 @@ from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved, without_point
 
 _DIVERGED = 1e20
+"""An iterate of this size is on its way to overflow; no problem in floats of usual size has such a solution."""
 
 
 def modulus(problem: LCP, omega: float = 1.0, z: Array | None = None, max_iterations: int = 10_000) -> ReferenceResult:

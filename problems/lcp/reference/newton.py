@@ -13,8 +13,9 @@ from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved
 
 _DECREASE = 2e-4
-"""Armijo's constant for the merit |min(x, w)|^2 / 2: a step t must reduce it by the factor 1 - 2e-4 t."""
+"""Twice Armijo's 1e-4 (Nocedal and Wright, 2006, p. 33), as the merit |min(x, w)|^2 is a square: factor 1 - 2e-4 t."""
 _SHORTEST = 1e-10
+"""Shortest step of the line search: below it the merit changes by round-off only."""
 
 
 def min_newton(problem: LCP, x0: Array | None = None, max_iterations: int = 300) -> ReferenceResult:

@@ -1,4 +1,4 @@
-"""What every reference method returns, and the one test by which all of them are called successful."""
+"""What every reference method returns, and the test of success that they share."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from problems.lcp.data.problem import LCP
 SOLVED_BELOW = 1e-8
 """A method solved the problem if the natural residual of its x is at most this, relative to 1 + |q|_inf.
 
-Not relative to |x|: a diverging iterate has a relative residual as small as one likes on any matrix that is not R0.
+Not relative to |x|: for a matrix that is not R0 a diverging iterate may have an arbitrarily small relative residual.
 """
 
 
@@ -59,5 +59,5 @@ def at_point(problem: LCP, x: Array, iterations: int, factorizations: int, failu
 
 
 def without_point(iterations: int, factorizations: int, failure: str, ray: Array | None = None) -> ReferenceResult:
-    """The result of a method that ended with no x to offer."""
+    """The result of a method that ended without an x."""
     return ReferenceResult(None, None, False, float("inf"), iterations, factorizations, ray, failure)

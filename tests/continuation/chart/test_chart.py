@@ -321,9 +321,9 @@ def test_the_chart_shows_lines_front_and_failures(results):
 
 
 def test_lines_differ_by_more_than_colour():
-    from continuation.chart.looks import look
+    from continuation.chart.style import line_style
 
-    looks = [look(k) for k in range(20)]
+    looks = [line_style(k) for k in range(20)]
     assert len({(a["marker"], a["linestyle"]) for a in looks}) == len(looks)
 
 
@@ -441,5 +441,5 @@ def test_without_matplotlib_there_are_no_figures(study, results, tmp_path, monke
     def missing(*_, **__):
         raise ImportError("none here")
 
-    monkeypatch.setattr("continuation.chart.looks.require_matplotlib", missing)
+    monkeypatch.setattr("continuation.chart.style.require_matplotlib", missing)
     assert [file.suffix for file in report(study, results, tmp_path)] == [".h5", ".csv", ".md"]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
-from problems.lcp.reference.enumeration import LARGEST, solve_by_enumeration
+from problems.lcp.reference.enumeration import LARGEST_FACES, solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, lcps, near_singular_lcps, planted_lcps
 
 ORDERS = st.integers(1, 4)
@@ -187,5 +187,5 @@ def test_sparse_and_dense_agree():
 
 
 def test_a_large_problem_is_refused():
-    with pytest.raises(ValueError, match=f"problem: expected n <= {LARGEST} .* found n = 15"):
+    with pytest.raises(ValueError, match=f"problem: expected n <= {LARGEST_FACES} .* found n = 15"):
         solve_by_enumeration(LCP(np.eye(15), np.ones(15)))

@@ -1,4 +1,4 @@
-"""How lines look: told apart by colour, marker and style at once, so that print and the colour-blind lose nothing."""
+"""Colours, markers and line styles: each line has its own of all three, for print and for colour-blind readers."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from continuation.plot import COLOURS, STYLES, require_matplotlib
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
 
-DOTS_PER_INCH = 110
+CHART_DPI = 110
 
 Axes = Any
 Figure = Any
 
 
-def look(k: int) -> dict[str, Any]:
+def line_style(k: int) -> dict[str, Any]:
     """Colour, marker and style of the k-th line: 7, 10 and 4 of them, so that 140 lines differ."""
     return {
         "color": COLOURS[k % len(COLOURS)],
@@ -29,7 +29,7 @@ def look(k: int) -> dict[str, Any]:
 
 
 def handle(style: dict[str, Any]) -> Any:
-    """A line with this look, for a legend, no larger than a line of text."""
+    """A line with this line_style, for a legend, no larger than a line of text."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **{**style, "markersize": min(style["markersize"], 9.0)})

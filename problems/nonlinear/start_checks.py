@@ -1,4 +1,4 @@
-"""What is checked before a path is begun: the function, the point, and the function's value there."""
+"""Checks before a path begins: the function, the start, and the value there."""
 
 from __future__ import annotations
 
