@@ -33,8 +33,8 @@ def _fraction(value: Any) -> Fraction:
 def over_common_denominator(values: Sequence[Fraction]) -> tuple[list[int], int]:
     """Integers and the positive scale with values = integers / scale.
 
-    In lowest terms, so that a matrix of small integers stays one; `problems.lcp.proof.rational.integers`, for vectors of
-    floats only, keeps 53 bits of each and is the faster.
+    In lowest terms, so that a matrix of small integers stays one; `problems.lcp.proof.rational.integers` takes vectors
+    of floats only and keeps 53 bits of each.
     """
     scale = math.lcm(*(value.denominator for value in values))
     return [value.numerator * (scale // value.denominator) for value in values], scale
