@@ -3,7 +3,8 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 OUT    ?= build/paper
-# One thread a worker: the suite runs two workers, and small matrices lose by threading.
+# One thread a worker: the suite runs two workers, and small matrices lose by threading. A file goes to one worker, so
+# that what its tests share is made once.
 TESTENV := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=Agg
 
 .PHONY: demo test lint types suite chart docs clean
@@ -20,7 +21,7 @@ types: $(VENV)/.dev
 	$(BIN)/mypy
 
 suite: $(VENV)/.dev
-	$(TESTENV) $(BIN)/pytest -n 2
+	$(TESTENV) $(BIN)/pytest -n 2 --dist loadfile
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
