@@ -102,6 +102,11 @@ def references() -> list[Method]:
     ]
 
 
+def outside(compare: bool) -> list[Method]:
+    """The installed solvers of other packages, if they are asked for."""
+    return [direct(name, solve) for name, solve in rivals.lcp_solvers().items()] if compare else []
+
+
 def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
     """An answer with its natural residual, and a failure where x does not solve the problem."""
     size = 1.0 + float(np.abs(problem.q).max())
@@ -126,12 +131,11 @@ def _unfinished(path: continuation.Path | None) -> bool:
 def studies(size: Size, compare: bool) -> Sequence[Study]:
     """The ten examples, and generated families over sizes."""
     rungs = {"smoke": (1e-6,), "moderate": (1e-4, 1e-8), "full": (1e-3, 1e-5, 1e-7, 1e-9)}[size]
-    outside = [direct(name, solve) for name, solve in rivals.lcp_solvers().items()] if compare else []
     homotopies = [path(f"{name}", make) for name, make in MAKERS.items()]
     series = [path(f"{name}, series", MAKERS[name], preset=continuation.SERIES) for name in ("KKT", "Wang")]
     whole = [solver("KKT, finish", homotopy="kkt"), solver("solve, auto")]
     common: dict[str, Any] = {
-        "methods": [*homotopies, *series, *whole, *references(), *outside],
+        "methods": [*homotopies, *series, *whole, *references(), *outside(compare)],
         "ladder": tolerances(*rungs),
         "errors": (RESIDUAL,),
         "work": WORK if size == "full" else WORK[:2],

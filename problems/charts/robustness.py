@@ -9,7 +9,7 @@ from continuation.chart import Profile, Study, tolerances
 from continuation.chart.catalogue import Size
 from problems.charts import rivals
 from problems.charts.families import FAMILIES
-from problems.charts.lcp import MAKERS, RESIDUAL, WORK, path, problem, references, solver
+from problems.charts.lcp import MAKERS, RESIDUAL, WORK, outside, path, problem, references, solver
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
@@ -23,7 +23,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         solver("KKT, finish", homotopy="kkt"),
         solver("solve, auto", restarts=5),
         *references(),
-        *(rivals.lcp_solvers() if compare else ()),
+        *outside(compare),
     ]
     return [
         Study(

@@ -10,7 +10,7 @@ from continuation.chart.catalogue import Size
 from continuation.correctors import Broyden
 from problems import lcp
 from problems.charts import rivals
-from problems.charts.lcp import RESIDUAL, path, problem, references, solver
+from problems.charts.lcp import RESIDUAL, outside, path, problem, references, solver
 from problems.charts.subjects import bratu, bratu_square, chandrasekhar
 
 
@@ -41,7 +41,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         path("Wang, series", lcp.WangHomotopy, preset=continuation.SERIES),
         solver("solve, auto"),
         *references(),
-        *(rivals.lcp_solvers() if compare else ()),
+        *outside(compare),
     ]
     complementarity = Study(
         name="scaling-lcp",

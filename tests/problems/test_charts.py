@@ -5,6 +5,7 @@ import pytest
 
 import continuation
 from continuation import chart
+from continuation.chart import catalogue
 from continuation.evaluation.jacobian_check import check_jacobian
 from problems import lcp
 from problems.charts import engine, families, order, rivals, robustness, scaling, subjects
@@ -92,19 +93,22 @@ def test_absent_outside_solvers_are_named_and_left_out(monkeypatch):
 def test_an_outside_solver_is_judged_by_the_certificate_unless_it_says_itself_that_it_failed(monkeypatch):
     answers = {"right": (np.zeros(5), ""), "gives up": (None, "a ray")}
     adapters = {
-        name: ("json", lambda library, problem, x=x, end=end: (x, continuation.Counts(factorizations=2), end))
+        name: ("numpy", lambda library, problem, x=x, end=end: (x, continuation.Counts(factorizations=2), end))
         for name, (x, end) in answers.items()
     }
     monkeypatch.setattr(rivals, "_LCP", adapters)
     study = chart.Study(
         name="outside",
         problems=[chart.Problem("one", lcp.LCP(np.eye(5), np.ones(5)))],
-        methods=[lcp_charts.direct(name, solve) for name, solve in rivals.lcp_solvers().items()],
+        methods=lcp_charts.outside(True),
         errors=[lcp_charts.RESIDUAL],
         repeats=0,
     )
     rows = chart.run(study).rows
     assert [(row.failure, row.counts.factorizations) for row in rows] == [("", 2), ("stopped", 2)]
+    for name in ("lcp", "robustness", "scaling"):
+        compared = [method.name for method in catalogue.studies(name, "smoke", compare=True)[-1].methods]
+        assert set(answers) < set(compared)
 
 
 @pytest.mark.parametrize("name", ["quantecon", "piqp", "clarabel"])
