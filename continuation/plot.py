@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.path import Step
+from continuation.path import LocatedEvent, Path, Step
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":")
@@ -32,49 +32,6 @@ MOST_COMPONENTS = 12
 Axes = Any
 
 
-class Event(Protocol):
-    """A located event, as a Path or an archive has it."""
-
-    @property
-    def y(self) -> Array:
-        """The unknowns."""
-        ...
-
-    @property
-    def lam(self) -> float:
-        """The parameter."""
-        ...
-
-    @property
-    def arclength(self) -> float:
-        """Where on the path."""
-        ...
-
-
-class Curve(Protocol):
-    """What can be drawn: a `continuation.Path`, or a path read from an archive."""
-
-    @property
-    def y(self) -> Array:
-        """The unknowns, shape (m, N)."""
-        ...
-
-    @property
-    def lam(self) -> Array:
-        """The parameter, shape (m,)."""
-        ...
-
-    @property
-    def arclength(self) -> Array:
-        """Arclength, shape (m,)."""
-        ...
-
-    @property
-    def turning_points(self) -> Sequence[Event]:
-        """The turning points of the parameter."""
-        ...
-
-
 @frozen(eq=False)
 class Drawing:
     """A curve as lines to draw: dense output where there is some, else cubics through the stored points."""
@@ -83,15 +40,13 @@ class Drawing:
     u: Array
 
     @classmethod
-    def of(cls, curve: Curve) -> Drawing:
+    def of(cls, path: Path) -> Drawing:
         """Sample the curve, between its points too."""
-        s, u = np.asarray(curve.arclength, dtype=float), np.column_stack([curve.y, curve.lam])
-        if len(s) < 2:
-            return cls(s, u)
-        steps = getattr(curve, "steps", ())
-        if steps and all(step.segment is not None for step in steps[1:]):
-            return cls._along(steps)
-        return cls._through(*_with_turns(s, u, curve.turning_points))
+        if len(path) < 2:
+            return cls(path.arclength, path.u)
+        if all(step.segment is not None for step in path.steps[1:]):
+            return cls._along(path.steps)
+        return cls._through(*_with_turns(path.arclength, path.u, path.turning_points))
 
     @classmethod
     def _along(cls, steps: Sequence[Step]) -> Drawing:
@@ -134,7 +89,7 @@ def _between(knots: Array) -> Array:
     return np.append(np.concatenate(pieces), knots[-1])
 
 
-def _with_turns(s: Array, u: Array, turns: Sequence[Event]) -> tuple[Array, Array]:
+def _with_turns(s: Array, u: Array, turns: Sequence[LocatedEvent]) -> tuple[Array, Array]:
     """The points with the located turning points among them; of points in one place, the first."""
     located = [np.append(turn.y, turn.lam) for turn in turns]
     every = np.concatenate([s, [turn.arclength for turn in turns]])
@@ -146,7 +101,7 @@ def _with_turns(s: Array, u: Array, turns: Sequence[Event]) -> tuple[Array, Arra
 
 
 def plot_components(
-    path: Curve,
+    path: Path,
     axes: Axes | None = None,
     against: str = "lam",
     names: Sequence[str] | None = None,
@@ -180,7 +135,8 @@ def plot_components(
     ValueError
         If `against` is neither, a component does not exist, the names are too few, or the path is empty.
     """
-    drawing = _drawing(path)
+    _check(path)
+    drawing = Drawing.of(path)
     chosen = _components(components, drawing.u[:, :-1])
     unknowns = int(np.isfinite(drawing.u[:, :-1]).any(axis=0).sum())
     labels = [f"$y_{{{i + 1}}}$" for i in chosen] if names is None else list(names)
@@ -202,7 +158,7 @@ def plot_components(
     return _tidy(axes)
 
 
-def plot_bifurcation(path: Curve, axes: Axes | None = None, component: int | None = None) -> Axes:
+def plot_bifurcation(path: Path, axes: Axes | None = None, component: int | None = None) -> Axes:
     """Draw one number of y (a component, or its largest absolute value) against the parameter: the usual diagram.
 
     Parameters
@@ -223,7 +179,8 @@ def plot_bifurcation(path: Curve, axes: Axes | None = None, component: int | Non
     ValueError
         If the component does not exist or the path is empty.
     """
-    drawing = _drawing(path)
+    _check(path)
+    drawing = Drawing.of(path)
     if component is None:
         height, at_turns = _height(drawing.u[:, :-1]), [float(_height(event.y)) for event in path.turning_points]
         label = r"$\max_i |y_i|$"
@@ -240,7 +197,7 @@ def plot_bifurcation(path: Curve, axes: Axes | None = None, component: int | Non
     return _tidy(axes)
 
 
-def plot_steps(path: Curve, axes: Axes | None = None) -> Axes:
+def plot_steps(path: Path, axes: Axes | None = None) -> Axes:
     """Draw how far apart the points are, on a logarithmic scale, against arclength: where the controller was careful.
 
     Parameters
@@ -259,8 +216,9 @@ def plot_steps(path: Curve, axes: Axes | None = None) -> Axes:
     ValueError
         If the path is empty.
     """
-    s = np.asarray(_drawing(path).s if not callable(path) else path.arclength, dtype=float)
+    _check(path)
     axes = _axes(axes)
+    s = path.arclength
     lengths = np.diff(s)
     # An event stored with the points may lie on one of them; a length of zero has no logarithm.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
@@ -283,10 +241,9 @@ def require_matplotlib() -> None:
 _LABELS = {"lam": r"$\lambda$", "arclength": "arclength $s$"}
 
 
-def _drawing(path: Curve) -> Drawing:
-    if len(path.arclength) == 0:
+def _check(path: Path) -> None:
+    if len(path) == 0:
         raise ValueError("path: expected at least one point, found none")
-    return Drawing.of(path)
 
 
 def _across(against: str, drawing: Drawing) -> Array:

@@ -6,14 +6,15 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from continuation.plot import TURN, Curve, plot_components, require_matplotlib
+from continuation.path import Path
+from continuation.plot import TURN, plot_components, require_matplotlib
 from problems.paper import Example
 
 ZOOM = (0.1, 0.2, 0.5, 0.5)
 """Where in a panel the neighbourhood of turning points is shown enlarged: left, bottom, width, height."""
 
 
-def draw_examples(examples: Sequence[Example], paths: Sequence[Curve], columns: int = 5) -> Any:
+def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: int = 5) -> Any:
     """One panel an example, lambda from 1 on the left to 0 on the right, turning points as open circles.
 
     Parameters
@@ -50,7 +51,7 @@ def draw_examples(examples: Sequence[Example], paths: Sequence[Curve], columns: 
     return figure
 
 
-def draw_example(example: Example, path: Curve, axes: Any) -> None:
+def draw_example(example: Example, path: Path, axes: Any) -> None:
     """The components of x into one panel, enlarged where the path turns; a title with the number and the class."""
     _draw_x(example, path, axes)
     axes.set_xlim(1.03, -0.03)
@@ -67,7 +68,7 @@ def draw_example(example: Example, path: Curve, axes: Any) -> None:
         inset.tick_params(labelsize="small")
 
 
-def _draw_x(example: Example, path: Curve, axes: Any) -> None:
+def _draw_x(example: Example, path: Path, axes: Any) -> None:
     components = range(example.q.size)
     plot_components(path, axes, names=[f"$x_{{{i + 1}}}$" for i in components], components=components, legend=False)
 

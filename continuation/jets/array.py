@@ -37,13 +37,8 @@ def _method(function: Any) -> Callable[..., Any]:
     def method(self: Jet, *args: Any, **keywords: Any) -> Any:
         return function(self, *args, **keywords)
 
-    method.__doc__ = f"""`numpy.{function.__name__}` of this jet.
-
-    Parameters
-    ----------
-    *args, **keywords
-        As for that function.
-    """
+    section = "Parameters\n----------\n*args, **keywords\n    As for that function."
+    method.__doc__ = f"`numpy.{function.__name__}` of this jet.\n\n{section}"
     return method
 
 
@@ -73,8 +68,6 @@ class Jet:
         if coefficients.ndim == 0 or len(coefficients) == 0:
             raise ValueError(f"c has shape {coefficients.shape}; expected (order + 1, *shape) with order >= 0")
         return wrap(coefficients, TAYLOR)
-
-    # --- what it is ---------------------------------------------------------------------------------------
 
     @property
     def order(self) -> int:
@@ -140,8 +133,6 @@ class Jet:
     def __reduce__(self) -> tuple[Any, ...]:
         return wrap, (self.c.copy(), self.algebra)
 
-    # --- numpy's protocols --------------------------------------------------------------------------------
-
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
         name = f"numpy.{ufunc.__name__}"
         if method != "__call__":
@@ -161,8 +152,6 @@ class Jet:
 
     def __array_function__(self, function: Any, types: Any, args: Any, keywords: Any) -> Any:
         return call(function, args, keywords)
-
-    # --- operators ----------------------------------------------------------------------------------------
 
     __add__, __radd__, __iadd__ = _operator(np.add), _operator(np.add, swapped=True), _in_place(np.add)
     __sub__, __rsub__ = _operator(np.subtract), _operator(np.subtract, swapped=True)
@@ -186,8 +175,6 @@ class Jet:
 
     def __abs__(self) -> Any:
         return _call(np.absolute, (self,))
-
-    # --- methods of arrays --------------------------------------------------------------------------------
 
     @property
     def T(self) -> Jet:
@@ -284,9 +271,6 @@ def wrap(c: Array, algebra: Algebra) -> Jet:
     jet.c = c
     jet.algebra = algebra
     return jet
-
-
-# --- operands ---------------------------------------------------------------------------------------------
 
 
 def gather(x: Any) -> Any:

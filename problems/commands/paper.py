@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
+from continuation.cli.charts import new_folder
 
 if TYPE_CHECKING:
     from problems.paper_report import Row
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     from problems.paper_report import remarks, run_examples, table
 
     methods = _methods(arguments.methods)
-    folder = _folder(arguments.output)
+    folder = new_folder("--output", arguments.output)
     archive = folder / "paths.h5"
     # The folder is this command's own: a second run replaces what the first one wrote.
     archive.unlink(missing_ok=True)
@@ -67,16 +68,6 @@ def _methods(value: str | None) -> list[str]:
     if unknown:
         raise UsageError("--methods", f"expected all or some of {', '.join(METHODS)}, found {unknown[0]!r}")
     return names
-
-
-def _folder(output: str) -> Path:
-    folder = Path(output)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        complaint = f"expected a directory, or a new one, found {output!r} ({error.strerror})"
-        raise UsageError("--output", complaint) from error
-    return folder
 
 
 def _figure(folder: Path, rows: Sequence[Row]) -> str:

@@ -8,11 +8,12 @@ from typing import Generic, Protocol, TypeVar
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.homotopy import Homotopy
 from problems.nonlinear.start_checks import Jacobian, check_jacobian_shape
 from problems.options import quiet
 
 
-class BuiltOnFunction(Protocol):
+class BuiltOnFunction(Homotopy, Protocol):
     """A homotopy whose derivative follows from that of F."""
 
     @property
@@ -28,14 +29,6 @@ class BuiltOnFunction(Protocol):
     @property
     def references(self) -> Sequence[str]:
         """BibTeX entries."""
-        ...
-
-    def start(self) -> tuple[Array, float]:
-        """A point on the path."""
-        ...
-
-    def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (n,)."""
         ...
 
     def derivative(self, slope: Matrix, y: Array, lam: float) -> tuple[Matrix, Array]:

@@ -175,6 +175,7 @@ def test_bad_options_are_named(path, axes, options, message):
         plot_components(path, axes, **options)
 
 
-def test_an_empty_path_is_refused(axes):
+@pytest.mark.parametrize("plot", [plot_components, plot_bifurcation, plot_steps])
+def test_an_empty_path_is_refused(plot, axes):
     with pytest.raises(ValueError, match="path: expected at least one point, found none"):
-        plot_bifurcation(continuation.Path(), axes)
+        plot(continuation.Path(), axes)
