@@ -12,6 +12,7 @@ from attrs import define, field, frozen
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.point.segment import Segment, parameter_at
+from continuation.rejection import Rejected
 from continuation.status import Kind, Status
 
 
@@ -43,6 +44,8 @@ class Step:
         The path from the point before to this one.
     weights : ndarray or None
         The metric in which that was measured.
+    rejected : tuple of Rejected
+        The attempts before the accepted one: step length, contraction and reason. Not kept in archives.
     observed : mapping
         Extra scalars of the homotopy.
     """
@@ -63,6 +66,7 @@ class Step:
     share: float = 0.0
     segment: Segment | None = None
     weights: Array | None = None
+    rejected: tuple[Rejected, ...] = ()
     observed: Mapping[str, float] = field(factory=dict)
 
     @property
@@ -94,6 +98,8 @@ class LocatedEvent:
     orientation : int
     step : int
         Index of the step in which it lies (from step - 1 to step).
+    ends_step : bool
+        Whether it is that step's own point.
     """
 
     name: str
@@ -105,6 +111,7 @@ class LocatedEvent:
     monitor: float
     orientation: int
     step: int
+    ends_step: bool = False
 
     @property
     def y(self) -> Array:
@@ -139,6 +146,8 @@ class Path:
         Where the end is singular in the parameter: an estimate of its largest absolute error.
     winding_number : int or None
         There: the path is a power series in |lam - target|^(1 / winding_number).
+    rejected : tuple of Rejected
+        The attempts that failed at the last point, where the path ended for want of a step.
     """
 
     steps: list[Step] = field(factory=list)
@@ -150,6 +159,7 @@ class Path:
     references: tuple[str, ...] = ()
     end_error: float | None = None
     winding_number: int | None = None
+    rejected: tuple[Rejected, ...] = ()
 
     def __len__(self) -> int:
         return len(self.steps)

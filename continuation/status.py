@@ -20,6 +20,7 @@ class Status(IntEnum):
     BUDGET_EXHAUSTED = 9
     INTERRUPTED = 10
     START_NOT_ON_PATH = 11
+    PREDICTOR_FAILED = 12
 
     def __str__(self) -> str:
         return _SENTENCES[self]
@@ -43,6 +44,7 @@ _SENTENCES = {
     Status.BUDGET_EXHAUSTED: "The budget is used up; raise `budget`, or resume from the archive.",
     Status.INTERRUPTED: "The trace was interrupted; all accepted points are kept and it can be resumed.",
     Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
+    Status.PREDICTOR_FAILED: "The predictor found no curve to follow from the last point; take another `predictor`.",
 }
 
 

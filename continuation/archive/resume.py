@@ -26,6 +26,7 @@ from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
     Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,
+    Status.PREDICTOR_FAILED,
 )
 
 

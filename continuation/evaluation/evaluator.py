@@ -2,29 +2,37 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix, finite
+from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
+from continuation.rejection import Rejection
 
 
 class EvaluationError(ArithmeticError):
     """The homotopy has no finite value, or no factorisation, at a point; the sentence says which."""
 
+    rejection: ClassVar[Rejection] = Rejection.UNSOLVABLE
+
 
 class NotFiniteError(EvaluationError):
     """The homotopy has no finite value at a point: the edge of its domain, or an overflow."""
 
+    rejection = Rejection.NO_VALUE
+
 
 class SingularPointError(EvaluationError):
     """The bordered matrix has no factorisation at a point: it is singular there, as in a branch point."""
+
+    rejection = Rejection.SINGULAR
 
 
 @frozen(eq=False)
@@ -125,6 +133,13 @@ class Evaluator:
         if not finite(r):
             raise NotFiniteError("the residual is not finite")
         return r
+
+    def residual_norm(self, u: Array) -> float:
+        """The largest component of H(u); nan where there is none."""
+        try:
+            return largest(self.residual(u))
+        except EvaluationError:
+            return math.nan
 
     @property
     def derivative(self) -> Derivative:

@@ -17,7 +17,7 @@ from continuation.arrays import Array
 from continuation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsTaylor
-from continuation.point.linearization import Linearization, linearize, with_exact_solves
+from continuation.point.linearization import Linearization, factored, with_exact_solves
 from continuation.point.segment import SeriesSegment
 from continuation.predictors.base import Knot
 from continuation.predictors.pade import Pade, best
@@ -27,8 +27,8 @@ ORDERS = (8, 30)
 """Bounds of the orders that the cost model chooses from: beyond 30 round-off in the last terms eats the gain."""
 
 
-HORIZON = 100.0
-"""The longest step, in sizes of the point."""
+LONGEST_STEP = 100.0
+"""In sizes of the point: a polynomial path has no last terms that would limit it."""
 
 
 @frozen(eq=False)
@@ -81,8 +81,7 @@ def series_reach(coefficients: Array, accuracy: float) -> float:
     """
     measure = Tolerance(absolute=accuracy, relative=accuracy).measure
     order = len(coefficients) - 1
-    # A polynomial path has no last terms; its series is still not asked about the other end of the world.
-    reach = HORIZON * (1.0 + float(np.abs(coefficients[0]).max())) / float(np.abs(coefficients[1]).max())
+    reach = LONGEST_STEP * (1.0 + float(np.abs(coefficients[0]).max())) / float(np.abs(coefficients[1]).max())
     for k in (order - 1, order):
         size = measure(coefficients[k], coefficients[0])
         if size > 0.0:
@@ -130,9 +129,7 @@ class Taylor:
         try:
             coefficients = coefficients_at(evaluator, with_exact_solves(evaluator, point), order)
         except EvaluationError:
-            exact = linearize(evaluator, point.u, point.weights, point.border, 0)
-            point = Linearization(point.u, point.weights, exact.anchor, point.tangent, point.orientation)
-            coefficients = coefficients_at(evaluator, point, order)
+            coefficients = coefficients_at(evaluator, factored(evaluator, point), order)
         series = Series(coefficients, self.safety * series_reach(coefficients, self.accuracy))
         if not self.rational:
             return series

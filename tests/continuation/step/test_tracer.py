@@ -25,6 +25,7 @@ from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Ge
 from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
 from continuation.metric import Euclidean, Relative, RootMeanSquare, Weighted
 from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent
+from continuation.rejection import Rejection
 from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth, Pitchfork
 
 PREDICTORS = [
@@ -49,10 +50,15 @@ CONTROLLERS = [
 METRICS = [None, Euclidean(), Relative(floor=0.1), RootMeanSquare(), Weighted(np.array([2.0]), 0.5)]
 
 
-@pytest.mark.parametrize(
-    ("predictor", "corrector", "controller"), list(product(PREDICTORS, CORRECTORS, CONTROLLERS)), ids=repr
-)
-def test_every_combination_goes_round_the_circle(predictor, corrector, controller):
+# Every pair of parts occurs: the numbers of predictor, corrector and controller make a Latin square.
+PAIRWISE = [
+    (predictor, corrector, CONTROLLERS[(i + j) % len(CONTROLLERS)])
+    for (i, predictor), (j, corrector) in product(enumerate(PREDICTORS), enumerate(CORRECTORS))
+]
+
+
+@pytest.mark.parametrize(("predictor", "corrector", "controller"), PAIRWISE, ids=repr)
+def test_every_pair_of_parts_goes_round_the_circle(predictor, corrector, controller):
     path = trace(Circle(), predictor=predictor, corrector=corrector, controller=controller, metric=Euclidean())
     assert path.status is Status.CLOSED
     assert [round(event.lam, 9) for event in path.turning_points] == [1.0, -1.0]
@@ -171,7 +177,14 @@ def test_observers_see_all_of_it_in_order():
 def test_accepted_and_rejected_are_counted():
     path = trace(FreudensteinRoth())
     assert path.counts.accepted == len(path) - 1
-    assert path.counts.rejected == sum(step.rejections for step in path.steps)
+    assert path.counts.rejected == sum(step.rejections for step in path.steps) > 0
+    for step in path.steps:
+        assert len(step.rejected) == step.rejections
+        # Attempts at one step, each shorter than the one before, and the one that was accepted shorter than all.
+        tried = [*(attempt.h for attempt in step.rejected), step.step_length]
+        assert tried == sorted(tried, reverse=True)
+        assert {attempt.reason for attempt in step.rejected} <= {Rejection.CONTROLLER, Rejection.NOT_CONTRACTING}
+        assert all(attempt.contraction > 0.0 for attempt in step.rejected)
 
 
 # -- resuming ---------------------------------------------------------------------------------------------------
