@@ -7,10 +7,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
-from continuation.status import Status
-
-ARRIVED = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
-"""Ends of a resumed path that count as success."""
 
 
 def register(subparsers: Subparsers) -> None:
@@ -64,7 +60,7 @@ def _resume(arguments: argparse.Namespace) -> int:
         path = resume(arguments.file, archive=arguments.archive, observers=observers, **options)
     print(f"{path.status.name}: {path.message}")
     print(f"{len(path)} points, lam = {path.endpoint.lam:.6g}")
-    return SUCCESS if path.status in ARRIVED else FAILURE
+    return SUCCESS if path.success else FAILURE
 
 
 def _recover(arguments: argparse.Namespace) -> int:

@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
         # Where no path was needed there is nothing to draw yet.
         drawn = solution if solution.paths else lcp.solve(problem, arguments.homotopy, x0=x0, finish=False)
         _draw(drawn, problem.n, arguments.plot)
-    return SUCCESS if solution.outcome is lcp.Outcome.SOLVED else FAILURE
+    return SUCCESS if solution.success else FAILURE
 
 
 def _check_start(problem: LCP, x0: Array) -> None:
