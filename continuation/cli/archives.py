@@ -5,8 +5,12 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
+
+if TYPE_CHECKING:
+    from continuation.step.options import Options
 
 
 def register(subparsers: Subparsers) -> None:
@@ -54,7 +58,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     from continuation.progress import Progress
 
     limits = {name: getattr(arguments, name) for name in ("steps", "factorizations") if getattr(arguments, name)}
-    options = {"budget": Budget(**limits)} if limits else {}
+    options: Options = {"budget": Budget(**limits)} if limits else {}
     observers = (Progress(),) if arguments.progress else ()
     with _complaints("FILE", new="--archive"):
         path = resume(arguments.file, archive=arguments.archive, observers=observers, **options)

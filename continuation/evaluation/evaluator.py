@@ -81,6 +81,9 @@ class Evaluator:
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
+        if isinstance(homotopy, type):
+            name = homotopy.__name__
+            raise TypeError(f"homotopy: expected an object, found the class {name}; make one, {name}(...)")
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")

@@ -5,39 +5,35 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, Unpack
 
 import numpy as np
 from attrs import evolve
 
 from continuation.arrays import Array, largest
-from continuation.budget import Budget
 from continuation.citation import references_of, unique
-from continuation.controllers import Controller, StepMeasures
-from continuation.correctors import Corrector
+from continuation.controllers import StepMeasures
 from continuation.counts import Counts
 from continuation.ends.divergence import divergence
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import Target
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
-from continuation.events import Event
 from continuation.events.scan import monitored
 from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve
-from continuation.metric import Metric, norm, share
+from continuation.metric import norm, share
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.arc import angle_between, length_between
 from continuation.point.linearization import Anchor, Linearization
-from continuation.predictors import Knot, Prediction, Predictor
+from continuation.predictors import Knot, Prediction
 from continuation.predictors.taylor import ORDERS
-from continuation.presets import DEFAULT, Preset
 from continuation.status import Kind, Status
 from continuation.step.acceptance import Accepted, Examiner, residual_norm
+from continuation.step.options import OBSERVER, Options, checked, documented, each
 from continuation.step.settings import complete_settings
 from continuation.step.start import StartError, first_point, point_from_tangent
 from continuation.step.state import State
 from continuation.step.stepper import HIGH_ORDER_FRACTION, LOW_ORDER_FRACTION, Attempt, Stepper
-from continuation.tolerance import Tolerance
 
 
 class Observer(Protocol):
@@ -56,39 +52,22 @@ class Observer(Protocol):
         ...
 
 
+@documented
 class Tracer:
-    """An iterator over the steps of one path.
+    """One path as an iterable of its steps: ``for step in Tracer(homotopy)`` traces it, and the loop may be left.
+
+    Iterating again goes on after the last step that was handed out, with the clock and the budget where they were; a
+    path that has come to its end yields nothing more.
 
     Parameters
     ----------
     homotopy : Homotopy
         `start` and `residual`; every other capability is found by its presence.
-    predictor, corrector, controller : optional
-        Parts; each overrides the preset's.
-    preset : Preset
-        `FAST`, `DEFAULT` or `CONSERVATIVE`.
-    metric : Metric, optional
-        The homotopy's own, else `Automatic`.
-    events : sequence of Event
-        Added to the homotopy's own. Turning points and branch points are always watched for.
-    tolerance : float or Tolerance
-    budget : Budget
-    target : float or None, optional
-        Overrides the homotopy's target; its default is 0.
-    direction : int
-        Sign of the parameter's first movement; 0 means towards the target.
-    observers : sequence of Observer
-    start : tuple of (u, tangent), optional
-        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector and the direction to leave in.
-    state : State, optional
+    observers : sequence of Observer, default ()
+        Watch the trace: an archive, a progress bar, a plot.
+    state : State, default None
         Resume from here: the steps that follow are bit for bit those of an uninterrupted trace.
-
-    check_jacobian : bool
-        Compare the Jacobian with the residual at the start, and refuse a wrong one with a ValueError that says where.
-    examine : bool
-        Watch for turning points and branch points, and look for a singular end by the endgame. Without it the path is
-        only followed, at two thirds of the cost: a step over a branch point is refused, and an end must be regular, or
-        be found by the homotopy's own `finish`. For searches that trace many paths for their ends.
+    {options}
 
     Attributes
     ----------
@@ -98,46 +77,28 @@ class Tracer:
         All that was found so far.
     state : State or None
         What the next step needs.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument; an unknown option with the one that it is nearest to.
     """
 
     def __init__(
         self,
         homotopy: Any,
         *,
-        predictor: Predictor | None = None,
-        corrector: Corrector | None = None,
-        controller: Controller | None = None,
-        preset: Preset = DEFAULT,
-        metric: Metric | None = None,
-        events: Sequence[Event] = (),
-        tolerance: float | Tolerance = 1e-8,
-        budget: Budget | None = None,
-        target: float | str | None = "homotopy",
-        direction: int = 0,
         observers: Sequence[Observer] = (),
-        start: tuple[Array, Array] | None = None,
         state: State | None = None,
-        check_jacobian: bool = False,
-        examine: bool = True,
+        **options: Unpack[Options],
     ) -> None:
+        asked = checked(options)
+        each("observers", observers, OBSERVER)
         self.homotopy = homotopy
         self.path = Path()
         self.counts: Counts = self.path.counts
         self._evaluator = Evaluator(homotopy, self.counts)
-        self.settings = complete_settings(
-            homotopy,
-            preset,
-            predictor,
-            corrector,
-            controller,
-            metric,
-            events,
-            tolerance,
-            budget,
-            target,
-            direction,
-            examine,
-        )
+        self.settings = complete_settings(homotopy, asked)
         self.observers = tuple(observers)
         self.state: State | None = state
         max_step = homotopy.max_step if isinstance(homotopy, SupportsMaxStep) else None
@@ -148,8 +109,8 @@ class Tracer:
         self._examiner = Examiner(self._evaluator, self.settings, self._ends)
         self._finish = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
         self._observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
-        self._start = start
-        self._check = check_jacobian
+        self._start = asked["start"]
+        self._check = asked["check_jacobian"]
         self._clock = time.perf_counter()
 
     @property
