@@ -312,7 +312,7 @@ def _refused(name: str) -> Iterator[None]:
     try:
         yield
     except (TypeError, ValueError) as error:
-        if str(error).partition(":")[0] not in ("homotopy", "start", "residual", "target"):
+        if str(error).partition(":")[0] not in ("homotopy", "start", "residual", "target", "max_step", "finish"):
             raise
         raise UsageError(name, error) from error
 

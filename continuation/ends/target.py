@@ -94,9 +94,22 @@ class Target:
     stepper: Stepper
     target: float | None
 
+    # A homotopy with `max_step` has a domain, and its target mostly lies on the boundary. Three decisions follow, each
+    # for a reason of its own.
+
     @property
-    def interior(self) -> bool:
-        """Whether the path lives inside a domain whose boundary may hold the target."""
+    def lands_from_afar(self) -> bool:
+        """Whether landing is tried from many steps away, now and then: near a boundary steps become short."""
+        return self.stepper.max_step is not None
+
+    @property
+    def expects_singular_end(self) -> bool:
+        """Whether the endgame is tried before any landing has failed: on the boundary H' may lose its rank."""
+        return self.stepper.max_step is not None
+
+    @property
+    def may_turn_back(self) -> bool:
+        """Whether the start's parameter value is an end: beyond it such a homotopy has no meaning."""
         return self.stepper.max_step is not None
 
     # -- before a step ----------------------------------------------------------------------------------------
@@ -121,10 +134,10 @@ class Target:
         gap = self.target - point.lam
         if gap * point.tangent[-1] <= 0.0:
             return None
-        if self.interior and abs(gap) > 0.3 * abs(last_failed - self.target):
+        if self.lands_from_afar and abs(gap) > 0.3 * abs(last_failed - self.target):
             return None
         # An interior path creeps towards a target on its boundary, so there a longer jump is tried, now and then.
-        target, high = self.target, min(prediction.reach, 10.0 * h if self.interior else h)
+        target, high = self.target, min(prediction.reach, 10.0 * h if self.lands_from_afar else h)
         try:
             if not (prediction(high)[-1] - target) * gap >= 0.0:
                 return None
@@ -170,7 +183,7 @@ class Target:
             return False
         gap, whole = point.lam - self.target, float(state.origin.u[-1]) - self.target
         near = abs(gap) <= ENDGAME * abs(whole) and gap * point.tangent[-1] < 0.0
-        failed = state.last_failed_landing == point.lam or self.interior
+        failed = state.last_failed_landing == point.lam or self.expects_singular_end
         return near and failed and abs(gap) <= 0.05 * abs(state.last_failed_endgame - self.target)
 
     def endgame(self, point: Linearization) -> SingularLimit | None:
@@ -190,7 +203,7 @@ class Target:
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, Status.REACHED_TARGET))
-            if self.interior and state.index > 0:
+            if self.may_turn_back and state.index > 0:
                 ends.append((float(state.origin.u[-1]), Kind.REGULAR, Status.TURNED_BACK))
         for value, kind, status in ends:
             point = crossing(evaluator, arc, value, tolerance)

@@ -20,20 +20,20 @@ from continuation.ends.target import Target
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events.scan import monitored
-from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve
+from continuation.homotopy import SupportsObserve
 from continuation.metric import norm, share
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.arc import angle_between, length_between
 from continuation.point.linearization import Anchor, Linearization
 from continuation.predictors import Knot, Prediction
-from continuation.predictors.taylor import ORDERS
 from continuation.status import Kind, Status
 from continuation.step.acceptance import Accepted, Examiner, residual_norm
+from continuation.step.capabilities import finish_of, interior_fraction, max_step_of
 from continuation.step.options import OBSERVER, Options, checked, documented, each
 from continuation.step.settings import complete_settings
 from continuation.step.start import StartError, first_point, point_from_tangent
 from continuation.step.state import State
-from continuation.step.stepper import HIGH_ORDER_FRACTION, LOW_ORDER_FRACTION, Attempt, Stepper
+from continuation.step.stepper import Attempt, Stepper
 
 
 class Observer(Protocol):
@@ -57,7 +57,8 @@ class Tracer:
     """One path as an iterable of its steps: ``for step in Tracer(homotopy)`` traces it, and the loop may be left.
 
     Iterating again goes on after the last step that was handed out, with the clock and the budget where they were; a
-    path that has come to its end yields nothing more.
+    path that has come to its end yields nothing more. Observers are told of the end each time that a loop is left, and
+    an archive closes on that.
 
     Parameters
     ----------
@@ -101,22 +102,27 @@ class Tracer:
         self.settings = complete_settings(homotopy, asked)
         self.observers = tuple(observers)
         self.state: State | None = state
-        max_step = homotopy.max_step if isinstance(homotopy, SupportsMaxStep) else None
-        fraction = HIGH_ORDER_FRACTION if self.settings.predictor.order >= ORDERS[0] else LOW_ORDER_FRACTION
-        stepper = Stepper(self._evaluator, self.settings.corrector, self.settings.tolerance, max_step, fraction)
+        stepper = Stepper(
+            self._evaluator,
+            self.settings.corrector,
+            self.settings.tolerance,
+            max_step_of(homotopy),
+            interior_fraction(self.settings.predictor),
+        )
         self._stepper = stepper
         self._ends = Target(stepper, self.settings.target)
         self._examiner = Examiner(self._evaluator, self.settings, self._ends)
-        self._finish = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
+        self._finish = finish_of(homotopy)
         self._observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._start = asked["start"]
         self._check = asked["check_jacobian"]
-        self._clock = time.perf_counter()
+        self._clock: float | None = None
+        self._handed = 0
 
     @property
     def seconds(self) -> float:
-        """Since the tracer was made."""
-        return time.perf_counter() - self._clock
+        """Of wall-clock time since the first step was asked for; the time after a loop that was left does not count."""
+        return self.path.seconds if self._clock is None else time.perf_counter() - self._clock
 
     @property
     def references(self) -> tuple[str, ...]:
@@ -125,7 +131,19 @@ class Tracer:
         return unique((*references_of(self.homotopy, *parts), *sorted(self._evaluator.methods)))
 
     def __iter__(self) -> Iterator[Step]:
-        """Trace: yields each accepted step, the start first, and ends when the path has a status."""
+        """Trace: yields each accepted step, the start first, and ends when the path has a status.
+
+        Raises
+        ------
+        RuntimeError
+            If another loop over this tracer has not ended.
+        """
+        if self._clock is not None:
+            raise RuntimeError("the tracer is being iterated already; leave that loop first")
+        if self.path.status not in (Status.TRACING, Status.INTERRUPTED):
+            return
+        self._clock = time.perf_counter() - self.path.seconds
+        self.path.status, self.path.message = Status.TRACING, ""
         try:
             yield from self._run()
         except KeyboardInterrupt:
@@ -141,7 +159,8 @@ class Tracer:
         except StartError as error:
             self._end(error.status, str(error))
             return
-        if self.path.steps:
+        if self._handed < len(self.path.steps):
+            self._handed = len(self.path.steps)
             yield self.path.steps[-1]
         while self.path.status is Status.TRACING:
             limit = self.settings.budget.spent(self.counts, self.seconds)
@@ -151,6 +170,7 @@ class Tracer:
             known = len(self.path.steps)
             following = self._advance(point)
             if len(self.path.steps) > known:
+                self._handed = len(self.path.steps)
                 yield self.path.steps[-1]
             if following is None:
                 return
@@ -213,7 +233,7 @@ class Tracer:
     def _end(self, status: Status, message: str = "") -> None:
         self.path.status = status
         self.path.message = message or str(status)
-        self.path.seconds = self.seconds
+        self.path.seconds, self._clock = self.seconds, None
         self.path.references = self.references
         for observer in self.observers:
             observer.end(self)
@@ -249,7 +269,7 @@ class Tracer:
         if self.settings.examine:
             end, state = self._ended(point, prediction, state)
         if end is not None:
-            self._append_end(point, end.u, _ending(Status.REACHED_TARGET, end), end)
+            self._append_end(point, end.u, end)
             return None
         h, rejections, memory = min(state.h, prediction.reach), 0, state.controller
         if math.isinf(h):
@@ -264,7 +284,7 @@ class Tracer:
             state = evolve(state, last_failed_landing=point.lam)
         while True:
             trial = self._stepper.attempt(point, prediction, self._stepper.shortened(point, prediction, h))
-            decision = self.settings.controller.update(memory, self._measured(trial, rejections))
+            decision = self.settings.controller.update(memory, self._measured(trial, rejections, prediction))
             memory = decision.state
             if decision.accept and trial.arrival is not None:
                 draft = evolve(state, controller=memory, h=decision.h, index=state.index + 1)
@@ -288,7 +308,7 @@ class Tracer:
             return self._ends.endgame(point), evolve(state, last_failed_endgame=point.lam)
         return end, state
 
-    def _measured(self, trial: Attempt, rejections: int) -> StepMeasures:
+    def _measured(self, trial: Attempt, rejections: int, prediction: Prediction) -> StepMeasures:
         correction = trial.correction
         return StepMeasures(
             h=trial.h,
@@ -297,7 +317,7 @@ class Tracer:
             contraction=correction.contraction if correction else math.inf,
             distance=correction.distance if correction else math.inf,
             angle=trial.angle,
-            order=self.settings.predictor.order,
+            order=getattr(prediction, "order", self.settings.predictor.order),
             rejections=rejections,
         )
 
@@ -306,7 +326,7 @@ class Tracer:
         limit = self.settings.budget.spent(self.counts, self.seconds)
         if limit:
             self._end(Status.BUDGET_EXHAUSTED, f"{Status.BUDGET_EXHAUSTED} Reached: {limit}.")
-        elif h < self.settings.controller.bounds.minimum:
+        elif not h >= self.settings.controller.bounds.minimum:
             status = Status.STEP_TOO_SMALL if trial.finite else Status.LEFT_DOMAIN
             reason = trial.reason or "the controller refuses even the shortest step, as with a wrong Jacobian"
             self._end(status, f"{status} Last reason: {reason}.")
@@ -369,13 +389,12 @@ class Tracer:
         y = self._finish(moved.y, moved.lam) if self._finish is not None else None
         if y is not None:
             lam = self.settings.target if self.settings.target is not None else moved.lam
-            message = f"{Status.REACHED_TARGET} The homotopy's own finish found the end."
-            self._append_end(moved, np.append(y, lam), message)
+            self._append_end(moved, np.append(y, lam))
             return None
         return moved
 
-    def _append_end(self, point: Linearization, u: Array, message: str, limit: SingularLimit | None = None) -> None:
-        """The end, found otherwise than by a step, as the last point."""
+    def _append_end(self, point: Linearization, u: Array, limit: SingularLimit | None = None) -> None:
+        """The end, found by the homotopy's own finish or as a limit, as the last point."""
         before = self.path.steps[-1]
         chord = u - point.u
         length = norm(point.weights, chord)
@@ -396,7 +415,10 @@ class Tracer:
         self._record(last, self.state)
         if limit is not None:
             self.path.end_error, self.path.winding_number = limit.error, limit.winding_number
-        self._end(Status.REACHED_TARGET, message)
+            self._end(Status.REACHED_TARGET, _ending(Status.REACHED_TARGET, limit))
+        else:
+            found = f"The homotopy's own finish found the end; the residual of H there is {last.residual_norm:.1e}."
+            self._end(Status.REACHED_TARGET, f"{Status.REACHED_TARGET} {found}")
 
 
 def _ending(status: Status, limit: SingularLimit | None, event: str = "") -> str:
