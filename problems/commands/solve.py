@@ -20,7 +20,10 @@ HOMOTOPIES = ("auto", "kkt", "yu", "zhao", "xu", "wang")
 MOST_ROWS = 60
 """Components printed; --json prints all."""
 
-_ARGUMENTS = {"path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy"}
+_ARGUMENTS = {
+    "path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy",
+    "seconds": "--budget-seconds",
+}  # fmt: skip
 
 
 def register(subparsers: Subparsers) -> None:
@@ -37,6 +40,9 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--relaxed", action="store_true", help="take any x0 > 0; what A x0 + q lacks is relaxed away")
     parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
     parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); needs matplotlib")
+    parser.add_argument(
+        "--budget-seconds", metavar="S", type=float, help="wall-clock time; default: work that takes about a minute"
+    )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
     parser.set_defaults(run=run)
@@ -44,6 +50,7 @@ def register(subparsers: Subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, solve, print."""
+    from continuation.budget import Budget
     from problems import lcp
     from problems.lcp.data.files import read_problem, read_vector
 
@@ -53,11 +60,13 @@ def run(arguments: argparse.Namespace) -> int:
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
         if x0 is not None and not arguments.relaxed:
             _check_start(problem, x0)
+        budget = None if arguments.budget_seconds is None else Budget(math.inf, arguments.budget_seconds)
         solution = lcp.solve(
             problem,
             homotopy=arguments.homotopy,
             x0=x0,
             archive=arguments.archive,
+            budget=budget,
             progress=arguments.progress,
         )
     print(json.dumps(_as_json(arguments, solution)) if arguments.json else _as_text(arguments, problem, solution))

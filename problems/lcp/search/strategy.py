@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -32,6 +31,7 @@ from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.restarts import FAR, NEAR
 from problems.lcp.search.search import MAKERS, Search
+from problems.lcp.search.work import default_budget
 
 HOMOTOPIES = ("auto", "kkt", "wang", "yu", "zhao", "xu")
 
@@ -89,7 +89,9 @@ def solve(
         Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
         restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
     budget : continuation.Budget, optional
-        Of everything together; 60 seconds by default.
+        Of everything together. By default as many factorisations as take about a minute, which depends on n alone
+        (`default_budget`), so that the same call gives the same answer on every machine; ``Budget(seconds=60)`` ends
+        by the clock.
     tolerance : float
         What `Certificate.solves` is asked before anything is called a solution.
     archive : path, optional
@@ -129,7 +131,7 @@ def solve(
         structure,
         Finish(Faces(structure), tolerance) if finish else None,
         tolerance,
-        budget if budget is not None else Budget(steps=math.inf, seconds=60.0),
+        budget if budget is not None else default_budget(problem),
         None if archive is None else PathLog(archive),
         progress,
         dict(options),
