@@ -138,7 +138,7 @@ def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
         lines += ["", f"{'i':>6}  {'x':>22}  {'w':>22}"]
         lines += [
             f"{i:>6}  {x:>22.15g}  {w:>22.15g}"
-            for i, (x, w) in enumerate(zip(solution.x[:MOST_ROWS], solution.w[:MOST_ROWS]), start=1)
+            for i, (x, w) in enumerate(zip(solution.x[:MOST_ROWS], solution.w[:MOST_ROWS]))
         ]
         if problem.n > MOST_ROWS:
             lines.append(f"{'...':>6}  {problem.n - MOST_ROWS} more; --json prints all")
@@ -150,7 +150,7 @@ def _draw(solution: Any, n: int, file: str) -> None:
     from continuation.plot import MOST_COMPONENTS, plot_components, plot_steps
 
     components = range(min(n, MOST_COMPONENTS))
-    names = [f"$x_{{{i + 1}}}$" for i in components]
+    names = [f"$x_{{{i}}}$" for i in components]
 
     def draw(figure: Any) -> None:
         above, below = figure.subplots(2, 1, height_ratios=(3, 1))
