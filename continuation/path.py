@@ -33,8 +33,7 @@ class Step:
         Largest component of the residual, evaluated at u.
     orientation : int
         Sign of det [[H'], [tangent']].
-    kind : int
-        One of `Kind`.
+    kind : Kind
     corrector_iterations, rejections : int
         Of the accepted attempt, and the attempts before it.
     contraction, distance, angle, share : float
@@ -57,7 +56,7 @@ class Step:
     step_length: float = 0.0
     residual_norm: float = 0.0
     orientation: int = 0
-    kind: int = Kind.REGULAR
+    kind: Kind = field(default=Kind.REGULAR, converter=Kind)
     corrector_iterations: int = 0
     rejections: int = 0
     contraction: float = 0.0
@@ -87,8 +86,7 @@ class LocatedEvent:
     Attributes
     ----------
     name : str
-    kind : int
-        One of `Kind`.
+    kind : Kind
     arclength : float
     u, tangent : ndarray, shape (N + 1,)
     residual_norm : float
@@ -103,7 +101,7 @@ class LocatedEvent:
     """
 
     name: str
-    kind: int
+    kind: Kind = field(converter=Kind)
     arclength: float
     u: Array
     tangent: Array
@@ -167,6 +165,11 @@ class Path:
     def __repr__(self) -> str:
         end = f", lam {self.steps[0].lam:g} -> {self.steps[-1].lam:g}" if self.steps else ""
         return f"<Path {self.status.name}: {len(self.steps)} points{end}, {len(self.events)} events>"
+
+    @property
+    def success(self) -> bool:
+        """Whether the path came to an end that was asked for: the target, a terminal event, or its own start."""
+        return self.status.success
 
     @property
     def u(self) -> Array:

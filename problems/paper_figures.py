@@ -69,7 +69,7 @@ def draw_example(example: Example, path: Curve, axes: Any) -> None:
 
 def _draw_x(example: Example, path: Curve, axes: Any) -> None:
     components = range(example.q.size)
-    plot_components(path, axes, names=[f"$x_{{{i + 1}}}$" for i in components], components=components, legend=False)
+    plot_components(path, axes, names=[f"$x_{{{i}}}$" for i in components], components=components, legend=False)
 
 
 def _key(figure: Any, fullest: Any) -> None:

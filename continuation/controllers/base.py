@@ -6,8 +6,8 @@ import math
 from typing import Protocol, TypeAlias
 
 from attrs import field, frozen
-from attrs.validators import gt
 
+from continuation.checks import POSITIVE, POSITIVE_FINITE
 from continuation.rejection import Rejection
 
 State: TypeAlias = tuple[float, ...]
@@ -66,9 +66,9 @@ class Decision:
 class Bounds:
     """Floor, ceiling and first value of the step length, in arclength of the metric."""
 
-    minimum: float = field(default=1e-10, validator=gt(0))
-    maximum: float = field(default=float("inf"), validator=gt(0))
-    initial: float = field(default=0.1, validator=gt(0))
+    minimum: float = field(default=1e-10, validator=POSITIVE_FINITE)
+    maximum: float = field(default=float("inf"), validator=POSITIVE)
+    initial: float = field(default=0.1, validator=POSITIVE)
 
     def __attrs_post_init__(self) -> None:
         if not self.minimum <= self.initial:

@@ -53,6 +53,11 @@ class Landing:
     stepper: Stepper
     target: float
 
+    @property
+    def lands_from_afar(self) -> bool:
+        """Whether landing is tried from many steps away, now and then: near a boundary steps become short."""
+        return self.stepper.solver.max_step is not None
+
     def attempt(self, point: Linearization, prediction: Prediction, h: float, last_failed: float) -> Attempt | None:
         """A step to the target, if the prediction reaches it.
 
@@ -84,7 +89,7 @@ class Landing:
         if gap * point.tangent[-1] <= 0.0:
             return None
         target, max_step = self.target, self.stepper.solver.max_step
-        if max_step is not None:
+        if self.lands_from_afar:
             if abs(gap) > RETRY * abs(last_failed - target):
                 return None
             h *= LEAP

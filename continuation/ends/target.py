@@ -74,15 +74,23 @@ class Target:
     stepper: Stepper
     target: float | None
 
+    # A homotopy with `max_step` has a domain, and its target mostly lies on the boundary. Three decisions follow, each
+    # for a reason of its own: these two, and `Landing.lands_from_afar`.
+
+    @property
+    def expects_singular_end(self) -> bool:
+        """Whether the endgame is tried before any landing has failed: on the boundary H' may lose its rank."""
+        return self.solver.max_step is not None
+
+    @property
+    def may_turn_back(self) -> bool:
+        """Whether the start's parameter value is an end: beyond it such a homotopy has no meaning."""
+        return self.solver.max_step is not None
+
     @property
     def solver(self) -> PathSolver:
         """That of the trace."""
         return self.stepper.solver
-
-    @property
-    def interior(self) -> bool:
-        """Whether the path lives inside a domain whose boundary may hold the target."""
-        return self.solver.max_step is not None
 
     # -- before a step ----------------------------------------------------------------------------------------
 
@@ -119,7 +127,7 @@ class Target:
             return False
         gap, whole = point.lam - self.target, float(state.origin.u[-1]) - self.target
         near = abs(gap) <= ENDGAME * abs(whole) and gap * point.tangent[-1] < 0.0
-        failed = state.last_failed_landing == point.lam or self.interior
+        failed = state.last_failed_landing == point.lam or self.expects_singular_end
         return near and failed and abs(gap) <= RETRY * abs(state.last_failed_endgame - self.target)
 
     def endgame(self, point: Linearization) -> SingularLimit | None:
@@ -137,7 +145,7 @@ class Target:
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
-            if self.interior:
+            if self.may_turn_back:
                 ends.append((float(state.origin.u[-1]), Kind.REGULAR, EndsAt.START_PARAMETER))
         for value, kind, at in ends:
             point = crossing(self.solver, arc, value)

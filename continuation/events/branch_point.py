@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 from attrs import evolve, field, frozen
-from attrs.validators import ge
 from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix, largest
+from continuation.checks import integer
 from continuation.contraction import HALVING, Contraction, Iteration, magnitude
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.linear import Banded, Symmetric
@@ -49,9 +49,9 @@ class BranchPoint:
     The tracer always watches for it, since it must flip its orientation there; name it among the events to stop at it.
     """
 
-    terminal: int = field(default=1, validator=ge(0))
+    terminal: int = field(default=1, validator=integer(0))
     direction: int = field(default=0, init=False)
-    kind: int = field(default=Kind.BRANCH_POINT, init=False)
+    kind: Kind = field(default=Kind.BRANCH_POINT, init=False)
     name: str = field(default="branch point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:

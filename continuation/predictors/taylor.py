@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
@@ -37,6 +38,11 @@ class Series:
 
     coefficients: Array
     reach: float
+
+    @property
+    def order(self) -> int:
+        """The order of the last term."""
+        return len(self.coefficients) - 1
 
     def __call__(self, h: float) -> Array:
         """The point at pseudo-arclength h, by Horner's rule."""
@@ -112,6 +118,8 @@ class Taylor:
     safety: float = field(default=0.95, validator=and_(gt(0.0)))
     rational: bool = False
     memory: int = field(default=1, init=False)
+    interior_fraction: ClassVar[float] = 0.9999
+    """How much of the way to the boundary of a domain it may go: its error is far below the distance that is left."""
 
     @property
     def references(self) -> tuple[str, ...]:
@@ -120,7 +128,7 @@ class Taylor:
 
     @property
     def order(self) -> int:
-        """The order given, or the lowest that is ever chosen."""
+        """The order given, or the least that is chosen; `Series.order` is the one that was."""
         return self.order_wanted if self.order_wanted is not None else ORDERS[0]
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series | Pade:

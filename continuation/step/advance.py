@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 from attrs import evolve, field, frozen
 
@@ -14,21 +13,20 @@ from continuation.ends.divergence import divergence
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.landing import Landing
 from continuation.ends.target import Target
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.homotopy import SupportsMaxStep
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.metric import norm
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import angle_between, length_between
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot, Prediction
-from continuation.predictors.taylor import ORDERS
 from continuation.rejection import Rejected, Rejection
 from continuation.step.acceptance import Accepted, Examiner
+from continuation.step.capabilities import interior_fraction
 from continuation.step.record import StepRecorder
 from continuation.step.settings import Settings
 from continuation.step.state import State
-from continuation.step.stepper import HIGH_ORDER_FRACTION, LOW_ORDER_FRACTION, Arrival, Attempt, Stepper
+from continuation.step.stepper import Arrival, Attempt, Stepper
 from continuation.step.verdict import Verdict, arc_ended, budget_spent, no_step_left, predictor_failed, singular_end
 
 SINGULAR_STRETCH = 1.19
@@ -56,12 +54,6 @@ class Stopped:
     end: Array | None = None
 
 
-def solver_of(homotopy: Any, evaluator: Evaluator, settings: Settings) -> PathSolver:
-    """The one object of a trace that puts points on its path."""
-    max_step = homotopy.max_step if isinstance(homotopy, SupportsMaxStep) else None
-    return PathSolver(evaluator, settings.tolerance, max_step)
-
-
 @frozen(eq=False)
 class Advance:
     """What a step is made with.
@@ -86,8 +78,7 @@ class Advance:
 
     @stepper.default
     def _stepper(self) -> Stepper:
-        fraction = HIGH_ORDER_FRACTION if self.settings.predictor.order >= ORDERS[0] else LOW_ORDER_FRACTION
-        return Stepper(self.solver, self.settings.corrector, fraction)
+        return Stepper(self.solver, self.settings.corrector, interior_fraction(self.settings.predictor))
 
     @target.default
     def _target(self) -> Target:
@@ -126,7 +117,7 @@ class Advance:
         rejected: tuple[Rejected, ...] = ()
         while True:
             attempt = self.stepper.attempt(point, prediction, self.stepper.shortened(point, prediction, h))
-            decision = controller.update(memory, self._measures(attempt, len(rejected)))
+            decision = controller.update(memory, self._measures(attempt, prediction, len(rejected)))
             memory, h = decision.state, decision.h
             if isinstance(attempt, Rejected):
                 failed = attempt
@@ -154,8 +145,8 @@ class Advance:
             return self.target.endgame(point), evolve(state, last_failed_endgame=point.lam)
         return limit, state
 
-    def _measures(self, attempt: Attempt, rejections: int) -> StepMeasures:
-        order = self.settings.predictor.order
+    def _measures(self, attempt: Attempt, prediction: Prediction, rejections: int) -> StepMeasures:
+        order = getattr(prediction, "order", self.settings.predictor.order)
         if isinstance(attempt, Rejected):
             return StepMeasures(attempt.h, order, rejections, rejection=attempt.reason)
         found = attempt.correction

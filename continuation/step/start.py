@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from attrs import evolve
 
 from continuation.arrays import Array
+from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Metric, norm
@@ -111,6 +114,19 @@ def _well_conditioned(point: Linearization) -> bool:
     return norm(np.ones_like(z), z) < NEAR_SINGULAR * image and abs(point.tangent[-1]) > STEEP
 
 
+def point_and_direction(start: Any) -> tuple[Array, Array]:
+    """Copies of the two vectors of a start; ValueError if it is no pair of a finite point and a direction."""
+    if not isinstance(start, tuple | list) or len(start) != 2:
+        found = f"{len(start)} of them" if isinstance(start, tuple | list) else repr(start)
+        raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}")
+    u, v = (real_vector("start", part) for part in start)
+    if u.ndim != 1 or u.shape != v.shape:
+        raise ValueError(f"start: expected (u, v), vectors of one size, found shapes {u.shape} and {v.shape}")
+    if not (np.isfinite(u).all() and np.isfinite(v).all() and v.any()):
+        raise ValueError("start: expected a finite point and a direction that does not vanish")
+    return u, v
+
+
 def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: int, metric: Metric) -> Linearization:
     """Begin at a given point in a given direction; the determinant sign there becomes the orientation.
 
@@ -120,11 +136,9 @@ def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: i
         If `start` is no pair (u, v) of vectors of the right size, or v vanishes.
     SingularStartError
     """
-    u, v = (np.array(part, dtype=float) for part in start)
-    if u.shape != (size,) or v.shape != (size,):
+    u, v = point_and_direction(start)
+    if u.size != size:
         raise ValueError(f"start: expected (u, v) of shape ({size},) each, found {u.shape} and {v.shape}")
-    if not (np.isfinite(u).all() and np.isfinite(v).all() and v.any()):
-        raise ValueError("start: expected a finite point and a direction that does not vanish")
     weights = metric.weights(u, v, None)
     try:
         return linearize(evaluator, u, weights, weights * (v / norm(weights, v)), 0)

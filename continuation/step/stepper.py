@@ -17,9 +17,9 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 
-LOW_ORDER_FRACTION, HIGH_ORDER_FRACTION = 0.9, 0.9999
-"""How much of the way to the boundary a prediction may go: the usual fraction of interior methods for a prediction
-of low order, nearly all of it for one whose error is far below its distance to the boundary."""
+LOW_ORDER_FRACTION = 0.9
+"""How much of the way to the boundary a prediction may go: the usual fraction of interior methods (Wright, Primal-Dual
+Interior-Point Methods, 1997), for a prediction whose error may be as large as its distance to the boundary."""
 
 SHORTENINGS, SHORTEST = 60, 0.1
 """How often a curved prediction is cut on its way to the boundary, and the least factor of a cut: sixty of these are

@@ -4,35 +4,30 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, Unpack
 
 import numpy as np
 
-from continuation.arrays import Array
-from continuation.budget import Budget
 from continuation.citation import references_of, unique
-from continuation.controllers import Controller
-from continuation.correctors import Corrector
 from continuation.counts import Counts
 from continuation.ends.divergence import divergence
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
-from continuation.events import Event
 from continuation.events.scan import monitored
-from continuation.homotopy import SupportsFinish, SupportsObserve
-from continuation.metric import Metric
+from continuation.homotopy import SupportsObserve
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.linearization import Anchor, Linearization
-from continuation.predictors import Knot, Predictor
-from continuation.presets import DEFAULT, Preset
+from continuation.point.projection import PathSolver
+from continuation.predictors import Knot
 from continuation.status import Kind, Status
-from continuation.step.advance import Advance, Stopped, solver_of
+from continuation.step.advance import Advance, Stopped
+from continuation.step.capabilities import finish_of, max_step_of
+from continuation.step.options import OBSERVER, Options, checked, documented, each
 from continuation.step.record import StepRecorder
 from continuation.step.settings import complete_settings
 from continuation.step.start import StartError, first_point, point_from_tangent
 from continuation.step.state import State
-from continuation.step.verdict import FINISHED, INTERRUPTED, Verdict, budget_spent, refused_start, start_on_target
-from continuation.tolerance import Tolerance
+from continuation.step.verdict import INTERRUPTED, Verdict, budget_spent, finished, refused_start, start_on_target
 
 
 class Observer(Protocol):
@@ -51,39 +46,23 @@ class Observer(Protocol):
         ...
 
 
+@documented
 class Tracer:
-    """An iterator over the steps of one path.
+    """One path as an iterable of its steps: ``for step in Tracer(homotopy)`` traces it, and the loop may be left.
+
+    Iterating again goes on after the last step that was handed out, with the clock and the budget where they were; a
+    path that has come to its end yields nothing more. Observers are told of the end each time that a loop is left, and
+    an archive closes on that.
 
     Parameters
     ----------
     homotopy : Homotopy
         `start` and `residual`; every other capability is found by its presence.
-    predictor, corrector, controller : optional
-        Parts; each overrides the preset's.
-    preset : Preset
-        `FAST`, `DEFAULT` or `CONSERVATIVE`.
-    metric : Metric, optional
-        The homotopy's own, else `Automatic`.
-    events : sequence of Event
-        Added to the homotopy's own. Turning points and branch points are always watched for.
-    tolerance : float or Tolerance
-    budget : Budget
-    target : float or None, optional
-        Overrides the homotopy's target; its default is 0.
-    direction : int
-        Sign of the parameter's first movement; 0 means towards the target.
-    observers : sequence of Observer
-    start : tuple of (u, tangent), optional
-        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector and the direction to leave in.
-    state : State, optional
+    observers : sequence of Observer, default ()
+        Watch the trace: an archive, a progress bar, a plot.
+    state : State, default None
         Resume from here: the steps that follow are bit for bit those of an uninterrupted trace.
-
-    check_jacobian : bool
-        Compare the Jacobian with the residual at the start, and refuse a wrong one with a ValueError that says where.
-    examine : bool
-        Watch for turning points and branch points, and look for a singular end by the endgame. Without it the path is
-        only followed, at two thirds of the cost: a step over a branch point is refused, and an end must be regular, or
-        be found by the homotopy's own `finish`. For searches that trace many paths for their ends.
+    {options}
 
     Attributes
     ----------
@@ -93,61 +72,44 @@ class Tracer:
         All that was found so far.
     state : State or None
         What the next step needs.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument; an unknown option with the one that it is nearest to.
     """
 
     def __init__(
         self,
         homotopy: Any,
         *,
-        predictor: Predictor | None = None,
-        corrector: Corrector | None = None,
-        controller: Controller | None = None,
-        preset: Preset = DEFAULT,
-        metric: Metric | None = None,
-        events: Sequence[Event] = (),
-        tolerance: float | Tolerance = 1e-8,
-        budget: Budget | None = None,
-        target: float | str | None = "homotopy",
-        direction: int = 0,
         observers: Sequence[Observer] = (),
-        start: tuple[Array, Array] | None = None,
         state: State | None = None,
-        check_jacobian: bool = False,
-        examine: bool = True,
+        **options: Unpack[Options],
     ) -> None:
+        asked = checked(options)
+        each("observers", observers, OBSERVER)
         self.homotopy = homotopy
         self.path = Path()
         self.counts: Counts = self.path.counts
         self._evaluator = Evaluator(homotopy, self.counts)
-        self.settings = complete_settings(
-            homotopy,
-            preset,
-            predictor,
-            corrector,
-            controller,
-            metric,
-            events,
-            tolerance,
-            budget,
-            target,
-            direction,
-            examine,
-        )
+        self.settings = complete_settings(homotopy, asked)
         self.observers = tuple(observers)
         self.state: State | None = state
-        self._finish = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
-        self._solver = solver_of(homotopy, self._evaluator, self.settings)
+        self._finish = finish_of(homotopy)
+        self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy))
         observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._recorder = StepRecorder(self._evaluator, observe)
         self._advance = Advance(self._solver, self.settings, self._recorder, self._spent)
-        self._start = start
-        self._check = check_jacobian
-        self._clock = time.perf_counter()
+        self._start = asked["start"]
+        self._check = asked["check_jacobian"]
+        self._clock: float | None = None
+        self._handed = 0
 
     @property
     def seconds(self) -> float:
-        """Since the tracer was made."""
-        return time.perf_counter() - self._clock
+        """Of wall-clock time since the first step was asked for; the time after a loop that was left does not count."""
+        return self.path.seconds if self._clock is None else time.perf_counter() - self._clock
 
     @property
     def references(self) -> tuple[str, ...]:
@@ -156,7 +118,19 @@ class Tracer:
         return unique((*references_of(self.homotopy, *parts), *sorted(self._evaluator.methods)))
 
     def __iter__(self) -> Iterator[Step]:
-        """Trace: yields each accepted step, the start first, and ends when the path has a status."""
+        """Trace: yields each accepted step, the start first, and ends when the path has a status.
+
+        Raises
+        ------
+        RuntimeError
+            If another loop over this tracer has not ended.
+        """
+        if self._clock is not None:
+            raise RuntimeError("the tracer is being iterated already; leave that loop first")
+        if self.path.status not in (Status.TRACING, Status.INTERRUPTED):
+            return
+        self._clock = time.perf_counter() - self.path.seconds
+        self.path.status, self.path.message = Status.TRACING, ""
         try:
             yield from self._run()
         except KeyboardInterrupt:
@@ -172,7 +146,8 @@ class Tracer:
         except StartError as error:
             self._end(refused_start(error))
             return
-        if self.path.steps:
+        if self._handed < len(self.path.steps):
+            self._handed = len(self.path.steps)
             yield self.path.steps[-1]
         while self.path.status is Status.TRACING:
             verdict = budget_spent(self._spent())
@@ -182,6 +157,7 @@ class Tracer:
             known = len(self.path.steps)
             following = self._next(point)
             if len(self.path.steps) > known:
+                self._handed = len(self.path.steps)
                 yield self.path.steps[-1]
             if following is None:
                 return
@@ -235,7 +211,7 @@ class Tracer:
         path.status, path.message, path.rejected = verdict.status, str(verdict), verdict.rejected
         if verdict.limit is not None:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
-        path.seconds = self.seconds
+        path.seconds, self._clock = self.seconds, None
         path.references = self.references
         for observer in self.observers:
             observer.end(self)
@@ -264,15 +240,14 @@ class Tracer:
             point, state = found.point, found.state
             self.counts.accepted += 1
             self._record(found.step, state, found.events)
-            if verdict is None and self._finish is not None:
-                y = self._finish(point.y, point.lam)
-                if y is not None:
-                    lam = self.settings.target if self.settings.target is not None else point.lam
-                    end, verdict = np.append(y, lam), FINISHED
+            y = self._finish(point.y, point.lam) if verdict is None and self._finish is not None else None
+            if y is not None:
+                end = np.append(y, self.settings.target if self.settings.target is not None else point.lam)
         if end is not None:
             last = self._recorder.end(point, state, end)
             self.counts.accepted += 1
             self._record(last, state)
+            verdict = verdict or finished(last.residual_norm)
         if verdict is None:
             return point
         self._end(verdict)

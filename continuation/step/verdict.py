@@ -43,7 +43,6 @@ class Verdict:
 INTERRUPTED = Verdict(Status.INTERRUPTED)
 """Ctrl-C, an exception of the plug-in's own, or a consumer that stopped iterating."""
 
-FINISHED = Verdict(Status.REACHED_TARGET, "The homotopy's own finish found the end.")
 
 
 def refused_start(error: StartError) -> Verdict:
@@ -73,6 +72,12 @@ def singular_end(limit: SingularLimit) -> Verdict:
     power = f"|lam - target|^(1/{w})" if w > 1 else "lam - target"
     found = f"There it is a power series in {power}; error of the limit about {limit.error:.1g}."
     return Verdict(Status.REACHED_TARGET, found, limit)
+
+
+def finished(residual_norm: float) -> Verdict:
+    """The homotopy's own finish found the end: certified by the problem; what H is there is said."""
+    found = f"The homotopy's own finish found the end; the residual of H there is {residual_norm:.1e}."
+    return Verdict(Status.REACHED_TARGET, found)
 
 
 def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Verdict | None:
