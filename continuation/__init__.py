@@ -7,15 +7,22 @@ from continuation.auditing import arclength, audit, refine
 from continuation.branch_switching import branch_directions, switch_branch
 from continuation.budget import Budget
 from continuation.citation import cite
+from continuation.controllers import Controller
+from continuation.correctors import Corrector
 from continuation.counts import Counts
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.functions import from_functions
 from continuation.evaluation.jacobian_check import check_jacobian
-from continuation.events import Monitor, TargetValue, TurningPoint
+from continuation.events import Event, Monitor, TargetValue, TurningPoint
 from continuation.events.branch_point import BranchPoint
 from continuation.homotopy import Homotopy
+from continuation.metric import Automatic, Euclidean, Metric
 from continuation.path import LocatedEvent, Path, Step
+from continuation.predictors import Predictor
 from continuation.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
 from continuation.status import Kind, Status
+from continuation.step.options import Options
+from continuation.step.settings import Settings
 from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance
 from continuation.tracing import trace
@@ -27,16 +34,26 @@ __all__ = [
     "DEFAULT",
     "FAST",
     "SERIES",
+    "Automatic",
     "BranchPoint",
     "Budget",
+    "Controller",
+    "Corrector",
     "Counts",
+    "Euclidean",
+    "EvaluationError",
+    "Event",
     "Homotopy",
     "Kind",
     "LocatedEvent",
+    "Metric",
     "Monitor",
     "Observer",
+    "Options",
     "Path",
+    "Predictor",
     "Preset",
+    "Settings",
     "Status",
     "Step",
     "TargetValue",

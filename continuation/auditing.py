@@ -12,13 +12,13 @@ from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.controllers import Bounds, Decision, StepMeasures
 from continuation.counts import Counts
-from continuation.ends.closed_curve import passes_start
+from continuation.ends.closed_curve import SAME_POINT, passes_start
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic, Euclidean, Metric, inner, norm
 from continuation.path import Path, Step
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization, linearize
-from continuation.point.projection import project_and_linearize, project_onto_path
+from continuation.point.projection import PathSolver
 from continuation.point.segment import hermite
 from continuation.predictors import Knot
 from continuation.presets import CONSERVATIVE
@@ -37,7 +37,6 @@ _AGREEMENT = 1e-7
 """Relative difference of the two rules; Gauss's, of degree 9, is then far more accurate."""
 
 _DIVISIONS = 20
-_TOLERANCE = Tolerance()
 
 
 def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
@@ -64,7 +63,7 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
         If the path cannot be followed between two of its points, as in a branch point.
     """
     _require_step(path)
-    evaluator = Evaluator(homotopy, Counts())
+    solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
     planes, rule = _metric_of(homotopy), Euclidean() if metric is None else metric
     total = 0.0
     current: Array | None = None
@@ -72,10 +71,10 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     before: Linearization | None = None
     for step in path.steps:
         current = planes.weights(step.u, step.tangent, current)
-        here = linearize(evaluator, step.u, current, current * step.tangent, 0)
+        here = linearize(solver.evaluator, step.u, current, current * step.tangent, 0)
         if before is not None and measure is not None:
             try:
-                total += _length(evaluator, before, here, measure, _DIVISIONS)
+                total += _length(solver, before, here, measure, _DIVISIONS)
             except EvaluationError as error:
                 where = f"path: steps {step.index - 1} and {step.index} are not joined"
                 raise ArithmeticError(f"{where}: {error}") from error
@@ -83,7 +82,7 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     return total
 
 
-def _length(evaluator: Evaluator, a: Linearization, b: Linearization, measure: Array, divisions: int) -> float:
+def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Array, divisions: int) -> float:
     """The length from a to b in the metric of `measure`; the planes are orthogonal in the metric of a."""
     chord = norm(a.weights, b.u - a.u)
     if chord <= 1e-14 * norm(a.weights, a.u):
@@ -92,7 +91,7 @@ def _length(evaluator: Evaluator, a: Linearization, b: Linearization, measure: A
     segment = hermite(a.u, a.tangent, b.u, b.tangent, border)
     nearer = (a if t < 0.5 else b for t in _NODES)
     inside = [
-        project_and_linearize(evaluator, near, segment.at(t), border, _TOLERANCE) for near, t in zip(nearer, _NODES)
+        solver.project_and_linearize(near, segment.at(t), border) for near, t in zip(nearer, _NODES)
     ]
     points = (a, *inside, b)
     along = np.array([float(np.dot(border, point.tangent)) for point in points])
@@ -105,7 +104,7 @@ def _length(evaluator: Evaluator, a: Linearization, b: Linearization, measure: A
     if divisions == 0:
         raise EvaluationError(f"the path could not be measured near lam = {a.lam:g}")
     middle = inside[_MIDDLE]
-    return sum(_length(evaluator, p, q, measure, divisions - 1) for p, q in ((a, middle), (middle, b)))
+    return sum(_length(solver, p, q, measure, divisions - 1) for p, q in ((a, middle), (middle, b)))
 
 
 def _metric_of(homotopy: Any) -> Metric:
@@ -247,14 +246,14 @@ def _knots(steps: list[Step], sign: float, metric: Metric) -> list[Knot]:
 
 def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
     """How many of the knots the trace meets, in order, before it ends or has clearly missed one."""
-    evaluator = Evaluator(tracer.homotopy, Counts())
+    solver = PathSolver(Evaluator(tracer.homotopy, Counts()), tolerance)
     met, met_at = 1, 0.0
     before: Linearization | None = None
     for step in tracer:
         assert tracer.state is not None
         weights = tracer.state.weights
-        here = linearize(evaluator, step.u, weights, weights * step.tangent, 0)
-        while before is not None and met < len(knots) and _meets(evaluator, knots[met], before, here, tolerance):
+        here = linearize(solver.evaluator, step.u, weights, weights * step.tangent, 0)
+        while before is not None and met < len(knots) and _meets(solver, knots[met], before, here):
             met, met_at = met + 1, step.arclength
         # Between two points of one path lies little more than their chord; a loop that was left out is longer.
         if met == len(knots) or step.arclength - met_at > 2.0 * (knots[met].arclength - knots[met - 1].arclength):
@@ -263,16 +262,16 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
     return met
 
 
-def _meets(evaluator: Evaluator, knot: Knot, before: Linearization, after: Linearization, tolerance: Tolerance) -> bool:
-    if inner(after.weights, after.tangent, knot.tangent) > 0.0 and _same(after.u, knot.u, tolerance):
+def _meets(solver: PathSolver, knot: Knot, before: Linearization, after: Linearization) -> bool:
+    if inner(after.weights, after.tangent, knot.tangent) > 0.0 and _same(after.u, knot.u, solver.tolerance):
         return True
     arc = Arc(before, after, before.border, hermite(before.u, before.tangent, after.u, after.tangent, before.border))
     unit = evolve(knot, tangent=knot.tangent / norm(after.weights, knot.tangent))
-    return passes_start(evaluator, unit, after.weights, arc, tolerance)
+    return passes_start(solver, unit, after.weights, arc)
 
 
 def _same(u: Array, wanted: Array, tolerance: Tolerance) -> bool:
-    return tolerance.measure(u - wanted, wanted) <= 1e3
+    return tolerance.measure(u - wanted, wanted) <= SAME_POINT
 
 
 def _turns(retraced: Path, end: Knot, tolerance: Tolerance) -> int:
@@ -311,11 +310,11 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     ArithmeticError
         If the corrector fails there.
     """
-    evaluator = Evaluator(homotopy, Counts())
+    solver = PathSolver(Evaluator(homotopy, Counts()), as_tolerance(tolerance))
     u = path(float(s))
     ahead = path(min(float(s) + 1e-6 * path.arclength[-1], path.arclength[-1]))
     behind = path(max(float(s) - 1e-6 * path.arclength[-1], 0.0))
     border = (ahead - behind) / np.linalg.norm(ahead - behind)
-    near = linearize(evaluator, u, np.ones_like(u), border, 0)
-    settled, _ = project_onto_path(evaluator, near, u, border, as_tolerance(tolerance))
+    near = linearize(solver.evaluator, u, np.ones_like(u), border, 0)
+    settled, _ = solver.project(near, u, border)
     return settled

@@ -16,6 +16,10 @@ from continuation.point.linearization import linearize
 from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
+TRANSVERSAL = 1e-10
+"""The least discriminant, relative to the coefficients, of directions that are not one: second derivatives by
+differences have ten digits."""
+
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]:
     """The directions of the two branches that cross at a simple branch point.
@@ -49,7 +53,7 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]
     rows = [_second(evaluator, event.u, here.phi, w[:, i]) for i in range(2)]
     a, b, c = float(rows[0] @ w[:, 0]), float(rows[0] @ w[:, 1]), float(rows[1] @ w[:, 1])
     discriminant = b * b - a * c
-    if not discriminant > 1e-10 * max(abs(a), abs(b), abs(c)) ** 2:
+    if not discriminant > TRANSVERSAL * max(abs(a), abs(b), abs(c)) ** 2:
         raise ArithmeticError("no second branch crosses transversally at this point")
     root = np.sqrt(discriminant)
     # The two roots of a alpha^2 + 2 b alpha beta + c beta^2, in homogeneous coordinates, without cancellation.
@@ -85,6 +89,6 @@ def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tup
         except EvaluationError as error:
             raise ArithmeticError(f"the other branch could not be reached: {error}") from error
         if not correction.converged:
-            raise ArithmeticError(f"the other branch could not be reached: {correction.reason}")
+            raise ArithmeticError(f"the other branch could not be reached: {correction.rejected(step)}")
         starts.append((correction.u, linearize(evaluator, correction.u, weights, v, 0).tangent))
     return tuple(starts)

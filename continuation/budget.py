@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from attrs import field, frozen
-from attrs.validators import gt
 
+from continuation.checks import POSITIVE
 from continuation.counts import Counts
 
 
@@ -14,9 +14,9 @@ from continuation.counts import Counts
 class Budget:
     """Limits on accepted steps, wall-clock seconds and factorisations; reaching one ends as BUDGET_EXHAUSTED."""
 
-    steps: float = field(default=10_000, validator=gt(0))
-    seconds: float = field(default=math.inf, validator=gt(0))
-    factorizations: float = field(default=math.inf, validator=gt(0))
+    steps: float = field(default=10_000, validator=POSITIVE)
+    seconds: float = field(default=math.inf, validator=POSITIVE)
+    factorizations: float = field(default=math.inf, validator=POSITIVE)
 
     def spent(self, counts: Counts, seconds: float) -> str:
         """Which limit is reached, as text; empty if none is."""

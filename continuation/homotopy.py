@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import Protocol, runtime_checkable
 
 from continuation.arrays import Array, Matrix
-
-if TYPE_CHECKING:
-    from continuation.events import Event
-    from continuation.linear import BorderedSystem
-    from continuation.metric import Metric
-    from continuation.point.linearization import Linearization
+from continuation.events import Event
+from continuation.linear import BorderedSystem
+from continuation.metric import Metric
 
 
 class Homotopy(Protocol):
@@ -60,11 +57,29 @@ class SupportsDifferential(Protocol):
         ...
 
 
+class TangentPoint(Protocol):
+    """A point of the path as a plug-in sees it: what coefficients of a series are made of."""
+
+    @property
+    def u(self) -> Array:
+        """(y, lam) as one vector, shape (N + 1,)."""
+        ...
+
+    @property
+    def tangent(self) -> Array:
+        """Of unit length in the metric, shape (N + 1,)."""
+        ...
+
+    def solve(self, r: Array, rho: float = 0.0) -> Array:
+        """The solution z, shape (N + 1,), of ``H' z = r``, ``border . z = rho``, the border dual to the tangent."""
+        ...
+
+
 @runtime_checkable
 class SupportsTaylor(Protocol):
     """Path coefficients of its own, usually by convolutions, from the factorisation of the point."""
 
-    def taylor(self, point: Linearization, order: int) -> Array:
+    def taylor(self, point: TangentPoint, order: int) -> Array:
         """Coefficients c, shape (order + 1, N + 1): u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s."""
         ...
 

@@ -12,6 +12,7 @@ from attrs import define, field, frozen
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.point.segment import Segment, parameter_at
+from continuation.rejection import Rejected
 from continuation.status import Kind, Status
 
 
@@ -32,8 +33,7 @@ class Step:
         Largest component of the residual, evaluated at u.
     orientation : int
         Sign of det [[H'], [tangent']].
-    kind : int
-        One of `Kind`.
+    kind : Kind
     corrector_iterations, rejections : int
         Of the accepted attempt, and the attempts before it.
     contraction, distance, angle, share : float
@@ -43,6 +43,8 @@ class Step:
         The path from the point before to this one.
     weights : ndarray or None
         The metric in which that was measured.
+    rejected : tuple of Rejected
+        The attempts before the accepted one: step length, contraction and reason. Not kept in archives.
     observed : mapping
         Extra scalars of the homotopy.
     """
@@ -54,7 +56,7 @@ class Step:
     step_length: float = 0.0
     residual_norm: float = 0.0
     orientation: int = 0
-    kind: int = Kind.REGULAR
+    kind: Kind = field(default=Kind.REGULAR, converter=Kind)
     corrector_iterations: int = 0
     rejections: int = 0
     contraction: float = 0.0
@@ -63,6 +65,7 @@ class Step:
     share: float = 0.0
     segment: Segment | None = None
     weights: Array | None = None
+    rejected: tuple[Rejected, ...] = ()
     observed: Mapping[str, float] = field(factory=dict)
 
     @property
@@ -83,8 +86,7 @@ class LocatedEvent:
     Attributes
     ----------
     name : str
-    kind : int
-        One of `Kind`.
+    kind : Kind
     arclength : float
     u, tangent : ndarray, shape (N + 1,)
     residual_norm : float
@@ -94,10 +96,12 @@ class LocatedEvent:
     orientation : int
     step : int
         Index of the step in which it lies (from step - 1 to step).
+    ends_step : bool
+        Whether it is that step's own point.
     """
 
     name: str
-    kind: int
+    kind: Kind = field(converter=Kind)
     arclength: float
     u: Array
     tangent: Array
@@ -105,6 +109,7 @@ class LocatedEvent:
     monitor: float
     orientation: int
     step: int
+    ends_step: bool = False
 
     @property
     def y(self) -> Array:
@@ -139,6 +144,8 @@ class Path:
         Where the end is singular in the parameter: an estimate of its largest absolute error.
     winding_number : int or None
         There: the path is a power series in |lam - target|^(1 / winding_number).
+    rejected : tuple of Rejected
+        The attempts that failed at the last point, where the path ended for want of a step.
     """
 
     steps: list[Step] = field(factory=list)
@@ -150,6 +157,7 @@ class Path:
     references: tuple[str, ...] = ()
     end_error: float | None = None
     winding_number: int | None = None
+    rejected: tuple[Rejected, ...] = ()
 
     def __len__(self) -> int:
         return len(self.steps)
@@ -157,6 +165,11 @@ class Path:
     def __repr__(self) -> str:
         end = f", lam {self.steps[0].lam:g} -> {self.steps[-1].lam:g}" if self.steps else ""
         return f"<Path {self.status.name}: {len(self.steps)} points{end}, {len(self.events)} events>"
+
+    @property
+    def success(self) -> bool:
+        """Whether the path came to an end that was asked for: the target, a terminal event, or its own start."""
+        return self.status.success
 
     @property
     def u(self) -> Array:

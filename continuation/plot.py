@@ -118,7 +118,7 @@ def plot_components(
         Drawn into; a new figure otherwise.
     against : {"lam", "arclength"}
     names : sequence of str, optional
-        One a component drawn; ``y_1``, ... by default.
+        One a component drawn; ``y_0``, ``y_1``, ... by default, counted as in `y`.
     components : iterable of int, optional
         Which components; by default all of them, or twelve at even distances where there are more.
     legend : bool
@@ -139,7 +139,7 @@ def plot_components(
     drawing = Drawing.of(path)
     chosen = _components(components, drawing.u[:, :-1])
     unknowns = int(np.isfinite(drawing.u[:, :-1]).any(axis=0).sum())
-    labels = [f"$y_{{{i + 1}}}$" for i in chosen] if names is None else list(names)
+    labels = [f"$y_{{{i}}}$" for i in chosen] if names is None else list(names)
     if len(labels) != len(chosen):
         raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
     axes = _axes(axes)
@@ -187,7 +187,7 @@ def plot_bifurcation(path: Path, axes: Axes | None = None, component: int | None
     else:
         i = _components([component], drawing.u[:, :-1])[0]
         height, at_turns = drawing.u[:, i], [float(event.y[i]) for event in path.turning_points]
-        label = f"$y_{{{i + 1}}}$"
+        label = f"$y_{{{i}}}$"
     axes = _axes(axes)
     axes.plot(drawing.u[:, -1], height, **_line(0))
     for event, value in zip(path.turning_points, at_turns):

@@ -1,4 +1,4 @@
-"""How a path ended: one enum for the whole library, each value a sentence with the next move."""
+"""How a path ended, each way a sentence with the next move; and what a stored point is."""
 
 from __future__ import annotations
 
@@ -20,9 +20,18 @@ class Status(IntEnum):
     BUDGET_EXHAUSTED = 9
     INTERRUPTED = 10
     START_NOT_ON_PATH = 11
+    PREDICTOR_FAILED = 12
 
     def __str__(self) -> str:
         return _SENTENCES[self]
+
+    def __bool__(self) -> bool:
+        return self.success
+
+    @property
+    def success(self) -> bool:
+        """Whether the path came to an end that was asked for: the target, a terminal event, or its own start."""
+        return self in (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
 
     @property
     def flag(self) -> str:
@@ -43,10 +52,11 @@ _SENTENCES = {
     Status.BUDGET_EXHAUSTED: "The budget is used up; raise `budget`, or resume from the archive.",
     Status.INTERRUPTED: "The trace was interrupted; all accepted points are kept and it can be resumed.",
     Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
+    Status.PREDICTOR_FAILED: "The predictor found no curve to follow from the last point; take another `predictor`.",
 }
 
 
-class Kind:
+class Kind(IntEnum):
     """What a stored point is. Numbers are stored in archives: they are added to, never renumbered."""
 
     REGULAR = 0
@@ -56,4 +66,10 @@ class Kind:
     BRANCH_POINT = 4
     EVENT = 5
 
-    NAMES = ("regular", "start", "target", "turning_point", "branch_point", "event")
+    def __repr__(self) -> str:
+        return f"Kind.{self.name}"
+
+    @property
+    def flag(self) -> str:
+        """The name in lower case, as CF flag_meanings want it."""
+        return self.name.lower()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import ge, gt
 
 from continuation.arrays import Array, largest
+from continuation.checks import NOT_NEGATIVE, POSITIVE, POSITIVE_FINITE, complain, is_number
 
 
 @frozen
@@ -18,9 +18,9 @@ class Tolerance:
     since a residual has the units of the equations and an increment those of the unknowns.
     """
 
-    absolute: float = field(default=1e-8, validator=gt(0))
-    relative: float = field(default=1e-8, validator=ge(0))
-    residual: float = field(default=float("inf"), validator=gt(0))
+    absolute: float = field(default=1e-8, validator=POSITIVE_FINITE)
+    relative: float = field(default=1e-8, validator=NOT_NEGATIVE)
+    residual: float = field(default=float("inf"), validator=POSITIVE)
 
     def measure(self, increment: Array, u: Array) -> float:
         """The largest increment in units of the tolerance: small is <= 1."""
@@ -33,11 +33,16 @@ def as_tolerance(value: float | Tolerance) -> Tolerance:
 
     Raises
     ------
+    TypeError
+        If it is neither a Tolerance nor a real number.
     ValueError
         If the number is not positive and finite.
     """
     if isinstance(value, Tolerance):
         return value
+    expected = "a positive finite number or a Tolerance"
+    if not is_number(value):
+        raise complain(TypeError, "tolerance", expected, value)
     if not (np.isfinite(value) and value > 0):
-        raise ValueError(f"tolerance: expected a positive finite number or a Tolerance, found {value!r}")
+        raise complain(ValueError, "tolerance", expected, value)
     return Tolerance(absolute=float(value), relative=float(value))

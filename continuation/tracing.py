@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike
-from typing import Any
+from typing import Any, Unpack
 
+from continuation.checks import instance_with
 from continuation.path import Path
+from continuation.step.options import OBSERVER, Options, documented, each
+from continuation.step.state import State
 from continuation.step.tracer import Observer, Tracer
 
 
+@documented
 def trace(
     homotopy: Any,
     *,
     archive: str | PathLike[str] | Observer | None = None,
     progress: bool = False,
-    observers: tuple[Observer, ...] = (),
-    **options: Any,
+    observers: Sequence[Observer] = (),
+    state: State | None = None,
+    **options: Unpack[Options],
 ) -> Path:
     """Trace the path of a homotopy from its start to its target.
 
@@ -23,25 +29,28 @@ def trace(
     ----------
     homotopy : Homotopy
         An object with `start` and `residual`, and whatever other capability it has (`continuation.homotopy`).
-    archive : path or PathLog, optional
+    archive : path or PathLog, default None
         An HDF5 file to write the path to; must not exist.
-    progress : bool
+    progress : bool, default False
         Show a progress bar (needs tqdm).
-    observers : tuple of Observer
-    **options
-        As for `continuation.Tracer`: predictor, corrector, controller, preset, metric, events, tolerance, budget,
-        target, direction, start, check_jacobian, examine.
+    observers : sequence of Observer, default ()
+        Watch the trace: a plot, a log.
+    state : State, default None
+        Resume from here; `continuation.archive.resume` takes it from a file.
+    {options}
 
     Returns
     -------
     Path
-        With `status`, a `message`, the points, the events and the counts. A path that fails is returned too.
+        With `success`, a `status`, a `message`, the points, the events and the counts. A path that fails is returned
+        too.
 
     Raises
     ------
     TypeError, ValueError
         For bad input: a homotopy without the methods needed, a start that is not finite, an unknown option.
     """
+    each("observers", observers, OBSERVER)
     watching = list(observers)
     if archive is not None:
         watching.append(_log(archive))
@@ -49,7 +58,7 @@ def trace(
         from continuation.progress import Progress
 
         watching.append(Progress())
-    tracer = Tracer(homotopy, observers=tuple(watching), **options)
+    tracer = Tracer(homotopy, observers=watching, state=state, **options)
     for _ in tracer:
         pass
     return tracer.path
@@ -60,4 +69,5 @@ def _log(archive: str | PathLike[str] | Observer) -> Observer:
         from continuation.archive import PathLog
 
         return PathLog(archive)
+    instance_with("archive", archive, OBSERVER.attributes, "a path or a PathLog")
     return archive

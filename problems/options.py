@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 from attrs import Attribute
 
 from continuation.arrays import Array
+from continuation.checks import FINITE, integer
 
 quiet = np.errstate(over="ignore", invalid="ignore")
 """Decorates an evaluation whose overflow is to give inf or nan without a warning: the tracer handles these."""
 
 
-def positive_integer(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-    """Raise TypeError unless `value` is an integer, ValueError unless it is at least 1."""
-    if not isinstance(value, Integral) or isinstance(value, bool):
-        raise TypeError(f"{attribute.name}: expected an integer, found {value!r} ({type(value).__name__})")
-    if value < 1:
-        raise ValueError(f"{attribute.name}: expected at least 1, found {value}")
-
-
-def finite(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-    """Raise TypeError unless `value` is a real number, ValueError unless it is finite."""
-    if not isinstance(value, Real) or isinstance(value, bool):
-        raise TypeError(f"{attribute.name}: expected a real number, found {value!r} ({type(value).__name__})")
-    if not np.isfinite(float(value)):
-        raise ValueError(f"{attribute.name}: expected a finite number, found {value}")
+positive_integer = integer(1)
+finite = FINITE
 
 
 def finite_or_none(instance: Any, attribute: Attribute[Any], value: Any) -> None:

@@ -286,7 +286,7 @@ COUNTEREXAMPLES: tuple[Counterexample, ...] = (
         end=[2, 0],
         refutes="The paper: for every nondegenerate matrix the limit of the path solves the LCP.",
         why="The minors are 1, -1 and -2, and none of the four bases is feasible: no solution. The path ends at "
-        "w = (1, 0), where x_1 w_1 = 2; the proof takes W_q + X_q (A')_qq for a principal minor of A.",
+        "w = (1, 0), where x_0 w_0 = 2; the proof takes W_q + X_q (A')_qq for a principal minor of A.",
     ),
 )
 """Two strictly feasible LCPs without solution, whose KKT paths end at stationary points."""

@@ -70,7 +70,7 @@ def draw_example(example: Example, path: Path, axes: Any) -> None:
 
 def _draw_x(example: Example, path: Path, axes: Any) -> None:
     components = range(example.q.size)
-    plot_components(path, axes, names=[f"$x_{{{i + 1}}}$" for i in components], components=components, legend=False)
+    plot_components(path, axes, names=[f"$x_{{{i}}}$" for i in components], components=components, legend=False)
 
 
 def _key(figure: Any, fullest: Any) -> None:

@@ -8,19 +8,18 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
+import attrs
 import numpy as np
 from attrs import frozen
 
 from continuation.archive.codec import UnknownError, UnstorableError, decode, encode, order
+from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.tracer import Tracer
 
 _HEAD = struct.Struct("<QQI")
-OPTIONS = (
-    *("predictor", "corrector", "controller", "metric", "events"),
-    *("tolerance", "budget", "target", "direction", "examine"),
-)
-"""The arguments of `continuation.Tracer` that determine a path, and are kept."""
+OPTIONS = tuple(attrs.fields_dict(Settings))
+"""What determines a path, and is kept: all of them options of `continuation.Tracer`, completed."""
 
 _INLINE_BYTES = 1 << 16
 

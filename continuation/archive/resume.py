@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path as File
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -22,25 +22,29 @@ from continuation.archive.store import Store, check_new
 from continuation.archive.writer import PathLog
 from continuation.path import Path
 from continuation.status import Status
+from continuation.step.options import Options, documented
 from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
     Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,
+    Status.PREDICTOR_FAILED,
 )
 
 
+@documented
 def resume(
     file: str | PathLike[str],
     homotopy: Any = None,
     *,
     archive: str | PathLike[str] | None = None,
     observers: tuple[Observer, ...] = (),
-    **options: Any,
+    **options: Unpack[Options],
 ) -> Path:
     """Go on with the last path of an archive; the points that follow are bit for bit those of an uninterrupted trace.
 
     The file is first copied up to the point to resume from, and the copy put in its place, so a kill at any moment
     leaves a file to resume. The last stored point is computed again. Seconds of a budget count from now on.
+    Options are those that the file holds; one that is given takes their place, as ``budget`` where that is used up.
 
     Parameters
     ----------
@@ -51,8 +55,7 @@ def resume(
     archive : path, optional
         A new file to write to; else `file` itself goes on.
     observers : tuple of Observer
-    **options
-        Of `continuation.Tracer`, in place of the stored ones: ``budget`` for a path whose budget is used up.
+    {options}
 
     Returns
     -------

@@ -101,6 +101,8 @@ def from_columns(
         if cells["role"][i] == ACCEPTED:
             seen = {name: column[i] for name, column in extras.items()}
             steps.append(_step(cells, i, points[i], tangents[i], seen, len(steps)))
+    ends = (event.step < len(steps) and np.array_equal(event.u, steps[event.step].u) for event in events)
+    events = [evolve(event, ends_step=end) for event, end in zip(events, ends)]
     return (_joined(steps) if "tangent_y" in block else steps), events
 
 

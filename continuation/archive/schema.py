@@ -91,7 +91,7 @@ POINT_COLUMNS = (
     Column("step_length", "f8", "1", "step length of the predictor; NaN at located events"),
     Column("residual_norm", "f8", "1", "largest component of the residual"),
     Column("orientation", "i1", "1", "sign of the determinant of [H'; tangent']; 0 where it is unknown"),
-    Column("kind", "i1", "1", "what the point is", more=_flags(Kind.NAMES)),
+    Column("kind", "i1", "1", "what the point is", more=_flags(tuple(kind.flag for kind in Kind))),
     Column("role", "i1", "1", "accepted step, or event located between two steps",
            more=_flags(("accepted_step", "located_event"), (ACCEPTED, LOCATED))),
     Column("event_index", "i2", "1", "number of the event in event_name; -1 where there is none"),

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, Future, as_completed, wait
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path as File
-from typing import Any
+from typing import Any, Unpack
 
 from attrs import frozen
 
@@ -21,6 +20,7 @@ from continuation.archive.store import check_new
 from continuation.archive.writer import PathLog
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Status
+from continuation.step.options import Options, check_names
 from continuation.step.tracer import Tracer
 
 Progress = Callable[[int, int], None]
@@ -33,7 +33,7 @@ def trace_many(
     archive: str | PathLike[str] | None = None,
     *,
     progress: Progress | None = None,
-    **options: Any,
+    **options: Unpack[Options],
 ) -> Sequence[Path]:
     """Trace many homotopies.
 
@@ -53,7 +53,7 @@ def trace_many(
     progress : callable, optional
         ``progress(done, total)``, called in this process.
     **options
-        As for `continuation.Tracer`, the same for all.
+        As for `continuation.trace`, the same for all; `start` is every homotopy's own.
 
     Returns
     -------
@@ -69,10 +69,7 @@ def trace_many(
     KeyboardInterrupt
         After Ctrl-C, when everything finished is in the archive.
     """
-    known = set(inspect.signature(Tracer).parameters) - {"homotopy", "observers", "state", "start"}
-    unknown = set(options) - known
-    if unknown:
-        raise TypeError(f"options: expected some of {', '.join(sorted(known))}, found {', '.join(sorted(unknown))}")
+    check_names(options, owned={"start": "where every homotopy has its own"})
     tasks = list(homotopies)
     target = None if archive is None else File(archive)
     if target is not None:
@@ -95,7 +92,7 @@ class _Batch:
     first: int
     file: File | None
     stop: File | None
-    options: dict[str, Any]
+    options: Options
 
 
 @frozen(eq=False)
@@ -146,7 +143,7 @@ def _trace_batch(batch: _Batch, log: PathLog | None, report: Callable[[int], Non
     return _Result(paths)
 
 
-def _one(homotopy: Any, log: PathLog | None, options: dict[str, Any]) -> tuple[Path, bool]:
+def _one(homotopy: Any, log: PathLog | None, options: Options) -> tuple[Path, bool]:
     """One path, and whether Ctrl-C ended it."""
     try:
         tracer = Tracer(homotopy, observers=() if log is None else (_Held(log),), **options)
@@ -181,7 +178,7 @@ def _silent(done: int, total: int) -> None:
 
 
 def _spread(
-    executor: Executor, tasks: list[Any], target: File | None, report: Progress, options: dict[str, Any]
+    executor: Executor, tasks: list[Any], target: File | None, report: Progress, options: Options
 ) -> _Result:
     # A worker may run in another directory, on another machine.
     target = None if target is None else target.absolute()
@@ -215,7 +212,7 @@ def _parts(executor: Executor, tasks: int) -> int:
     return max(min(_PARTS_PER_WORKER * int(workers), tasks), 1)
 
 
-def _batches(tasks: list[Any], parts: int, target: File | None, options: dict[str, Any]) -> list[_Batch]:
+def _batches(tasks: list[Any], parts: int, target: File | None, options: Options) -> list[_Batch]:
     """Consecutive homotopies of nearly equal number, each with the file that its worker writes."""
     bounds = [len(tasks) * k // parts for k in range(parts + 1)]
     batches = []

@@ -219,7 +219,7 @@ class PathLog:
     def _add_step(self, path: _Open, step: Step, events: list[LocatedEvent]) -> None:
         """The step, with the event on which the path ends; other events at the very same point get rows before it."""
         here: list[LocatedEvent] = []
-        while len(here) < len(events) and events[-1 - len(here)].u is step.u:
+        while len(here) < len(events) and (event := events[-1 - len(here)]).ends_step and event.step == step.index:
             here.insert(0, events[-1 - len(here)])
         last = here.pop() if here and here[-1].kind == step.kind else None
         for event in here:

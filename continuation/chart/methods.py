@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from inspect import signature
-from typing import Any
+from typing import Any, Unpack
 
 from continuation.chart.ladder import Rung
 from continuation.chart.model import Answer, Method, Problem
 from continuation.path import Path
-from continuation.step.tracer import Tracer
+from continuation.step.options import Options, check_names
 from continuation.tracing import trace
 
-OPTIONS = frozenset(signature(Tracer).parameters) - {"homotopy"}
-"""The options of a trace."""
 
-
-def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: Any) -> Method:
+def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: Unpack[Options]) -> Method:
     """A method that traces the problem's path.
 
     Parameters
@@ -32,9 +28,7 @@ def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: A
     TypeError
         For an unknown option, at once rather than in every run.
     """
-    unknown = sorted(set(options) - OPTIONS)
-    if unknown:
-        raise TypeError(f"{unknown[0]}: expected options of continuation.trace, which are {', '.join(sorted(OPTIONS))}")
+    check_names(options)
 
     def run(problem: Problem, rung: Rung) -> Answer:
         followed = problem.subject if homotopy is None else homotopy(problem.subject)

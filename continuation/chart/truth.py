@@ -12,11 +12,7 @@ from attrs.validators import gt
 from continuation.arrays import Array
 from continuation.path import Path
 from continuation.presets import CONSERVATIVE
-from continuation.status import Status
 from continuation.tracing import trace
-
-ARRIVED = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
-"""Ends of a path that was meant to end there."""
 
 REFERENCE_TOLERANCE = 1e-11
 """The last Newton increment of a reference: the point after it is exact to round-off."""
@@ -62,7 +58,7 @@ def reference(homotopy: Any, **options: Any) -> Truth:
         If the path does not arrive.
     """
     path: Path = trace(homotopy, **{"preset": CONSERVATIVE, "tolerance": REFERENCE_TOLERANCE, **options})
-    if path.status not in ARRIVED:
+    if not path.success:
         raise ArithmeticError(f"the reference path did not arrive: {path.message}")
     turns = np.array([event.u for event in path.turning_points]).reshape(-1, path.endpoint.u.size)
     return Truth(end=path.endpoint.u, turning_points=turns)

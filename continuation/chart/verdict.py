@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from continuation.chart.errors import distance
 from continuation.chart.model import Answer, Failure, Problem
-from continuation.chart.truth import ARRIVED
 from continuation.path import Path
 from continuation.status import Status
 
@@ -33,7 +32,7 @@ def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
 def _of_path(problem: Problem, path: Path) -> tuple[str, str] | None:
     if path.status is Status.BUDGET_EXHAUSTED:
         return Failure.BUDGET, path.message
-    if path.status not in ARRIVED:
+    if not path.success:
         return Failure.STOPPED, path.message
     true = problem.truth.turning_points
     turns = len(path.turning_points)

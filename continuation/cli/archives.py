@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
-from continuation.status import Status
 
-ARRIVED = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
-"""Ends of a resumed path that count as success."""
+if TYPE_CHECKING:
+    from continuation.step.options import Options
 
 
 def register(subparsers: Subparsers) -> None:
@@ -58,13 +58,13 @@ def _resume(arguments: argparse.Namespace) -> int:
     from continuation.progress import Progress
 
     limits = {name: getattr(arguments, name) for name in ("steps", "factorizations") if getattr(arguments, name)}
-    options = {"budget": Budget(**limits)} if limits else {}
+    options: Options = {"budget": Budget(**limits)} if limits else {}
     observers = (Progress(),) if arguments.progress else ()
     with _complaints("FILE", new="--archive"):
         path = resume(arguments.file, archive=arguments.archive, observers=observers, **options)
     print(f"{path.status.name}: {path.message}")
     print(f"{len(path)} points, lam = {path.endpoint.lam:.6g}")
-    return SUCCESS if path.status in ARRIVED else FAILURE
+    return SUCCESS if path.success else FAILURE
 
 
 def _recover(arguments: argparse.Namespace) -> int:

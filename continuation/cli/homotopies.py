@@ -13,7 +13,6 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from continuation import plugins
-from continuation.cli.archives import ARRIVED
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
 
 if TYPE_CHECKING:
@@ -162,7 +161,7 @@ def _trace(arguments: argparse.Namespace) -> int:
         print(f"\n{cite(path)}", file=out)
     if arguments.plot is not None:
         _draw(path, title, arguments.plot)
-    arrived = path.status in ARRIVED
+    arrived = path.success
     if folder is not None:
         if not arrived:
             print("continuation: no chart: a path that does not arrive has no end to measure", file=sys.stderr)
@@ -313,7 +312,7 @@ def _refused(name: str) -> Iterator[None]:
     try:
         yield
     except (TypeError, ValueError) as error:
-        if str(error).partition(":")[0] not in ("homotopy", "start", "residual", "target"):
+        if str(error).partition(":")[0] not in ("homotopy", "start", "residual", "target", "max_step", "finish"):
             raise
         raise UsageError(name, error) from error
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol, TypeAlias
 
 from attrs import field, frozen
-from attrs.validators import gt
+
+from continuation.checks import POSITIVE, POSITIVE_FINITE
+from continuation.rejection import Rejection
 
 State: TypeAlias = tuple[float, ...]
 
@@ -18,8 +21,9 @@ class StepMeasures:
     ----------
     h : float
         Its step length, in arclength of the metric.
-    converged : bool
-        Whether the corrector converged inside the domain; the other measures are meaningful only then.
+    rejection : Rejection or None
+        Why it failed before it could be measured; None where the corrector converged inside the domain. The measures
+        below are meaningful only then.
     iterations : int
         The corrector's increments.
     contraction : float
@@ -35,13 +39,18 @@ class StepMeasures:
     """
 
     h: float
-    converged: bool
-    iterations: int
-    contraction: float
-    distance: float
-    angle: float
     order: int
     rejections: int
+    iterations: int = 0
+    contraction: float = math.inf
+    distance: float = math.inf
+    angle: float = 0.0
+    rejection: Rejection | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether the other measures are to be judged."""
+        return self.rejection is None
 
 
 @frozen
@@ -57,9 +66,9 @@ class Decision:
 class Bounds:
     """Floor, ceiling and first value of the step length, in arclength of the metric."""
 
-    minimum: float = field(default=1e-10, validator=gt(0))
-    maximum: float = field(default=float("inf"), validator=gt(0))
-    initial: float = field(default=0.1, validator=gt(0))
+    minimum: float = field(default=1e-10, validator=POSITIVE_FINITE)
+    maximum: float = field(default=float("inf"), validator=POSITIVE)
+    initial: float = field(default=0.1, validator=POSITIVE)
 
     def __attrs_post_init__(self) -> None:
         if not self.minimum <= self.initial:

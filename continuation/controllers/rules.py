@@ -11,6 +11,13 @@ from attrs.validators import and_, gt, lt
 from continuation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINBOLDT
 from continuation.controllers.base import Bounds, Decision, State, StepMeasures
 
+LEAST_SHRINK = 1.2
+"""A rejected step becomes shorter by this factor at least: else asymptotics that do not hold yet repeat it."""
+
+STRAIGHT, LEAST_CURVATURE, LEAST_CONTRACTION = 0.01, 1e-3, 1e-3
+"""What keeps PITCON's formula from dividing by zero: the next step's turn in radians and its curvature, relative to
+the last one's, are taken for this at least; a corrector that contracts better tells nothing more."""
+
 _FRACTION = and_(gt(0.0), lt(1.0))
 
 
@@ -117,7 +124,7 @@ class AllgowerGeorg:
         # Judged by the measures themselves, not by their roots: for a predictor of high order a root forgives a
         # correction half as long as the step, and that is how paths are jumped.
         if max(contraction, distance, angle) > self.deceleration:
-            return Decision(False, attempt.h / min(max(factor, 1.2), 2.0 * self.deceleration), state)
+            return Decision(False, attempt.h / min(max(factor, LEAST_SHRINK), 2.0 * self.deceleration), state)
         limited = max(factor, 1.0 / self.acceleration)
         # Right after a rejection the step must not grow: the reason for it lies just ahead.
         grown = attempt.h / (max(limited, 1.0) if attempt.rejections else limited)
@@ -155,8 +162,8 @@ class Curvature:
         ahead = curvature
         if before >= 0.0:
             ahead = curvature + attempt.h / (attempt.h + length) * (curvature - before)
-        ahead = max(ahead, 0.01 / attempt.h, 1e-3 * curvature)
-        quality = math.sqrt(self.contraction / max(attempt.contraction, 1e-3))
+        ahead = max(ahead, STRAIGHT / attempt.h, LEAST_CURVATURE * curvature)
+        quality = math.sqrt(self.contraction / max(attempt.contraction, LEAST_CONTRACTION))
         liked = liked * min(max(quality, 0.5), 2.0)
         wanted = math.sqrt(2.0 * liked / ahead)
         # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.

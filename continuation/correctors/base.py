@@ -6,12 +6,14 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import frozen
 
 from continuation.arrays import Array, largest
-from continuation.evaluation.evaluator import EvaluationError, Evaluator, NotFiniteError, SingularPointError
+from continuation.contraction import Contraction, Iteration
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import norm
 from continuation.point.linearization import Anchor, Linearization
+from continuation.rejection import Rejected, Rejection
 from continuation.tolerance import Tolerance
 
 
@@ -23,7 +25,6 @@ class Correction:
     ----------
     u : ndarray, shape (N + 1,)
         The corrected point (the last iterate where it failed).
-    converged : bool
     iterations : int
         Increments computed.
     residual_norm : float
@@ -32,26 +33,31 @@ class Correction:
         Largest ratio of successive increments seen; 0 with a single increment.
     distance : float
         Length of u minus the predicted point in the metric.
-    reason : str
-        Why it failed.
-    finite : bool
-        False where it failed because the homotopy has no finite value at an iterate.
-    singular : bool
-        True where it failed because the bordered matrix has no factorisation at an iterate.
+    rejection : Rejection or None
+        Why it failed; None where it converged.
+    detail : str
+        What is particular to this failure.
     anchor : Anchor or None
         The last factorisation made on the way, which may serve the tangent too.
     """
 
     u: Array
-    converged: bool
     iterations: int
     residual_norm: float
     contraction: float
     distance: float
-    reason: str = ""
-    finite: bool = True
-    singular: bool = False
+    rejection: Rejection | None = None
+    detail: str = ""
     anchor: Anchor | None = None
+
+    @property
+    def converged(self) -> bool:
+        """Whether u is on the path."""
+        return self.rejection is None
+
+    def rejected(self, h: float) -> Rejected | None:
+        """The failure as that of an attempt with step length h; None where it converged."""
+        return None if self.rejection is None else Rejected(h, self.rejection, self.detail, self.contraction)
 
 
 class Corrector(Protocol):
@@ -92,35 +98,35 @@ def iterate(
     """Add increments until one is small and the residual agrees, or until they stop shrinking.
 
     An increment that grows by more than `max_contraction` ends the iteration: a corrector that wanders finds another
-    branch, and a shorter step is cheaper than a lucky one. Two exceptions: near the tolerance round-off makes ratios
-    meaningless, so there only the iteration limit counts. `direction` may add the factorisations that it makes to
-    `anchors`: the last goes with the outcome.
+    branch, and a shorter step is cheaper than a lucky one. Near the tolerance round-off makes ratios meaningless, so
+    there only the iteration limit counts. `direction` may add the factorisations that it makes to `anchors`: the last
+    goes with the outcome.
     """
-    u = predicted.copy()
-    contraction, size, before = 0.0, np.inf, np.nan
-    residual_norm = np.nan
+    iteration = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0))
+    r, residual_norm = predicted, np.nan
 
-    def outcome(iterations: int, reason: str = "") -> Correction:
-        distance = norm(point.weights, u - predicted)
-        anchor = anchors[-1] if anchors else None
-        return Correction(u, not reason, iterations, residual_norm, contraction, distance, reason, anchor=anchor)
+    def small(size: float) -> bool:
+        nonlocal r, residual_norm
+        r = evaluator.residual(iteration.x)
+        residual_norm = largest(r)
+        return size <= 1.0 and residual_norm <= tolerance.residual
 
+    rejection: Rejection | None = None
+    detail, count = "", 0
     try:
-        r = evaluator.residual(u)
-        for k in range(max_iterations):
-            increment = direction(k, u, r, contraction)
-            before, size = size, tolerance.measure(increment, u)
-            if k and size > 1.0:
-                ratio = size / before if before > 0.0 else np.inf
-                contraction = max(contraction, ratio)
-                if ratio > max_contraction:
-                    return outcome(k + 1, f"the corrector does not contract (ratio {ratio:.2g})")
-            u += increment
-            r = evaluator.residual(u)
-            residual_norm = largest(r)
-            if size <= 1.0 and residual_norm <= tolerance.residual:
-                return outcome(k + 1)
+        r = evaluator.residual(predicted)
+        done = iteration.run(
+            lambda: direction(iteration.count, iteration.x, r, iteration.worst),
+            tolerance.measure,
+            small,
+        )
+        count = iteration.count
+        if iteration.stalled:
+            rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"
+        elif not done:
+            rejection, detail = Rejection.NOT_CONVERGED, f"{max_iterations} iterations"
     except EvaluationError as error:
-        finite, singular = not isinstance(error, NotFiniteError), isinstance(error, SingularPointError)
-        return evolve(outcome(0, str(error)), finite=finite, singular=singular)
-    return outcome(max_iterations, f"the corrector did not converge in {max_iterations} iterations")
+        rejection, detail = error.rejection, str(error)
+    u, anchor = iteration.x, anchors[-1] if anchors else None
+    distance = norm(point.weights, u - predicted)
+    return Correction(u, count, residual_norm, iteration.worst, distance, rejection, detail, anchor)

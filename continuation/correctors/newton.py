@@ -27,7 +27,8 @@ class BorderedNewton:
         which factors at every iterate.
     max_iterations : int
     max_contraction : float
-        Increments that shrink by less end the attempt.
+        Increments that shrink by less end the attempt. Newton's own shrink by the size of the one before; by more than
+        a half only outside the ball in which its theorem holds, so that a shorter step is cheaper.
 
     References
     ----------

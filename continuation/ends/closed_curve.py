@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.metric import inner, norm
 from continuation.point.arc import Arc
-from continuation.point.projection import project_and_linearize
+from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
-from continuation.tolerance import Tolerance
+
+SAME_POINT = 1e3
+"""How far apart two points of one path may be, in tolerances, that are one: both were corrected to the tolerance, in
+planes and metrics of their own, and a condition of a thousand is ordinary."""
+
+NEAR = 0.5
+"""How near an arc must pass to be looked at, in its lengths: half a step is far more than a segment errs."""
 
 
-def passes_start(evaluator: Evaluator, origin: Knot, weights: Array, arc: Arc, tolerance: Tolerance) -> bool:
+def passes_start(solver: PathSolver, origin: Knot, weights: Array, arc: Arc) -> bool:
     """Whether the arc passes through the start in the start's direction.
 
     The plane through the start and orthogonal to its tangent must be crossed from behind, near the start; the crossing
@@ -23,13 +29,13 @@ def passes_start(evaluator: Evaluator, origin: Knot, weights: Array, arc: Arc, t
         return False
     guess = arc.segment.at(behind / (behind - ahead))
     step = norm(weights, arc.b.u - arc.a.u)
-    if norm(weights, guess - origin.u) > 0.5 * step:
+    if norm(weights, guess - origin.u) > NEAR * step:
         return False
     border = weights * origin.tangent
     guess = guess - origin.tangent * inner(weights, origin.tangent, guess - origin.u)
     try:
-        point = project_and_linearize(evaluator, arc.b, guess, border, tolerance)
+        point = solver.project_and_linearize(arc.b, guess, border)
     except EvaluationError:
         return False
-    same = tolerance.measure(point.u - origin.u, origin.u) <= 1e3
+    same = solver.tolerance.measure(point.u - origin.u, origin.u) <= SAME_POINT
     return same and inner(weights, point.tangent, origin.tangent) > 0.0

@@ -7,6 +7,10 @@ from continuation.arrays import Array, largest
 DECADES = 3
 """Decades of growth without progress of the parameter after which a path counts as divergent."""
 
+DECADE, FAR, STILL = 10.0, 1e3, 1e-3
+"""The growth between two marks; the least growth beyond the start, that of DECADES; and the parameter's progress from
+mark to mark, relative to max(1, |lam|), that is none: for y ~ 1 / (lam* - lam) it falls tenfold with each decade."""
+
 HORIZON = 1e12
 """Growth of y, relative to its start, at which a path counts as divergent."""
 
@@ -23,9 +27,9 @@ def divergence(
     size = largest(u[:-1])
     if mark == 0.0:
         return (max(size, 1.0), float(u[-1]), 0.0), False
-    if size < 10.0 * mark:
+    if size < DECADE * mark:
         return divergence_monitor, False
-    still = abs(float(u[-1]) - lam) <= 1e-3 * max(1.0, abs(float(u[-1])))
+    still = abs(float(u[-1]) - lam) <= STILL * max(1.0, abs(float(u[-1])))
     stalled = stalled + 1.0 if still else 0.0
-    far = size > 1e3 * (1.0 + start_norm)
+    far = size > FAR * (1.0 + start_norm)
     return (size, float(u[-1]), stalled), (stalled >= DECADES and far) or size > HORIZON * (1.0 + start_norm)

@@ -16,11 +16,14 @@ from attrs import frozen
 from scipy.optimize import brentq
 
 from continuation.arrays import Array, generic_vector, largest
+from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.point.linearization import Linearization, linearize, relinearize
+from continuation.point.projection import PathSolver
 from continuation.point.segment import Curve
 from continuation.predictors.polynomial import interpolate
+from continuation.step.stepper import LOW_ORDER_FRACTION
 from continuation.tolerance import Tolerance
 
 RATIO = 0.2
@@ -39,6 +42,29 @@ MAX_BACKWARD_SAMPLES = 4
 """How many samples are taken behind the point where those before it did not do."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
+
+PATIENCE = 3
+"""Samples in a row that make the estimate no better, after which round-off has the word."""
+
+ROUND_OFF_SPREAD = 10.0
+"""How much more round-off there may be in H at the limit than at the last sample."""
+
+FINE = 1e-3
+"""Of the tolerance, to which samples are corrected: the extrapolation multiplies their errors."""
+
+AMPLIFICATION = 0.3, 10.0
+"""By how much the extrapolation multiplies errors of the samples and of their slopes: 3, 30, 300, ... for winding
+numbers 1, 2, 3, ... That is the sum of magnitudes of the weights at t = 0 of Hermite's interpolant on nodes in ratio
+RATIO^(1/w), rounded."""
+
+EQUALLY_GOOD = 10.0
+"""A multiple of the true winding number fits as well, a little later, so the smallest within this factor wins."""
+
+NEAR_FOLD = 0.05
+"""How near the target a fold ahead must lie to be believed to lie on it, in remaining ways."""
+
+AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
+"""Near a singular end Newton's method converges linearly, and slowly."""
 
 
 @frozen(eq=False)
@@ -69,93 +95,126 @@ class Sample:
     noise: float = 0.0
 
 
-def endgame(
-    evaluator: Evaluator,
-    point: Linearization,
-    target: float,
-    tolerance: Tolerance,
-    max_step: Callable[[Array, Array], float] | None,
-    samples: int = 14,
-) -> SingularLimit | None:
-    """The limit of the path at the target, or None where no winding number fits to within the tolerance.
+@frozen(eq=False)
+class Endgame:
+    """The search for the limit of a path at a target.
 
-    Parameters
+    Attributes
     ----------
-    point : Linearization
-        On the path, near the target, with the parameter moving towards it.
+    solver : PathSolver
+    target : float
     samples : int
         At most so many points, each of which costs a factorisation or two.
     """
-    gap = point.lam - target
-    taken = [_sample(point)]
-    best: SingularLimit | None = None
-    worse = 0
-    here = point
-    for k in range(1, samples + 1):
-        lam = target + gap * RATIO**k
-        known = best is not None and _within(tolerance, best)
-        tracked = _track(evaluator, here, _guess(taken, target, lam, best), lam, tolerance, max_step, not known)
-        if tracked is None:
-            break
-        here, noise = tracked
-        taken.append(_sample(here, noise))
-        if len(taken) < 3:
-            continue
-        end = _limit(taken, target)
-        if best is None or end.error < best.error:
-            best, worse = end, 0
-        else:
-            worse += 1
-        if best.error <= RELATIVE_FLOOR * (1.0 + float(np.abs(best.u).max())) or worse >= 3:
-            break
-    if best is None or not _within(tolerance, best):
-        taken = _farther(evaluator, point, target, tolerance, max_step)
-        best = _limit(taken, target) if len(taken) > 2 else None
-    if best is None or not _within(tolerance, best):
-        return None
-    return best if _holds(evaluator, best, taken, target) else None
 
+    solver: PathSolver
+    target: float
+    samples: int = 14
 
-def _farther(
-    evaluator: Evaluator,
-    point: Linearization,
-    target: float,
-    tolerance: Tolerance,
-    max_step: Callable[[Array, Array], float] | None,
-) -> list[Sample]:
-    """Samples behind the point, the farthest first: a long step may have led to where round-off leaves few digits."""
-    gap, here = point.lam - target, point
-    taken: list[Sample] = []
-    for k in range(1, MAX_BACKWARD_SAMPLES + 1):
-        lam = target + gap / RATIO**k
-        guess = here.u + (lam - here.lam) * _sample(here).slope
-        tracked = _track(evaluator, here, guess, lam, tolerance, max_step, True)
-        if tracked is None:
-            break
-        here, noise = tracked
-        taken.insert(0, _sample(here, noise))
-    return taken
+    def limit(self, point: Linearization) -> SingularLimit | None:
+        """The limit of the path at the target, or None where no winding number fits to within the tolerance.
+
+        Parameters
+        ----------
+        point : Linearization
+            On the path, near the target, with the parameter moving towards it.
+        """
+        gap = point.lam - self.target
+        taken = [_sample(point)]
+        best: SingularLimit | None = None
+        worse = 0
+        here = point
+        for k in range(1, self.samples + 1):
+            lam = self.target + gap * RATIO**k
+            known = best is not None and self._within(best)
+            tracked = self._track(here, _guess(taken, self.target, lam, best), lam, not known)
+            if tracked is None:
+                break
+            here, noise = tracked
+            taken.append(_sample(here, noise))
+            if len(taken) < 3:
+                continue
+            end = _limit(taken, self.target)
+            if best is None or end.error < best.error:
+                best, worse = end, 0
+            else:
+                worse += 1
+            if best.error <= RELATIVE_FLOOR * (1.0 + largest(best.u)) or worse >= PATIENCE:
+                break
+        if best is None or not self._within(best):
+            taken = self._farther(point)
+            best = _limit(taken, self.target) if len(taken) > 2 else None
+        if best is None or not self._within(best):
+            return None
+        return best if self._holds(best, taken) else None
+
+    def _farther(self, point: Linearization) -> list[Sample]:
+        """Samples behind the point, the farthest first: a long step may end where round-off leaves few digits."""
+        gap, here = point.lam - self.target, point
+        taken: list[Sample] = []
+        for k in range(1, MAX_BACKWARD_SAMPLES + 1):
+            lam = self.target + gap / RATIO**k
+            tracked = self._track(here, here.u + (lam - here.lam) * _sample(here).slope, lam, True)
+            if tracked is None:
+                break
+            here, noise = tracked
+            taken.insert(0, _sample(here, noise))
+        return taken
+
+    def _within(self, end: SingularLimit) -> bool:
+        return self.solver.tolerance.measure(np.full_like(end.u, end.error), end.u) <= 1.0
+
+    def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
+        """Whether the equations hold at the limit: to round-off, or far better than at the first sample, put there.
+
+        Relative to that sample because the equations have units of their own.
+        """
+        residual_norm = self.solver.evaluator.residual_norm
+        residual, round_off = residual_norm(end.u), residual_norm(taken[-1].u)
+        moved = residual_norm(np.append(taken[0].u[:-1], self.target))
+        # Where one of them has no value, and is nan, this is False.
+        return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
+
+    def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, float] | None:
+        """The point at a parameter value, by Newton at that value, and its noise.
+
+        Increments are followed to a thousandth of the tolerance. Where H_y is so near singular that round-off in H
+        alone makes larger ones, and `noisy` points are wanted, one below the tolerance will do: it says what the point
+        is worth.
+        """
+        evaluator, tolerance, max_step = self.solver.evaluator, self.solver.tolerance, self.solver.max_step
+        unit = np.zeros_like(guess)
+        unit[-1] = 1.0
+        if max_step is not None:
+            room = LOW_ORDER_FRACTION * max_step(here.u, guess - here.u)
+            if room < 1.0:
+                guess = here.u + room * (guess - here.u)
+                guess[-1] = lam
+        fine = Tolerance(absolute=FINE * tolerance.absolute, relative=FINE * tolerance.relative)
+        correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
+        u, anchor, noise = correction.u, correction.anchor, 0.0
+        try:
+            if not correction.converged:
+                if not noisy or anchor is None:
+                    return None
+                increment = anchor.system.solve(-evaluator.residual(u), 0.0)
+                if tolerance.measure(increment, u) > 1.0:
+                    return None
+                u, noise = u + increment, largest(increment)
+            if max_step is not None and not max_step(here.u, u - here.u) > 1.0:
+                return None
+            u = np.append(u[:-1], lam)
+            if anchor is not None:
+                at = relinearize(evaluator, u, here.weights, anchor, here.border)
+            else:
+                at = linearize(evaluator, u, here.weights, here.border, 0)
+            return at, max(noise, _round_off(evaluator, at, unit))
+        except EvaluationError:
+            return None
 
 
 def _sample(point: Linearization, noise: float = 0.0) -> Sample:
     return Sample(point.u, point.tangent / point.tangent[-1], noise)
-
-
-def _within(tolerance: Tolerance, end: SingularLimit) -> bool:
-    return tolerance.measure(np.full_like(end.u, end.error), end.u) <= 1.0
-
-
-def _holds(evaluator: Evaluator, end: SingularLimit, taken: list[Sample], target: float) -> bool:
-    """Whether the equations hold at the limit: far better than at the first sample, put on the target, or to round-off.
-
-    Relative to that sample because the equations have units of their own.
-    """
-    try:
-        residual, round_off = (largest(evaluator.residual(u)) for u in (end.u, taken[-1].u))
-        moved = largest(evaluator.residual(np.append(taken[0].u[:-1], target)))
-    except EvaluationError:
-        return False
-    return residual <= RESIDUAL_RATIO * moved + 10.0 * round_off
 
 
 def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[float], Array], Array]:
@@ -167,21 +226,18 @@ def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[f
 
 
 def _limit(taken: list[Sample], target: float) -> SingularLimit:
-    """The best limit over the winding numbers; the error is the change that a sample makes, and the noise.
-
-    A multiple of the true winding number fits as well, a little later, so the smallest within a factor of ten wins.
-    """
+    """The best limit over the winding numbers; the error is the change that a sample makes, and the noise."""
     ends = []
-    # The extrapolation multiplies errors of the samples and of their slopes by 3, 30, 300, ... for w = 1, 2, 3, ...
     noise = max(sample.noise for sample in taken)
     for w in WINDING_NUMBERS:
         value = _polynomial(taken, target, w)[0](0.0)
         # Without the last sample, the most accurate, and without the first, the least: a small change may be chance.
         others = [_polynomial(some, target, w)[0](0.0) for some in (taken[:-1], taken[1:])]
-        error = max(largest((value - other)[:-1]) for other in others) + 0.3 * 10.0**w * noise
+        change = max(largest((value - other)[:-1]) for other in others)
+        error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
         ends.append(SingularLimit(np.append(value[:-1], target), error, w))
     least = min(end.error for end in ends)
-    return next(end for end in ends if end.error <= 10.0 * least)
+    return next(end for end in ends if end.error <= EQUALLY_GOOD * least)
 
 
 def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
@@ -196,50 +252,6 @@ def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit |
     guess = curve(((lam - target) / gap) ** (1.0 / best.winding_number))
     guess[-1] = lam
     return guess
-
-
-def _track(
-    evaluator: Evaluator,
-    here: Linearization,
-    guess: Array,
-    lam: float,
-    tolerance: Tolerance,
-    max_step: Callable[[Array, Array], float] | None,
-    noisy: bool,
-) -> tuple[Linearization, float] | None:
-    """The point at a parameter value, by Newton at that value, and its noise.
-
-    Increments are followed to a thousandth of the tolerance. Where H_y is so near singular that round-off in H alone
-    makes larger ones, and `noisy` points are wanted, one below the tolerance will do: it says what the point is worth.
-    """
-    unit = np.zeros_like(guess)
-    unit[-1] = 1.0
-    if max_step is not None:
-        room = 0.9 * max_step(here.u, guess - here.u)
-        if room < 1.0:
-            guess = here.u + room * (guess - here.u)
-            guess[-1] = lam
-    fine = Tolerance(absolute=1e-3 * tolerance.absolute, relative=1e-3 * tolerance.relative)
-    correction = BorderedNewton(max_iterations=12, max_contraction=0.9).correct(evaluator, here, guess, unit, fine)
-    u, anchor, noise = correction.u, correction.anchor, 0.0
-    try:
-        if not correction.converged:
-            if not noisy or anchor is None:
-                return None
-            increment = anchor.system.solve(-evaluator.residual(u), 0.0)
-            if tolerance.measure(increment, u) > 1.0:
-                return None
-            u, noise = u + increment, largest(increment)
-        if max_step is not None and not max_step(here.u, u - here.u) > 1.0:
-            return None
-        u[-1] = lam
-        if anchor is not None:
-            at = relinearize(evaluator, u, here.weights, anchor, here.border)
-        else:
-            at = linearize(evaluator, u, here.weights, here.border, 0)
-        return at, max(noise, _round_off(evaluator, at, unit))
-    except EvaluationError:
-        return None
 
 
 def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> float:
@@ -258,10 +270,7 @@ def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> float:
 
 
 def touching(curve: Curve, point: Linearization, target: float) -> float | None:
-    """The step at which a series ahead has the parameter touch the target in a fold; None where it does not.
-
-    To be believed the fold must lie within a twentieth of the remaining way from the target.
-    """
+    """The step at which a series ahead has the parameter touch the target in a fold; None where it does not."""
     reach = curve.reach
     gap = point.lam - target
     if gap == 0.0 or gap * point.tangent[-1] >= 0.0 or not np.isfinite(reach):
@@ -273,7 +282,7 @@ def touching(curve: Curve, point: Linearization, target: float) -> float | None:
     for low, high in pairwise(np.linspace(0.0, reach, 17)):
         if slope(float(high)) >= 0.0:
             fold = float(brentq(slope, float(low), float(high))) if slope(float(low)) < 0.0 else float(low)
-            return fold if abs(curve(fold)[-1] - target) <= 0.05 * abs(gap) else None
-        if (curve(float(high))[-1] - target) * gap < -0.05 * gap * gap:
+            return fold if abs(curve(fold)[-1] - target) <= NEAR_FOLD * abs(gap) else None
+        if (curve(float(high))[-1] - target) * gap < -NEAR_FOLD * gap * gap:
             return None
     return None

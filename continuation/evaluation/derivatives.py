@@ -67,7 +67,8 @@ def by_differences(residual: Callable[..., Any]) -> Callable[[Array, float], tup
             ahead, behind = u.copy(), u.copy()
             ahead[i] += h
             behind[i] -= h
-            difference = np.asarray(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
+            # A copy of the first: a residual may return the same array every time.
+            difference = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
             columns.append(difference / (ahead[i] - behind[i]))
         return _split(np.stack(columns, axis=1))
 

@@ -2,29 +2,38 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix, finite
+from continuation.arrays import Array, Matrix, finite, largest
+from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
+from continuation.rejection import Rejection
 
 
 class EvaluationError(ArithmeticError):
     """The homotopy has no finite value, or no factorisation, at a point; the sentence says which."""
 
+    rejection: ClassVar[Rejection] = Rejection.UNSOLVABLE
+
 
 class NotFiniteError(EvaluationError):
     """The homotopy has no finite value at a point: the edge of its domain, or an overflow."""
 
+    rejection = Rejection.NO_VALUE
+
 
 class SingularPointError(EvaluationError):
     """The bordered matrix has no factorisation at a point: it is singular there, as in a branch point."""
+
+    rejection = Rejection.SINGULAR
 
 
 @frozen(eq=False)
@@ -81,6 +90,9 @@ class Evaluator:
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
+        if isinstance(homotopy, type):
+            name = homotopy.__name__
+            raise TypeError(f"homotopy: expected an object, found the class {name}; make one, {name}(...)")
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
@@ -99,10 +111,12 @@ class Evaluator:
         answer = self.homotopy.start()
         if not isinstance(answer, tuple) or len(answer) != 2:
             raise ValueError(f"start: expected a tuple (y0, lam0), found {type(answer).__name__}")
-        y0 = np.atleast_1d(np.asarray(answer[0], dtype=float))
+        y0, lam0 = np.atleast_1d(real_vector("start", answer[0])), real_vector("start", answer[1])
+        if lam0.size != 1:
+            raise ValueError(f"start: expected lam0 to be one number, found shape {lam0.shape}")
         if y0.ndim != 1 or y0.size == 0:
             raise ValueError(f"start: expected y0 to be a vector of at least one number, found shape {y0.shape}")
-        u: Array = np.append(y0, float(answer[1]))
+        u: Array = np.append(y0, lam0)
         if not np.isfinite(u).all():
             raise ValueError("start: expected finite numbers, found NaN or infinity")
         r = np.asarray(self._residual(u[:-1].copy(), float(u[-1])))
@@ -119,12 +133,20 @@ class Evaluator:
         # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
         with np.errstate(all="ignore"):
             try:
-                r: Array = np.asarray(self._residual(u[:-1], float(u[-1])), dtype=float)
+                # A copy: a plug-in may well return the same array every time.
+                r: Array = np.array(self._residual(u[:-1], float(u[-1])), dtype=float)
             except (ArithmeticError, ValueError) as error:
                 raise NotFiniteError(f"the residual could not be evaluated: {error}") from error
         if not finite(r):
             raise NotFiniteError("the residual is not finite")
         return r
+
+    def residual_norm(self, u: Array) -> float:
+        """The largest component of H(u); nan where there is none."""
+        try:
+            return largest(self.residual(u))
+        except EvaluationError:
+            return math.nan
 
     @property
     def derivative(self) -> Derivative:

@@ -129,7 +129,7 @@ def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Produ
     def by_differences(w: Array) -> Array:
         h = 6e-6 * max(1.0, float(np.abs(u).max())) / float(np.abs(w).max())
         with np.errstate(all="ignore"):
-            return np.asarray((residual(u + h * w) - residual(u - h * w)) / (2.0 * h))
+            return np.asarray((np.array(residual(u + h * w)) - residual(u - h * w)) / (2.0 * h))
 
     def by_complex_step(w: Array) -> Array:
         return np.asarray(np.imag(residual(u + 1e-200j * w)) * 1e200)

@@ -4,19 +4,42 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
-from attrs.validators import ge
+from attrs import evolve, field, frozen
 from scipy.sparse.linalg import splu
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, largest
+from continuation.checks import integer
+from continuation.contraction import HALVING, Contraction, Iteration, magnitude
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.linear import Banded, Symmetric
 from continuation.metric import inner
 from continuation.point.linearization import Linearization, linearize
-from continuation.point.projection import project_onto_path
+from continuation.point.projection import PathSolver
 from continuation.point.segment import Segment, hermite
 from continuation.status import Kind
-from continuation.tolerance import Tolerance
+
+POLISHING = Contraction(iterations=12, ratio=np.inf)
+"""Newton's method from a bracket: its first increments may grow, and where it goes is checked afterwards."""
+
+POLISHED, POLISHED_NEARLY = 1e-13, 1e-9
+"""The last increment, relative to 1 + |u|; and the size below which increments that no longer halve are round-off."""
+
+NARROW = 1e-5
+"""Of the bracket, relative to the first: Newton's method does the rest, and a bracket of 1e-7 is one of round-off."""
+
+BISECTIONS = 40
+MARGIN = 0.02
+"""A guess is kept so far from the ends of the bracket, in its widths: its test function has a pole beside its zero."""
+
+BESIDE = 0.97, 0.015
+"""t, with this factor and summand, is a place beside t, in (0, 1) whatever t is, that no symmetry of the arc
+aligns with it; one and a half hundredths of a bracket is nearer than its next halving."""
+
+STRAIGHT = 0.99
+"""The cosine between the tangents on both sides of a branch point; they agree but for the bracket times a curvature."""
+
+SAME_PLACE = 1e-2
+"""How far polishing may move the point, in chords of the arc: a thousand brackets."""
 
 
 @frozen
@@ -26,9 +49,9 @@ class BranchPoint:
     The tracer always watches for it, since it must flip its orientation there; name it among the events to stop at it.
     """
 
-    terminal: int = field(default=1, validator=ge(0))
+    terminal: int = field(default=1, validator=integer(0))
     direction: int = field(default=0, init=False)
-    kind: int = field(default=Kind.BRANCH_POINT, init=False)
+    kind: Kind = field(default=Kind.BRANCH_POINT, init=False)
     name: str = field(default="branch point", init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
@@ -36,9 +59,7 @@ class BranchPoint:
         return 1.0
 
 
-def locate_branch_point(
-    evaluator: Evaluator, a: Linearization, b: Linearization, tolerance: Tolerance
-) -> Linearization | None:
+def locate_branch_point(solver: PathSolver, a: Linearization, b: Linearization) -> Linearization | None:
     """The branch point between a and b, whose determinant signs differ; None if the path merely turned there.
 
     A missed hairpin flips the sign too, but there the tangent turns through a right angle somewhere in between. So the
@@ -58,39 +79,39 @@ def locate_branch_point(
         g_low, g_high = test(low), test(high)
         width = first = float(np.dot(a.border, b.u - a.u))
         halve = False
-        for _ in range(40):
+        for _ in range(BISECTIONS):
             segment = hermite(low.u, low.tangent, high.u, high.tangent, a.border)
-            t = 0.5 if halve else min(max(g_low / (g_low - g_high), 0.02), 0.98)
-            point = _factored(evaluator, low if t < 0.5 else high, segment, t, a.border, tolerance)
+            t = 0.5 if halve else min(max(g_low / (g_low - g_high), MARGIN), 1.0 - MARGIN)
+            point = _factored(solver, low if t < 0.5 else high, segment, t, a.border)
             if point.orientation == low.orientation:
                 low, g_low = point, test(point)
             else:
                 high, g_high = point, test(point)
             narrowed = float(np.dot(a.border, high.u - low.u))
-            halve, width = narrowed > 0.5 * width, narrowed
-            if width <= 1e-5 * first:
+            halve, width = narrowed > HALVING * width, narrowed
+            if width <= NARROW * first:
                 break
     except EvaluationError:
         return None
-    if inner(a.weights, low.tangent, high.tangent) < 0.99 or inner(a.weights, a.tangent, low.tangent) < 0.0:
+    if inner(a.weights, low.tangent, high.tangent) < STRAIGHT or inner(a.weights, a.tangent, low.tangent) < 0.0:
         return None
-    u = polish(evaluator, 0.5 * (low.u + high.u))
-    if u is None or float(np.linalg.norm(u - low.u)) > 1e-2 * float(np.linalg.norm(b.u - a.u)):
+    u = polish(solver.evaluator, 0.5 * (low.u + high.u))
+    if u is None or float(np.linalg.norm(u - low.u)) > SAME_PLACE * float(np.linalg.norm(b.u - a.u)):
         u = 0.5 * (low.u + high.u)
-    return Linearization(u, low.weights, low.anchor, low.tangent, low.orientation)
+    return evolve(low, u=u)
 
 
 def _factored(
-    evaluator: Evaluator, near: Linearization, segment: Segment, t: float, border: Array, tolerance: Tolerance
+    solver: PathSolver, near: Linearization, segment: Segment, t: float, border: Array
 ) -> Linearization:
     """The path's point near t with factors of its own: those from the other side of a branch point have another sign.
 
     In the branch point itself there is no factorisation; a point beside it serves as well.
     """
-    for beside in (t, 0.97 * t + 0.015):
-        u, _ = project_onto_path(evaluator, near, segment.at(beside), border, tolerance)
+    for beside in (t, BESIDE[0] * t + BESIDE[1]):
+        u, _ = solver.project(near, segment.at(beside), border)
         try:
-            return linearize(evaluator, u, near.weights, border, 0)
+            return linearize(solver.evaluator, u, near.weights, border, 0)
         except EvaluationError:
             continue
     raise EvaluationError("no factorisation in or beside a supposed branch point")
@@ -162,23 +183,25 @@ def _borders(size: int) -> tuple[Array, Array]:
 def polish(evaluator: Evaluator, u: Array) -> Array | None:
     """Newton on the minimally augmented system H(u) + beta b = 0, gamma(u) = 0; None if it fails."""
     column, rows = _borders(u.size)
-    u, beta = u.copy(), 0.0
-    size = np.inf
+    newton = Iteration(np.append(u, 0.0), POLISHING)
+
+    def increment() -> Array:
+        u, beta = newton.x[:-1], float(newton.x[-1])
+        H = _full(evaluator, u)
+        here = _singularity(H, column, rows)
+        gradient = [-_second(evaluator, u, here.phi, here.kernel[:, i]) for i in range(2)]
+        r = np.concatenate([evaluator.residual(u) + beta * column, here.gamma])
+        return _solve_augmented(H, column, np.array(gradient), -r)
+
+    def done(size: float) -> bool:
+        if size < POLISHED_NEARLY and newton.ratio >= HALVING:
+            return True
+        return size <= POLISHED * (1.0 + largest(newton.x[:-1]))
+
     try:
-        for _ in range(12):
-            H = _full(evaluator, u)
-            here = _singularity(H, column, rows)
-            gradient = [-_second(evaluator, u, here.phi, here.kernel[:, i]) for i in range(2)]
-            r = np.concatenate([evaluator.residual(u) + beta * column, here.gamma])
-            increment = _solve_augmented(H, column, np.array(gradient), -r)
-            before, size = size, float(np.abs(increment).max())
-            u += increment[:-1]
-            beta += float(increment[-1])
-            if size <= 1e-13 * (1.0 + float(np.abs(u).max())) or (size >= 0.5 * before and size < 1e-9):
-                return u
+        return newton.x[:-1] if newton.run(increment, magnitude, done) else None
     except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):
         return None
-    return None
 
 
 def _solve_augmented(H: Matrix, column: Array, gradient: Array, r: Array) -> Array:

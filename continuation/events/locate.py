@@ -5,19 +5,32 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+from attrs import evolve
 from scipy.optimize import brentq
 
-from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.arrays import Array, largest
+from continuation.contraction import HALVING
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization
-from continuation.point.projection import project_and_linearize, project_onto_path
+from continuation.point.projection import PathSolver
 from continuation.point.segment import Segment, hermite
-from continuation.tolerance import Tolerance
 
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
+
+PASSES = 60
+"""A bisection in every other pass narrows a bracket to round-off in these."""
+
+FINE = 1e-6
+"""A bracket so narrow, relative to the first, that the difference of its ends is mostly round-off: a poor cubic."""
+
+AT_ROUND_OFF, NEARLY_ZERO = 1e-15, 1e-10
+"""The monitor's value, relative to those at the ends, that is zero; and that does where it no longer halves."""
+
+TRANSVERSAL = 1e-6
+"""The least component of a tangent, relative to its largest, along which a point is put on a value exactly."""
 
 
 def may_vanish(event: Event, inside: list[tuple[Array, Array]], ga: float, gb: float) -> bool:
@@ -31,15 +44,22 @@ def may_vanish(event: Event, inside: list[tuple[Array, Array]], ga: float, gb: f
     return any(value * ga < 0.0 for value in values) or min(map(abs, values)) < 0.5 * min(abs(ga), abs(gb))
 
 
-def locate(
-    evaluator: Evaluator, event: Event, arc: Arc, ga: float, gb: float, tolerance: Tolerance
-) -> list[Linearization]:
-    """All zeros of the monitor on the arc, in order, each on the path to round-off."""
+def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[Linearization]:
+    """All zeros of the monitor on the arc, in order, each on the path to round-off.
+
+    Parameters
+    ----------
+    solver : PathSolver
+    event : Event
+    arc : Arc
+    ga, gb : float
+        The monitor at the ends; ga is not zero.
+    """
     knots = [(arc.a, ga), (arc.b, gb)]
     along = [ga, *(event.monitor(u, v) for u, v in arc.samples), gb]
     divided = ga * gb > 0.0 or sum(p * q < 0.0 for p, q in itertools.pairwise(along)) > 1
     if divided:
-        knots[1:1] = [_knot(evaluator, event, arc, t, tolerance) for t in _dividing(arc, along)]
+        knots[1:1] = [_knot(solver, event, arc, t) for t in _dividing(arc, along)]
     found = []
     for (left, gl), (right, gr) in itertools.pairwise(knots):
         if gl == 0.0 or gl * gr > 0.0 or np.sign(gl) * event.direction > 0:
@@ -49,7 +69,7 @@ def locate(
         else:
             series = None if divided else arc.segment
             part = Arc(left, right, arc.border, arc.segment)
-            root = _root(evaluator, event, part, series, gl, gr, tolerance)
+            root = _root(solver, event, part, series, gl, gr)
             found += [] if root is None else [root]
     return found
 
@@ -69,10 +89,8 @@ def _dividing(arc: Arc, along: list[float]) -> list[float]:
     return [inside[k - 1] for k in sorted(wanted) if 0 < k < len(along) - 1]
 
 
-def _knot(
-    evaluator: Evaluator, event: Event, arc: Arc, t: float, tolerance: Tolerance
-) -> tuple[Linearization, float]:
-    point = project_and_linearize(evaluator, arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border, tolerance)
+def _knot(solver: PathSolver, event: Event, arc: Arc, t: float) -> tuple[Linearization, float]:
+    point = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
     return point, event.monitor(point.u, point.tangent)
 
 
@@ -88,7 +106,7 @@ def _guess(event: Event, segment: Segment, ga: float, gb: float) -> float:
 
 
 def _root(
-    evaluator: Evaluator, event: Event, arc: Arc, series: Segment | None, ga: float, gb: float, tolerance: Tolerance
+    solver: PathSolver, event: Event, arc: Arc, series: Segment | None, ga: float, gb: float
 ) -> Linearization | None:
     """One zero: interpolate, correct, linearize, narrow; None where the monitor jumps instead, as a tangent may.
 
@@ -101,16 +119,15 @@ def _root(
     scale = max(abs(ga), abs(gb))
     width = first = float(np.dot(arc.border, b.u - a.u))
     bisect = False
-    for _ in range(60):
+    for _ in range(PASSES):
         segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
         series = None
-        # Ends so close that their difference is mostly round-off make a poor cubic: there a secant does as well.
-        fine = width <= 1e-6 * first
+        fine = width <= FINE * first
         t = 0.5 if bisect else ga / (ga - gb) if fine else _guess(event, segment, ga, gb)
         t = min(max(t, 1e-12), 1.0 - 1e-12)
-        point = project_and_linearize(evaluator, a if t < 0.5 else b, segment.at(t), arc.border, tolerance)
+        point = solver.project_and_linearize(a if t < 0.5 else b, segment.at(t), arc.border)
         g = event.monitor(point.u, point.tangent)
-        bisect = abs(g) > 0.5 * least
+        bisect = abs(g) > HALVING * least
         if abs(g) < least:
             best, least = point, abs(g)
         if ga * g > 0:
@@ -118,24 +135,24 @@ def _root(
         else:
             b, gb = point, g
         width = float(np.dot(arc.border, b.u - a.u))
-        if least <= 1e-15 * scale or (bisect and least <= 1e-10 * scale):
+        if least <= AT_ROUND_OFF * scale or (bisect and least <= NEARLY_ZERO * scale):
             break
-    return _on_value(evaluator, event, best, tolerance) if least <= JUMP * scale else None
+    return _on_value(solver, event, best) if least <= JUMP * scale else None
 
 
-def _on_value(evaluator: Evaluator, event: Event, point: Linearization, tolerance: Tolerance) -> Linearization:
+def _on_value(solver: PathSolver, event: Event, point: Linearization) -> Linearization:
     """For a wanted value of a component: put the component on it exactly, if the path is transversal to it there."""
     if not isinstance(event, TargetValue):
         return point
     unit = np.zeros_like(point.u)
     unit[event.component] = 1.0
-    if abs(point.tangent[event.component]) <= 1e-6 * float(np.abs(point.tangent).max()):
+    if abs(point.tangent[event.component]) <= TRANSVERSAL * largest(point.tangent):
         return point
     guess = point.u.copy()
     guess[event.component] = event.value
     try:
-        u, _ = project_onto_path(evaluator, point, guess, unit, tolerance)
+        u, _ = solver.project(point, guess, unit)
     except EvaluationError:
         return point
     u[event.component] = event.value
-    return Linearization(u, point.weights, point.anchor, point.tangent, point.orientation)
+    return evolve(point, u=u)

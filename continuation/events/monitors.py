@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Protocol
 
 from attrs import field, frozen
-from attrs.validators import ge, in_, instance_of
 
 from continuation.arrays import Array
+from continuation.checks import FINITE, integer, of_kind, sign
 from continuation.status import Kind
 
 
@@ -19,7 +19,7 @@ class Event(Protocol):
     ----------
     name : str
     kind : int
-        One of `continuation.path.Kind`, stored with the point.
+        One of `continuation.Kind`, stored with the point.
     terminal : int
         The trace ends at the k-th occurrence; 0 for never.
     direction : int
@@ -51,17 +51,14 @@ class Event(Protocol):
         ...
 
 
-_DIRECTION = in_((-1, 0, 1))
-
-
 @frozen
 class TurningPoint:
     """Where a component of the tangent changes sign: the parameter by default (a fold), or a component of y."""
 
-    component: int = field(default=-1, validator=instance_of(int))
-    terminal: int = field(default=0, validator=ge(0))
-    direction: int = field(default=0, validator=_DIRECTION)
-    kind: int = field(default=Kind.TURNING_POINT, init=False)
+    component: int = field(default=-1, validator=integer())
+    terminal: int = field(default=0, validator=integer(0))
+    direction: int = field(default=0, validator=sign)
+    kind: Kind = field(default=Kind.TURNING_POINT, init=False)
 
     @property
     def name(self) -> str:
@@ -77,11 +74,11 @@ class TurningPoint:
 class TargetValue:
     """Where the parameter (component -1), or a component of y, takes a value; the point lands on it exactly."""
 
-    value: float
-    component: int = field(default=-1, validator=instance_of(int))
-    terminal: int = field(default=1, validator=ge(0))
-    direction: int = field(default=0, validator=_DIRECTION)
-    kind: int = field(default=Kind.EVENT, init=False)
+    value: float = field(validator=FINITE)
+    component: int = field(default=-1, validator=integer())
+    terminal: int = field(default=1, validator=integer(0))
+    direction: int = field(default=0, validator=sign)
+    kind: Kind = field(default=Kind.EVENT, init=False)
 
     @property
     def name(self) -> str:
@@ -98,11 +95,11 @@ class TargetValue:
 class Monitor:
     """Where a function of the caller's, of the point u and the unit tangent v, vanishes."""
 
-    function: Callable[[Array, Array], float]
-    name: str = "event"
-    terminal: int = field(default=0, validator=ge(0))
-    direction: int = field(default=0, validator=_DIRECTION)
-    kind: int = field(default=Kind.EVENT, init=False)
+    function: Callable[[Array, Array], float] = field(validator=of_kind("a function of u and v", callable))
+    name: str = field(default="event", validator=of_kind("a text", lambda value: isinstance(value, str)))
+    terminal: int = field(default=0, validator=integer(0))
+    direction: int = field(default=0, validator=sign)
+    kind: Kind = field(default=Kind.EVENT, init=False)
 
     def monitor(self, u: Array, v: Array) -> float:
         """The caller's function."""

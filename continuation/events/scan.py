@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event
 from continuation.events.locate import locate, may_vanish
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
-from continuation.tolerance import Tolerance
+from continuation.point.projection import PathSolver
 
 
 def monitored(event: Event, point: Linearization) -> float:
@@ -21,7 +21,7 @@ def monitored(event: Event, point: Linearization) -> float:
 
 
 def scan_events(
-    evaluator: Evaluator, events: tuple[Event, ...], before: tuple[float, ...], arc: Arc, tolerance: Tolerance
+    solver: PathSolver, events: tuple[Event, ...], before: tuple[float, ...], arc: Arc
 ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
     """All events on the arc, in order, and the monitors' values at its end.
 
@@ -36,7 +36,7 @@ def scan_events(
         if first == 0.0 or not may_vanish(event, arc.samples, first, g):
             continue
         try:
-            points = locate(evaluator, event, arc, first, g, tolerance)
+            points = locate(solver, event, arc, first, g)
         except EvaluationError:
             # The arc is on the path, its interior could not be evaluated: the crossing is reported at its end.
             points = [arc.b] if first * g < 0.0 and np.sign(g) * event.direction >= 0 else []

@@ -13,9 +13,10 @@ from continuation.arrays import Array, Matrix
 from continuation.linear.system import BorderedSystem, SingularError
 
 REFINEMENTS = 2
-"""Corrections that a solve may take before its answer is called inaccurate."""
+"""Corrections that a solve may take before its answer is called inaccurate: each gains the digits of TRUSTED. Here no
+ratio of increments is watched, as in `continuation.contraction`, since the residual itself is at hand and decides."""
 
-ROUND_OFF = 16 * float(np.finfo(float).eps)
+BACKWARD_ERROR = 16 * float(np.finfo(float).eps)
 """Row-wise backward error below which a solution cannot be improved."""
 
 TRUSTED = 1e-6
@@ -74,7 +75,7 @@ class BorderedMatrix:
         size = np.abs(rhs)
         size[:-1] += self.row_sums * largest + np.abs(self.column * z[-1])
         size[-1] += np.abs(self.row[:-1]).sum() * largest + abs(self.row[-1] * z[-1])
-        return bool((np.abs(gap) <= ROUND_OFF * size).all())
+        return bool((np.abs(gap) <= BACKWARD_ERROR * size).all())
 
 
 def join(r: Array, rho: float) -> Array:

@@ -49,13 +49,13 @@ def position(arc: Arc, u: Array) -> float:
     return float(np.dot(arc.border, u - arc.a.u))
 
 
-def segment_between(a: Linearization, b: Linearization, prediction: Prediction) -> Segment:
+def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> Arc:
     """The path between the two: the prediction where it is good enough for that, else the Hermite cubic."""
+    border = a.border
     # By name: an isinstance check of a Protocol costs more here than the rest of the function.
     if hasattr(prediction, "segment"):
-        segment: Segment = prediction.segment(float(np.dot(a.border, b.u - a.u)), b.u)
-        return segment
-    return hermite(a.u, a.tangent, b.u, b.tangent, a.border)
+        return Arc(a, b, border, prediction.segment(float(np.dot(border, b.u - a.u)), b.u))
+    return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 
 def angle_between(a: Linearization, b: Linearization) -> float:

@@ -5,15 +5,32 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array, generic_vector, largest
+from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration, magnitude
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
 from continuation.metric import norm
 
-ROUND_OFF = 1e-14
-"""The last increment of a tangent that is refined as far as it goes, relative to its size."""
+REFINED = 1e-14
+"""The last increment of a tangent that is refined as far as it goes, relative to its size: 50 units of round-off."""
+
+ROUND_OFF_LEFT = 1e3
+"""Where round-off ends the contraction earlier, a last increment within this factor of the one wanted will do."""
+
+SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
+"""The last increment of a refined solve, relative to its solution, and the one that will do where round-off ends the
+contraction: a series of order 30 at half its range still has nine digits with it."""
+
+NEAR_SINGULAR = 1e10
+"""How much longer than usual a solution may be before the matrix counts as singular: six digits are left then."""
+
+TANGENT_REFINEMENT = Contraction(iterations=20, ratio=RELIABLE, first=MONOTONE)
+"""The first increment is of an error in general position, the second of what the factorisation leaves of it: that
+ratio need only be below one."""
+
+SOLVE_REFINEMENT = Contraction(iterations=8, ratio=RELIABLE)
 
 
 @frozen(eq=False)
@@ -52,7 +69,7 @@ class Linearization:
     @property
     def exact(self) -> bool:
         """Whether the factorisation was made at the point itself."""
-        return self.anchor.u is self.u
+        return np.array_equal(self.anchor.u, self.u)
 
     @property
     def y(self) -> Array:
@@ -87,8 +104,6 @@ class Linearization:
 
     def with_weights(self, weights: Array) -> Linearization:
         """The same point measured in another metric: the tangent keeps its direction, the factorisation stays."""
-        if weights is self.weights:
-            return self
         tangent = self.tangent / norm(weights, self.tangent)
         return Linearization(self.u, weights, self.anchor, tangent, self.orientation)
 
@@ -114,12 +129,12 @@ def relinearize(
     anchor: Anchor,
     along: Array,
     signed: bool = False,
-    accuracy: float = ROUND_OFF,
+    accuracy: float = REFINED,
 ) -> Linearization:
     """Linearize at u with a factorisation from nearby: the tangent is refined to `accuracy`, and makes along . v > 0.
 
     Iterative refinement of M v = e_{N+1} with the factors of M~ multiplies the error by I - M~^{-1} M. It is believed
-    only if it contracts by 0.3 or better, else u gets factors of its own. Where the determinant's sign counts
+    only if it contracts reliably, else u gets factors of its own. Where the determinant's sign counts
     (`signed`), the refinement begins with an error in general position, of the metric's size in each component: if
     M~^{-1} M had a negative eigenvalue, that part of the error would not shrink, so det M~ and det M have one sign.
     """
@@ -141,19 +156,15 @@ def relinearize(
 
 def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accuracy: float) -> Array | None:
     """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails."""
-    system, border = anchor.system, anchor.border
-    v, before = guess, np.inf
-    for k in range(20):
-        increment = system.approximate(-apply(v), 1.0 - float(np.dot(border, v)))
-        size = largest(increment)
-        # The first ratio compares unlike parts of an error in general position: it need only fall.
-        if size > (0.9 if k == 1 else 0.3) * before:
-            # At round-off the increments no longer shrink: that is the end of a refinement that has worked.
-            return v if before <= 1e3 * accuracy * largest(v) else None
-        v = v + increment
-        if size <= accuracy * largest(v):
-            return v
-        before = size
+    refinement = Iteration(guess, TANGENT_REFINEMENT)
+
+    def increment() -> Array:
+        v = refinement.x
+        return anchor.system.approximate(-apply(v), 1.0 - float(np.dot(anchor.border, v)))
+
+    done = refinement.run(increment, magnitude, lambda size: size <= accuracy * largest(refinement.x))
+    if done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * largest(refinement.x)):
+        return refinement.x
     return None
 
 
@@ -172,19 +183,15 @@ class RefinedSystem:
 
     def solve(self, r: Array, rho: float) -> Array:
         """The bordered solve, to round-off; EvaluationError where refinement does not contract."""
-        z = self.near.solve(r, rho)
-        before = np.inf
-        for _ in range(8):
-            increment = self.near.solve(r - self.apply(z), rho - float(np.dot(self.border, z)))
-            z = z + increment
-            size = largest(increment)
-            if size <= 1e-13 * largest(z):
-                return z
-            if size > 0.3 * before:
-                break
-            before = size
-        if before <= 1e-9 * largest(z):
-            return z
+        refinement = Iteration(self.near.solve(r, rho), SOLVE_REFINEMENT)
+
+        def increment() -> Array:
+            z = refinement.x
+            return self.near.solve(r - self.apply(z), rho - float(np.dot(self.border, z)))
+
+        done = refinement.run(increment, magnitude, lambda size: size <= SOLVED * largest(refinement.x))
+        if done or refinement.size <= NEARLY_SOLVED * largest(refinement.x):
+            return refinement.x
         raise EvaluationError("a factorisation from nearby could not be refined")
 
 
@@ -204,10 +211,14 @@ def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearizati
         except EvaluationError:
             pass
         else:
-            anchor = Anchor(point.u, near.border, CountedSystem(trial, Counts()))
-            return Linearization(point.u, point.weights, anchor, point.tangent, point.orientation)
-    exact = linearize(evaluator, point.u, point.weights, point.border, 0)
-    return Linearization(point.u, point.weights, exact.anchor, point.tangent, point.orientation)
+            # Its solves are counted by the factorisation nearby.
+            return evolve(point, anchor=Anchor(point.u, near.border, CountedSystem(trial, Counts())))
+    return factored(evaluator, point)
+
+
+def factored(evaluator: Evaluator, point: Linearization) -> Linearization:
+    """The same point, tangent and orientation with a factorisation of its own."""
+    return evolve(point, anchor=linearize(evaluator, point.u, point.weights, point.border, 0).anchor)
 
 
 def _oriented(anchor: Anchor, u: Array, weights: Array, raw: Array, orientation: int) -> Linearization:

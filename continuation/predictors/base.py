@@ -53,7 +53,10 @@ class Predictor(Protocol):
     memory : int
         How many past knots it uses, the current one included.
     order : int
-        The local error is O(h^(order + 1)).
+        The local error is O(h^(order + 1)); where it depends on the problem, the least, and the prediction's own
+        `order` is the one that holds.
+    interior_fraction : float, optional
+        How much of the way to the boundary of its domain a prediction may go; 0.9 where the predictor does not say.
     """
 
     @property

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
@@ -17,7 +18,7 @@ from continuation.arrays import Array
 from continuation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsTaylor
-from continuation.point.linearization import Linearization, linearize, with_exact_solves
+from continuation.point.linearization import Linearization, factored, with_exact_solves
 from continuation.point.segment import SeriesSegment
 from continuation.predictors.base import Knot
 from continuation.predictors.pade import Pade, best
@@ -27,8 +28,8 @@ ORDERS = (8, 30)
 """Bounds of the orders that the cost model chooses from: beyond 30 round-off in the last terms eats the gain."""
 
 
-HORIZON = 100.0
-"""The longest step, in sizes of the point."""
+LONGEST_STEP = 100.0
+"""In sizes of the point: a polynomial path has no last terms that would limit it."""
 
 
 @frozen(eq=False)
@@ -37,6 +38,11 @@ class Series:
 
     coefficients: Array
     reach: float
+
+    @property
+    def order(self) -> int:
+        """The order of the last term."""
+        return len(self.coefficients) - 1
 
     def __call__(self, h: float) -> Array:
         """The point at pseudo-arclength h, by Horner's rule."""
@@ -81,8 +87,7 @@ def series_reach(coefficients: Array, accuracy: float) -> float:
     """
     measure = Tolerance(absolute=accuracy, relative=accuracy).measure
     order = len(coefficients) - 1
-    # A polynomial path has no last terms; its series is still not asked about the other end of the world.
-    reach = HORIZON * (1.0 + float(np.abs(coefficients[0]).max())) / float(np.abs(coefficients[1]).max())
+    reach = LONGEST_STEP * (1.0 + float(np.abs(coefficients[0]).max())) / float(np.abs(coefficients[1]).max())
     for k in (order - 1, order):
         size = measure(coefficients[k], coefficients[0])
         if size > 0.0:
@@ -113,6 +118,8 @@ class Taylor:
     safety: float = field(default=0.95, validator=and_(gt(0.0)))
     rational: bool = False
     memory: int = field(default=1, init=False)
+    interior_fraction: ClassVar[float] = 0.9999
+    """How much of the way to the boundary of a domain it may go: its error is far below the distance that is left."""
 
     @property
     def references(self) -> tuple[str, ...]:
@@ -121,7 +128,7 @@ class Taylor:
 
     @property
     def order(self) -> int:
-        """The order given, or the lowest that is ever chosen."""
+        """The order given, or the least that is chosen; `Series.order` is the one that was."""
         return self.order_wanted if self.order_wanted is not None else ORDERS[0]
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series | Pade:
@@ -130,9 +137,7 @@ class Taylor:
         try:
             coefficients = coefficients_at(evaluator, with_exact_solves(evaluator, point), order)
         except EvaluationError:
-            exact = linearize(evaluator, point.u, point.weights, point.border, 0)
-            point = Linearization(point.u, point.weights, exact.anchor, point.tangent, point.orientation)
-            coefficients = coefficients_at(evaluator, point, order)
+            coefficients = coefficients_at(evaluator, factored(evaluator, point), order)
         series = Series(coefficients, self.safety * series_reach(coefficients, self.accuracy))
         if not self.rational:
             return series

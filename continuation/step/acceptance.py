@@ -1,93 +1,97 @@
-"""An arc that the controller accepts, examined before it counts: orientation, connectedness, end, events."""
+"""What makes an arc count: orientation, connectedness; then where the path ends on it, and the events on it.
+
+A further check of an arc belongs into `Examiner.examine`, between the crossing of branches and the end; it answers with
+a `Rejection`.
+"""
 
 from __future__ import annotations
 
-import math
+from attrs import frozen
 
-from attrs import evolve, frozen
-
-from continuation.arrays import Array, largest
-from continuation.ends.target import ArcEnd, Target
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.ends.target import ArcEnd, EndsAt, Target
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.events.branch_point import locate_branch_point
 from continuation.events.scan import first_terminal, scan_events
 from continuation.path import LocatedEvent
-from continuation.point.arc import Arc, angle_between, cut, length_between, position, segment_between
+from continuation.point.arc import angle_between, arc_between, cut, length_between, position
 from continuation.point.linearization import Linearization
-from continuation.point.projection import midpoint_on_path
+from continuation.point.projection import PathSolver, midpoint_on_path
 from continuation.predictors import Prediction
-from continuation.status import Kind, Status
+from continuation.rejection import Rejected, Rejection
+from continuation.status import Kind
 from continuation.step.settings import Settings
 from continuation.step.state import State
-from continuation.step.stepper import Attempt
+from continuation.step.stepper import Arrival
 
 
 @frozen(eq=False)
 class Accepted:
-    """An accepted arc after examination: how it ends, the events on it, and what the state after it is made of."""
+    """An accepted arc after examination: how it ends, the events on it, and what is part of the state after it."""
 
     ending: ArcEnd
-    trial: Attempt
-    rejections: int
-    state: State
+    attempt: Arrival
     events: list[LocatedEvent]
+    orientation: int
     monitors: tuple[float, ...]
     occurrences: tuple[int, ...]
-
-
-def residual_norm(evaluator: Evaluator, u: Array) -> float:
-    """The largest component of the residual; nan where there is none."""
-    try:
-        return largest(evaluator.residual(u))
-    except EvaluationError:
-        return math.nan
 
 
 @frozen(eq=False)
 class Examiner:
     """What an examination needs."""
 
-    evaluator: Evaluator
+    solver: PathSolver
     settings: Settings
-    ends: Target
+    target: Target
 
     def examine(
-        self, point: Linearization, state: State, trial: Attempt, rejections: int, prediction: Prediction
-    ) -> Accepted | None:
-        """The arc from `point` to the trial's arrival; None if it does not hold."""
-        arrival = trial.arrival
-        assert arrival is not None
-        evaluator, tolerance, events = self.evaluator, self.settings.tolerance, self.settings.events
-        arc = Arc(point, arrival, point.border, segment_between(point, arrival, prediction))
+        self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
+    ) -> Accepted | Rejected:
+        """The arc from `point` to where the attempt arrived, or why it does not count.
+
+        Parameters
+        ----------
+        point : Linearization
+        state : State
+            At `point`.
+        attempt : Arrival
+        prediction : Prediction
+            That of the attempt: where it is good enough it is the path between the two points.
+        landed : bool
+            Whether the attempt was one to land on the target, so that the path ends with it.
+        """
+        arrival, events, orientation = attempt.point, self.settings.events, state.orientation
+        arc = arc_between(point, arrival, prediction)
         crossed: list[tuple[int, Linearization]] = []
-        if arrival.orientation not in (0, state.orientation):
-            index = self.settings.branch_index
-            branch = None if index is None else locate_branch_point(evaluator, point, arrival, tolerance)
-            if index is None or branch is None:
-                return None
-            crossed.append((index, branch))
-            state = evolve(state, orientation=arrival.orientation)
         try:
-            if not midpoint_on_path(evaluator, arc, tolerance):
-                return None
-            ending = (
-                ArcEnd(arc, Kind.TARGET, Status.REACHED_TARGET) if trial.landed else self.ends.ending_of_arc(arc, state)
-            )
-            found, monitors = scan_events(evaluator, events, state.monitors, ending.arc, tolerance)
-        except EvaluationError:
-            return None
+            if arrival.orientation not in (0, orientation):
+                index = self.settings.branch_index
+                branch = None if index is None else locate_branch_point(self.solver, point, arrival)
+                if index is None or branch is None:
+                    return _rejected(attempt, Rejection.ORIENTATION)
+                crossed.append((index, branch))
+                orientation = arrival.orientation
+            if not midpoint_on_path(self.solver, arc):
+                return _rejected(attempt, Rejection.MIDPOINT)
+            ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
+            found, monitors = scan_events(self.solver, events, state.monitors, ending.arc)
+        except EvaluationError as error:
+            return _rejected(attempt, Rejection.ARC, str(error))
         if crossed and position(arc, crossed[0][1].u) <= position(arc, ending.arc.b.u):
             found = sorted((*found, *crossed), key=lambda pair: position(arc, pair[1].u))
         last, occurred = first_terminal(events, state.occurrences, found)
         if last is not None:
             i, stopping = found[last]
-            ending = ArcEnd(cut(ending.arc, stopping), events[i].kind, Status.STOPPED_AT_EVENT)
+            whole = ending.whole and (stopping.u == arrival.u).all()
+            ending = ArcEnd(cut(ending.arc, stopping), EndsAt.EVENT, events[i].kind, bool(whole))
             found = found[: last + 1]
-        located = [self.located(i, event, point, state) for i, event in found]
-        return Accepted(ending, trial, rejections, state, located, monitors, occurred)
+        located = [self._located(i, event, point, state, ending.arc.b) for i, event in found]
+        return Accepted(ending, attempt, located, orientation, monitors, occurred)
 
-    def located(self, i: int, at: Linearization, begin: Linearization, state: State) -> LocatedEvent:
-        """The i-th event, found at a point of the arc that begins at another."""
+    def _located(
+        self, i: int, at: Linearization, begin: Linearization, state: State, end: Linearization
+    ) -> LocatedEvent:
+        """The i-th event, found at a point of the arc from `begin` to `end`."""
         event = self.settings.events[i]
         return LocatedEvent(
             name=event.name,
@@ -95,8 +99,13 @@ class Examiner:
             arclength=state.here.arclength + length_between(begin, at, angle_between(begin, at)),
             u=at.u,
             tangent=at.tangent,
-            residual_norm=residual_norm(self.evaluator, at.u),
+            residual_norm=self.solver.evaluator.residual_norm(at.u),
             monitor=event.monitor(at.u, at.tangent),
             orientation=at.orientation,
-            step=state.index,
+            step=state.index + 1,
+            ends_step=bool((at.u == end.u).all()),
         )
+
+
+def _rejected(attempt: Arrival, reason: Rejection, detail: str = "") -> Rejected:
+    return Rejected(attempt.h, reason, detail, attempt.correction.contraction)

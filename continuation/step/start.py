@@ -2,27 +2,40 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from attrs import evolve
 
 from continuation.arrays import Array
+from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Metric, norm
-from continuation.point.linearization import Linearization, linearize
-from continuation.status import Status
-from continuation.tolerance import Tolerance
+from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
+from continuation.point.projection import PathSolver
 
 
 class StartError(ArithmeticError):
-    """The trace cannot begin; carries the status that says why."""
+    """The trace cannot begin: the start is no point of a path."""
 
-    def __init__(self, status: Status, particulars: str) -> None:
-        super().__init__(f"{status} {particulars}")
-        self.status = status
+
+class SingularStartError(StartError):
+    """The path has no direction at the start: the Jacobian has no full rank there."""
+
+
+CORRECTING = BorderedNewton(max_iterations=20)
+"""A start is brought onto the path once: patience costs nothing that counts."""
+
+STEEP = 1e-8
+"""The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
+
+ALIGNED = 1.0 - 1e-6
+"""The cosine between kernels found with two borders that are one: an angle of 1e-3, far from that of two at random."""
 
 
 def first_point(
-    evaluator: Evaluator, u: Array, metric: Metric, tolerance: Tolerance, direction: int, target: float | None
+    solver: PathSolver, u: Array, metric: Metric, direction: int, target: float | None
 ) -> Linearization:
     """The start on the path, with the tangent that leads to the target.
 
@@ -34,42 +47,39 @@ def first_point(
     Raises
     ------
     StartError
-        START_NOT_ON_PATH or SINGULAR_START: the one is a wrong point, the other a wrong problem.
+        Or SingularStartError: the one is a wrong point, the other a wrong problem.
     """
+    evaluator, tolerance = solver.evaluator, solver.tolerance
     unit = np.zeros_like(u)
     unit[-1] = 1.0
     try:
         residual = evaluator.residual(u)
     except EvaluationError as error:
-        raise StartError(Status.START_NOT_ON_PATH, f"At the start {error}.") from error
+        raise StartError(f"At the start {error}.") from error
     point = _regular(evaluator, u, unit)
     if tolerance.measure(point.solve(-residual), u) > 1.0:
-        u = _correct_start(evaluator, point, u, unit, tolerance)
+        u = _correct_start(solver, point, u, unit)
         point = _regular(evaluator, u, unit)
     point = point.with_weights(metric.weights(u, point.tangent, None))
     wanted = direction
     if wanted == 0:
         wanted = 1 if target is None or target >= u[-1] else -1
-    return _turned(point) if point.tangent[-1] * wanted < 0 else point
+    if point.tangent[-1] * wanted < 0:
+        point = evolve(point, tangent=-point.tangent, orientation=-point.orientation)
+    return point
 
 
-def _turned(point: Linearization) -> Linearization:
-    return Linearization(point.u, point.weights, point.anchor, -point.tangent, -point.orientation)
-
-
-def _correct_start(evaluator: Evaluator, point: Linearization, u: Array, unit: Array, tolerance: Tolerance) -> Array:
+def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
     """Correct the start, at its parameter value if that works, else along the shortest way."""
-    reasons = []
     for border in (unit, point.border):
-        correction = BorderedNewton(max_iterations=20).correct(evaluator, point, u, border, tolerance)
+        correction = CORRECTING.correct(solver.evaluator, point, u, border, solver.tolerance)
         if correction.converged:
             return correction.u
-        reasons.append(correction.reason)
-    raise StartError(Status.START_NOT_ON_PATH, f"The corrector says: {reasons[-1]}.")
+    raise StartError(f"The corrector says: {correction.rejected(0.0)}.")
 
 
 def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
-    """Linearize at u; SINGULAR_START unless [H_y, H_lam] has full rank to working precision.
+    """Linearize at u; SingularStartError unless [H_y, H_lam] has full rank to working precision.
 
     With the border e_{N+1} the matrix is singular at a turning point too, so a bad answer there is asked again with a
     border in general position. A kernel that then depends on the border has more than one dimension.
@@ -88,10 +98,10 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
         try:
             found.append(linearize(evaluator, u, ones, border / norm(ones, border), 0))
         except EvaluationError as error:
-            raise StartError(Status.SINGULAR_START, f"({error}.)") from error
+            raise SingularStartError(f"({error}.)") from error
     alignment = abs(float(np.dot(found[0].tangent, found[1].tangent)))
-    if alignment < 1.0 - 1e-6:
-        raise StartError(Status.SINGULAR_START, "The kernel of [H_y, H_lam] has more than one dimension there.")
+    if alignment < ALIGNED:
+        raise SingularStartError("The kernel of [H_y, H_lam] has more than one dimension there.")
     return found[0]
 
 
@@ -101,7 +111,20 @@ def _well_conditioned(point: Linearization) -> bool:
     r = generator.standard_normal(point.u.size - 1)
     z = point.solve(r)
     image = norm(np.ones_like(r), r)
-    return norm(np.ones_like(z), z) < 1e10 * image and abs(point.tangent[-1]) > 1e-8
+    return norm(np.ones_like(z), z) < NEAR_SINGULAR * image and abs(point.tangent[-1]) > STEEP
+
+
+def point_and_direction(start: Any) -> tuple[Array, Array]:
+    """Copies of the two vectors of a start; ValueError if it is no pair of a finite point and a direction."""
+    if not isinstance(start, tuple | list) or len(start) != 2:
+        found = f"{len(start)} of them" if isinstance(start, tuple | list) else repr(start)
+        raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}")
+    u, v = (real_vector("start", part) for part in start)
+    if u.ndim != 1 or u.shape != v.shape:
+        raise ValueError(f"start: expected (u, v), vectors of one size, found shapes {u.shape} and {v.shape}")
+    if not (np.isfinite(u).all() and np.isfinite(v).all() and v.any()):
+        raise ValueError("start: expected a finite point and a direction that does not vanish")
+    return u, v
 
 
 def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: int, metric: Metric) -> Linearization:
@@ -111,16 +134,13 @@ def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: i
     ------
     ValueError
         If `start` is no pair (u, v) of vectors of the right size, or v vanishes.
-    StartError
-        SINGULAR_START.
+    SingularStartError
     """
-    u, v = (np.array(part, dtype=float) for part in start)
-    if u.shape != (size,) or v.shape != (size,):
+    u, v = point_and_direction(start)
+    if u.size != size:
         raise ValueError(f"start: expected (u, v) of shape ({size},) each, found {u.shape} and {v.shape}")
-    if not (np.isfinite(u).all() and np.isfinite(v).all() and v.any()):
-        raise ValueError("start: expected a finite point and a direction that does not vanish")
     weights = metric.weights(u, v, None)
     try:
         return linearize(evaluator, u, weights, weights * (v / norm(weights, v)), 0)
     except EvaluationError as error:
-        raise StartError(Status.SINGULAR_START, f"({error}.)") from error
+        raise SingularStartError(f"({error}.)") from error

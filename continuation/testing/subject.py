@@ -19,10 +19,12 @@ from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic
 from continuation.path import Path
 from continuation.point.linearization import Linearization, linearize
+from continuation.point.projection import PathSolver
 from continuation.presets import DEFAULT
 from continuation.status import Kind, Status
 from continuation.step.start import StartError, first_point
 from continuation.step.tracer import Tracer
+from continuation.step.verdict import refused_start
 from continuation.tolerance import Tolerance
 
 STEPS = 60
@@ -148,9 +150,10 @@ class Subject:
         target = getattr(self.homotopy, "target", 0.0)
         with called("start", "linearized"):
             try:
-                return first_point(self.evaluator, self.start.u, metric, Tolerance(), 0, target)
+                return first_point(PathSolver(self.evaluator, Tolerance()), self.start.u, metric, 0, target)
             except StartError as error:
-                fail(f"{error.status.name}: {error}")
+                verdict = refused_start(error)
+                fail(f"{verdict.status.name}: {verdict}")
 
     @property
     def limits(self) -> Budget:
@@ -164,7 +167,7 @@ class Subject:
         """The path from the start, or its first steps."""
         with called("trace", "from the start"):
             path = self.traced()
-        bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.INTERRUPTED)
+        bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.INTERRUPTED, Status.PREDICTOR_FAILED)
         if path.status in bad or len(path) < 2:
             fail(f"trace: the path ended after {max(len(path) - 1, 0)} steps, {path.status.name}: {path.message}")
         return path

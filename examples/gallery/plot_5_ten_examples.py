@@ -24,6 +24,6 @@ for example, path in zip(EXAMPLES, paths):
 figure, panels = plt.subplots(5, 2, figsize=(7, 12), layout="constrained")
 for example, path, axes in zip(EXAMPLES, paths, panels.ravel()):
     draw_example(example, path, axes)
-names = [f"$x_{{{i + 1}}}$" for i in range(EXAMPLES[-1].q.size)]
+names = [f"$x_{{{i}}}$" for i in range(EXAMPLES[-1].q.size)]
 lines = axes.get_lines()[: len(names)]
 figure.legend(lines, names, loc="outside lower center", ncols=len(names), frameon=False)

@@ -20,7 +20,10 @@ HOMOTOPIES = ("auto", "kkt", "yu", "zhao", "xu", "wang")
 MOST_ROWS = 60
 """Components printed; --json prints all."""
 
-_ARGUMENTS = {"path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy"}
+_ARGUMENTS = {
+    "path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy",
+    "seconds": "--budget-seconds",
+}  # fmt: skip
 
 
 def register(subparsers: Subparsers) -> None:
@@ -37,6 +40,9 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--relaxed", action="store_true", help="take any x0 > 0; what A x0 + q lacks is relaxed away")
     parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
     parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); needs matplotlib")
+    parser.add_argument(
+        "--budget-seconds", metavar="S", type=float, help="wall-clock time; default: work that takes about a minute"
+    )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
     parser.set_defaults(run=run)
@@ -44,6 +50,7 @@ def register(subparsers: Subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, solve, print."""
+    from continuation.budget import Budget
     from problems import lcp
     from problems.lcp.data.files import read_problem, read_vector
 
@@ -53,11 +60,13 @@ def run(arguments: argparse.Namespace) -> int:
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
         if x0 is not None and not arguments.relaxed:
             _check_start(problem, x0)
+        budget = None if arguments.budget_seconds is None else Budget(math.inf, arguments.budget_seconds)
         solution = lcp.solve(
             problem,
             homotopy=arguments.homotopy,
             x0=x0,
             archive=arguments.archive,
+            budget=budget,
             progress=arguments.progress,
         )
     print(json.dumps(_as_json(arguments, solution)) if arguments.json else _as_text(arguments, problem, solution))
@@ -65,7 +74,7 @@ def run(arguments: argparse.Namespace) -> int:
         # Where no path was needed there is nothing to draw yet.
         drawn = solution if solution.paths else lcp.solve(problem, arguments.homotopy, x0=x0, finish=False)
         _draw(drawn, problem.n, arguments.plot)
-    return SUCCESS if solution.outcome is lcp.Outcome.SOLVED else FAILURE
+    return SUCCESS if solution.success else FAILURE
 
 
 def _check_start(problem: LCP, x0: Array) -> None:
@@ -129,7 +138,7 @@ def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
         lines += ["", f"{'i':>6}  {'x':>22}  {'w':>22}"]
         lines += [
             f"{i:>6}  {x:>22.15g}  {w:>22.15g}"
-            for i, (x, w) in enumerate(zip(solution.x[:MOST_ROWS], solution.w[:MOST_ROWS]), start=1)
+            for i, (x, w) in enumerate(zip(solution.x[:MOST_ROWS], solution.w[:MOST_ROWS]))
         ]
         if problem.n > MOST_ROWS:
             lines.append(f"{'...':>6}  {problem.n - MOST_ROWS} more; --json prints all")
@@ -141,7 +150,7 @@ def _draw(solution: Any, n: int, file: str) -> None:
     from continuation.plot import MOST_COMPONENTS, plot_components, plot_steps
 
     components = range(min(n, MOST_COMPONENTS))
-    names = [f"$x_{{{i + 1}}}$" for i in components]
+    names = [f"$x_{{{i}}}$" for i in components]
 
     def draw(figure: Any) -> None:
         above, below = figure.subplots(2, 1, height_ratios=(3, 1))

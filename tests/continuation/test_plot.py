@@ -68,7 +68,7 @@ def test_against_arclength(path, axes):
     np.testing.assert_allclose(line.get_ydata(), path(s)[:, 1], atol=2e-3)
     (mark,) = marks(axes)
     assert mark.get_xdata()[0] == path.turning_points[0].arclength
-    assert axes.get_ylabel() == "$y_{2}$"
+    assert axes.get_ylabel() == "$y_{1}$"
 
 
 def test_colours_and_styles_both_tell_curves_apart(axes):
@@ -88,7 +88,7 @@ def test_at_most_twelve_components_unless_asked(axes):
     assert len(lines(axes)) == 12
     assert axes.get_legend().get_title().get_text() == "12 of 15 components"
     names = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert (names[0], names[-1]) == ("$y_{1}$", "$y_{15}$")
+    assert (names[0], names[-1]) == ("$y_{0}$", "$y_{14}$")
 
 
 def test_the_bifurcation_diagram_shows_the_norm_or_a_component(path, axes):
@@ -98,7 +98,7 @@ def test_the_bifurcation_diagram_shows_the_norm_or_a_component(path, axes):
     np.testing.assert_allclose(height**2, 1 - lam, atol=5e-3)
     plot_bifurcation(path, axes, component=1)
     assert lines(axes)[1].get_ydata()[0] == -1
-    assert axes.get_ylabel() == "$y_{2}$"
+    assert axes.get_ylabel() == "$y_{1}$"
 
 
 def test_a_stored_path_without_tangents_is_smooth_and_turns_where_the_turning_point_is(path, axes):

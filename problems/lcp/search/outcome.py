@@ -28,6 +28,14 @@ class Outcome(IntEnum):
     def __str__(self) -> str:
         return _SENTENCES[self]
 
+    def __bool__(self) -> bool:
+        return self.success
+
+    @property
+    def success(self) -> bool:
+        """Whether a solution was found: SOLVED alone, since a proof that there is none gives no x."""
+        return self is Outcome.SOLVED
+
 
 _SENTENCES = {
     Outcome.SOLVED: "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, verified in twice the working precision.",
@@ -38,7 +46,7 @@ _SENTENCES = {
 }
 
 
-@frozen(eq=False)
+@frozen(eq=False, repr=False)
 class Solution:
     """The answer to one LCP.
 
@@ -72,10 +80,19 @@ class Solution:
     seconds: float
     farkas: Farkas | None = None
 
+    def __repr__(self) -> str:
+        found = "no point" if self.certificate is None else f"residual {self.residual:.1e}"
+        return f"<Solution {self.outcome.name}: n = {self.problem.n}, {found}, {len(self.paths)} paths>"
+
+    @property
+    def success(self) -> bool:
+        """Whether the outcome is SOLVED."""
+        return self.outcome.success
+
     @property
     def solved(self) -> bool:
-        """Whether the outcome is SOLVED."""
-        return self.outcome is Outcome.SOLVED
+        """The same as `success`."""
+        return self.success
 
     @property
     def x(self) -> Array | None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
-import math
+from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from numbers import Integral, Real
 from os import PathLike
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from attrs import evolve
@@ -17,7 +16,7 @@ from continuation.archive import PathLog
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.presets import FAST
-from continuation.step.tracer import Tracer
+from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import PATIENCE, Finish
 from problems.lcp.active_set.multigrid_guess import guess, suitable
@@ -32,8 +31,12 @@ from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.restarts import FAR, NEAR
 from problems.lcp.search.search import MAKERS, Search
+from problems.lcp.search.work import default_budget
 
 HOMOTOPIES = ("auto", "kkt", "wang", "yu", "zhao", "xu")
+
+OWNED = ("target", "direction", "start", "state", "observers")
+"""What may be said of a path, but not of those that `solve` traces."""
 
 FIRST_STEPS = 30
 """Corrections of the active set before any path."""
@@ -51,6 +54,7 @@ NEARLY = 1e-5
 """An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
 
 
+@documented
 def solve(
     problem: LCP,
     homotopy: str = "auto",
@@ -64,7 +68,7 @@ def solve(
     archive: str | PathLike[str] | None = None,
     progress: bool = False,
     executor: Executor | None = None,
-    **options: Any,
+    **options: Unpack[PartOptions],
 ) -> Solution:
     """Solve LCP(q, A).
 
@@ -85,7 +89,9 @@ def solve(
         Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
         restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
     budget : continuation.Budget, optional
-        Of everything together; 60 seconds by default.
+        Of everything together. By default as many factorisations as take about a minute, which depends on n alone
+        (`default_budget`), so that the same call gives the same answer on every machine; ``Budget(seconds=60)`` ends
+        by the clock.
     tolerance : float
         What `Certificate.solves` is asked before anything is called a solution.
     archive : path, optional
@@ -94,8 +100,7 @@ def solve(
         A progress bar a path (needs tqdm).
     executor : concurrent.futures.Executor, optional
         For the restarts; not together with an archive.
-    **options
-        As for `continuation.trace`: preset, predictor, corrector, controller, ...
+    {parts}
 
     Returns
     -------
@@ -114,7 +119,7 @@ def solve(
         raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
     if homotopy not in HOMOTOPIES:
         raise ValueError(f"homotopy: expected one of {', '.join(HOMOTOPIES)}, found {homotopy!r}")
-    _check_options(tolerance, restarts, options)
+    _check_arguments(tolerance, restarts, seed, finish, budget, options)
     if restarts is None:
         restarts = min(10 * problem.n, 1000) if homotopy == "auto" else 0
     if archive is not None and executor is not None:
@@ -126,10 +131,10 @@ def solve(
         structure,
         Finish(Faces(structure), tolerance) if finish else None,
         tolerance,
-        budget if budget is not None else Budget(steps=math.inf, seconds=60.0),
+        budget if budget is not None else default_budget(problem),
         None if archive is None else PathLog(archive),
         progress,
-        options,
+        dict(options),
     )
     with search.log if search.log is not None else nullcontext():
         if homotopy != "auto":
@@ -140,16 +145,23 @@ def solve(
         return _unscaled(problem, scaled, _automatic(search, start, restarts, seed, executor), tolerance)
 
 
-def _check_options(tolerance: Any, restarts: Any, options: dict[str, Any]) -> None:
+def _check_arguments(
+    tolerance: Any, restarts: Any, seed: Any, finish: Any, budget: Any, options: Mapping[str, Any]
+) -> None:
     """Refuse what would otherwise show late, or, where no path is traced, never."""
     if not isinstance(tolerance, Real) or not 0.0 < float(tolerance) < 1.0:
         raise ValueError(f"tolerance: expected a number between 0 and 1, found {tolerance!r}")
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
-    known = set(inspect.signature(Tracer).parameters) - {"homotopy", "observers", "state", "start"}
-    unknown = set(options) - known
-    if unknown:
-        raise TypeError(f"options: expected some of {', '.join(sorted(known))}, found {', '.join(sorted(unknown))}")
+    if not isinstance(seed, Integral) or seed < 0:
+        raise ValueError(f"seed: expected an integer, at least 0, found {seed!r}")
+    if not isinstance(finish, bool):
+        raise TypeError(f"finish: expected True or False, found {finish!r}")
+    if budget is not None and not isinstance(budget, Budget):
+        raise TypeError(f"budget: expected a Budget, found {budget!r}")
+    known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
+    check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
+    checked(options)
 
 
 def _unscaled(problem: LCP, scaled: Scaled, answer: Solution, tolerance: float) -> Solution:

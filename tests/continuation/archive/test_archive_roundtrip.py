@@ -49,7 +49,7 @@ def test_an_event_on_an_accepted_point(tmp_path):
     steps = iter(tracer)
     step = [next(steps) for _ in range(3)][-1]
     events = [
-        LocatedEvent(name, Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index + 1)
+        LocatedEvent(name, Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index + 1, True)
         for name in ("one", "two")
     ]
     tracer.path.events.extend(events)
@@ -79,7 +79,7 @@ def test_a_path_comes_back_as_it_was(tmp_path, case, tangents):
     with open_archive(tmp_path / "run.h5") as archive:
         found = archive.path(0)
         assert archive.closed_by_writer
-    unstored = {"segment", "weights"} if tangents else {"segment", "weights", "tangent"}
+    unstored = {"segment", "weights", "rejected"} | (set() if tangents else {"tangent"})
     assert not differences(found.steps, path.steps, Step, unstored)
     assert not differences(found.events, path.events, LocatedEvent, unstored)
     assert (found.status, found.message, found.counts) == (path.status, path.message, path.counts)

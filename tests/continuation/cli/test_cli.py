@@ -61,7 +61,8 @@ def test_solve_prints_the_solution(run, second):
     lines = dict(line.split(maxsplit=1) for line in out.splitlines() if line and not line.startswith(" "))
     assert lines["outcome"] == "SOLVED"
     assert float(lines["residual"].split(",")[0]) < 1e-10
-    rows = [line.split() for line in out.splitlines() if line.strip()[:1] in "12" and line.startswith("  ")]
+    rows = [line.split() for line in out.splitlines() if line.strip()[:1] in "01" and line.startswith("  ")]
+    assert [row[0] for row in rows] == ["0", "1"]
     x = [float(row[1]) for row in rows]
     np.testing.assert_allclose(x, [0.5, 0], atol=1e-10)
 

@@ -1,19 +1,18 @@
 """Step controllers: pure functions of a state and an attempt."""
 
-from math import inf, sin, sqrt
+from math import sin, sqrt
 
 import pytest
 from attrs import evolve
 
 from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Geometric, IterationCount, StepMeasures
+from continuation.rejection import Rejection
 
 CONTROLLERS = [Fixed(), Geometric(), IterationCount(), AllgowerGeorg(), Curvature()]
 every_controller = pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda c: type(c).__name__)
 
-GOOD = StepMeasures(
-    h=0.1, converged=True, iterations=3, contraction=0.01, distance=1e-4, angle=0.05, order=3, rejections=0
-)
-FAILED = evolve(GOOD, converged=False, contraction=inf, distance=inf, angle=0.0)
+GOOD = StepMeasures(h=0.1, iterations=3, contraction=0.01, distance=1e-4, angle=0.05, order=3, rejections=0)
+FAILED = StepMeasures(h=0.1, order=3, rejections=0, rejection=Rejection.NOT_CONTRACTING)
 
 
 @every_controller

@@ -8,6 +8,7 @@ from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import linearize
+from continuation.rejection import Rejection
 from problems.bifurcation import Circle, ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
@@ -139,8 +140,8 @@ def test_a_hopeless_prediction_is_given_up(corrector):
     # No point of the circle lies in the plane through this, nor at its parameter.
     setting.predicted = np.array([1.0, 5.0])
     correction = setting.correct(corrector)
-    assert not correction.converged
-    assert correction.reason
+    assert correction.rejection in (Rejection.NOT_CONTRACTING, Rejection.NOT_CONVERGED)
+    assert correction.rejected(0.1).h == 0.1
 
 
 def test_the_normal_flow_needs_no_plane():
@@ -160,8 +161,8 @@ def test_values_that_are_not_finite_end_the_attempt(corrector):
     )
     setting = Setting(0.6, homotopy, np.zeros(2))
     correction = setting.correct(corrector)
-    assert not correction.converged
-    assert "finite" in correction.reason
+    assert correction.rejection is Rejection.NO_VALUE
+    assert "finite" in correction.detail
 
 
 @every_corrector

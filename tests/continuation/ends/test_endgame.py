@@ -97,5 +97,8 @@ def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
         start=([1.0], 1.0),
     )
     path = continuation.trace(homotopy, preset=preset)
+    # It is followed to the jump and no farther, and nothing is claimed of an end.
     assert path.status is Status.STEP_TOO_SMALL
     np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-9)
+    assert path.end_error is None
+    assert path.winding_number is None

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from attrs import field, frozen
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import continuation
 from continuation.auditing import refine
-from continuation.controllers import SeriesRange
+from continuation.controllers import AllgowerGeorg, Bounds, SeriesRange
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -191,3 +192,31 @@ def test_settings_are_checked():
         Taylor(order=1)
     with pytest.raises(ValueError, match="accuracy"):
         Taylor(accuracy=2.0)
+
+
+@frozen
+class Noting:
+    """A controller that notes the orders which it is told."""
+
+    orders: list[int]
+    rule: AllgowerGeorg = field(factory=AllgowerGeorg)
+    bounds: Bounds = field(factory=Bounds)
+
+    def init(self):
+        return self.rule.init()
+
+    def update(self, state, attempt):
+        self.orders.append(attempt.order)
+        return self.rule.update(state, attempt)
+
+
+@pytest.mark.parametrize(
+    ("predictor", "orders"),
+    # Of the rational curves the one that reaches farthest is taken, which may be of an order less.
+    [(Taylor(), {15}), (Taylor(rational=True), {14, 15}), (Taylor(6), {6})],
+)
+def test_a_controller_is_told_the_order_that_was_used(predictor, orders):
+    noting = Noting([])
+    continuation.trace(Circle(), predictor=predictor, controller=noting)
+    assert set(noting.orders) == orders
+    assert best_order(2, 1e-5) == 15

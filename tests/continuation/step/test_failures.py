@@ -8,7 +8,10 @@ from scipy.sparse.linalg import LinearOperator
 
 from continuation import Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
 from continuation.controllers import Fixed
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.jacobian_check import check_jacobian
+from continuation.predictors import Tangent
+from continuation.rejection import Rejection
 from problems.bifurcation import (
     Aircraft,
     Bratu1D,
@@ -98,10 +101,12 @@ def test_a_fold_at_the_target(start):
 def test_a_fold_just_before_the_target_is_no_end():
     homotopy = scalar(lambda y, lam: y * y - lam, lambda y, lam: (2.0 * y, -1.0), start=(1.0, 1.0), target=-1e-3)
     path = trace(homotopy, budget=Budget(steps=50))
+    # It turns in the fold, a thousandth before the target, and runs off on the other side.
     assert path.status is Status.BUDGET_EXHAUSTED
-    (turn,) = path.turning_points
-    np.testing.assert_allclose(turn.u, 0.0, rtol=0, atol=1e-10)
-    assert path.endpoint.y[0] < 0.0 < path.endpoint.lam
+    (fold,) = path.turning_points
+    np.testing.assert_allclose(fold.u, 0.0, rtol=0, atol=1e-12)
+    assert path.lam.min() >= 0.0
+    assert path.endpoint.y[0] < -1.0
 
 
 @pytest.mark.parametrize("target", [1e-3, 1e-6, 1e-10])
@@ -140,16 +145,23 @@ def test_through_an_inflection():
 @pytest.mark.parametrize(
     ("homotopy", "kink"),
     [
-        (scalar(lambda y, lam: np.abs(y) - lam, start=(1.0, 1.0), target=-0.5), 0.0),
-        (scalar(lambda y, lam: np.abs(y) - lam, lambda y, lam: (np.sign(y), -1.0), start=(1.0, 1.0), target=-0.5), 0.0),
-        (scalar(lambda y, lam: y - 5.0 * np.maximum(0.0, lam - 0.3), start=(0.0, 0.0)), 0.3),
+        (scalar(lambda y, lam: np.abs(y) - lam, start=(1.0, 1.0), target=-0.5), (0.0, 0.0)),
+        (
+            scalar(lambda y, lam: np.abs(y) - lam, lambda y, lam: (np.sign(y), -1.0), start=(1.0, 1.0), target=-0.5),
+            (0.0, 0.0),
+        ),
+        (scalar(lambda y, lam: y - 5.0 * np.maximum(0.0, lam - 0.3), start=(0.0, 0.0)), (0.0, 0.3)),
     ],
     ids=["abs", "abs with derivative", "kink"],
 )
-def test_a_kink_does_not_end_in_a_wrong_answer(homotopy, kink):
+def test_a_path_ends_at_a_kink_and_says_so(homotopy, kink):
     path = trace(homotopy)
     assert path.status is Status.STEP_TOO_SMALL
-    np.testing.assert_allclose(path.endpoint.u, (0.0, kink), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(path.endpoint.u, kink, rtol=0, atol=1e-8)
+    assert path.events == []
+    # The attempts that failed there, the last of which the message names.
+    assert path.rejected
+    assert str(path.rejected[-1]) in path.message
     # What was accepted lies on the path.
     for step in path.steps:
         assert np.abs(homotopy.residual(step.y, step.lam)).max() <= 1e-8
@@ -200,19 +212,21 @@ def test_the_edge_of_the_domain(target):
 
 
 @pytest.mark.parametrize(
-    ("residual", "nearest"),
+    ("residual", "status"),
     [
-        (lambda y, lam: y - np.sqrt(1.0 - lam), 1e-12),
-        (lambda y, lam: y + np.log(1.0 - lam), 1e-9),
-        (lambda y, lam: np.array([y[0] - math.sqrt(1.0 - float(np.real(lam)))]), 1e-5),
+        (lambda y, lam: y - np.sqrt(1.0 - lam), Status.LEFT_DOMAIN),
+        (lambda y, lam: y + np.log(1.0 - lam), Status.LEFT_DOMAIN),
+        # Differences near the edge are poor: the corrector goes astray before the edge itself is met.
+        (lambda y, lam: np.array([y[0] - math.sqrt(1.0 - float(np.real(lam)))]), Status.STEP_TOO_SMALL),
     ],
     ids=["sqrt", "log", "math.sqrt"],
 )
-def test_the_edge_of_the_domain_without_a_derivative_and_without_a_warning(residual, nearest):
+def test_the_edge_of_the_domain_without_a_derivative_and_without_a_warning(residual, status):
     y0 = -residual(np.zeros(1), 0.0)
     path = trace(from_functions(residual, start=(y0, 0.0), target=2.0), budget=Budget(steps=300))
-    assert path.status in (Status.LEFT_DOMAIN, Status.STEP_TOO_SMALL)
-    assert 1.0 - nearest <= path.endpoint.lam <= 1.0
+    assert path.status is status
+    assert 1.0 - 1e-4 <= path.endpoint.lam <= 1.0 + 1e-12
+    assert any(attempt.reason is Rejection.NO_VALUE for attempt in path.rejected)
 
 
 def test_overflow_in_a_residual_makes_no_noise():
@@ -235,6 +249,23 @@ def test_an_exception_of_the_plug_in_is_its_own_and_the_path_is_kept():
             pass
     assert tracer.path.status is Status.INTERRUPTED
     assert len(tracer.path) > 1
+
+
+class CurveUntil(Tangent):
+    """Tangents up to a parameter value, and nothing beyond."""
+
+    def prepare(self, evaluator, point, history):
+        if point.lam > 0.3:
+            raise EvaluationError("there is no curve")
+        return super().prepare(evaluator, point, history)
+
+
+def test_a_predictor_that_fails_is_named_and_no_step_is_blamed():
+    path = trace(scalar(lambda y, lam: y - lam, lambda y, lam: (1.0, -1.0)), predictor=CurveUntil())
+    assert path.status is Status.PREDICTOR_FAILED
+    assert path.message.endswith("It says: there is no curve.")
+    assert path.endpoint.lam > 0.3
+    assert path.rejected == ()
 
 
 # -- runs away, turns back, closes ------------------------------------------------------------------------------

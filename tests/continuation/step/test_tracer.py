@@ -25,6 +25,7 @@ from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Ge
 from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
 from continuation.metric import Euclidean, Relative, RootMeanSquare, Weighted
 from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent
+from continuation.rejection import Rejection
 from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth, Pitchfork
 
 PREDICTORS = [
@@ -49,15 +50,14 @@ CONTROLLERS = [
 METRICS = [None, Euclidean(), Relative(floor=0.1), RootMeanSquare(), Weighted(np.array([2.0]), 0.5)]
 
 
-COMBINATIONS = [
-    (predictor, CORRECTORS[(i + j) % len(CORRECTORS)], controller)
-    for i, predictor in enumerate(PREDICTORS)
-    for j, controller in enumerate(CONTROLLERS)
+# Every pair of parts occurs: the numbers of predictor, corrector and controller make a Latin square.
+PAIRWISE = [
+    (predictor, corrector, CONTROLLERS[(i + j) % len(CONTROLLERS)])
+    for (i, predictor), (j, corrector) in product(enumerate(PREDICTORS), enumerate(CORRECTORS))
 ]
-"""Every two parts meet: along a diagonal of the square of correctors and controllers for each predictor."""
 
 
-@pytest.mark.parametrize(("predictor", "corrector", "controller"), COMBINATIONS, ids=repr)
+@pytest.mark.parametrize(("predictor", "corrector", "controller"), PAIRWISE, ids=repr)
 def test_every_pair_of_parts_goes_round_the_circle(predictor, corrector, controller):
     path = trace(Circle(), predictor=predictor, corrector=corrector, controller=controller, metric=Euclidean())
     assert path.status is Status.CLOSED
@@ -138,6 +138,12 @@ def test_the_iterator_yields_every_step_and_the_last():
     assert tracer.path.status is Status.REACHED_TARGET
 
 
+def test_a_tracer_is_an_iterable_and_no_iterator():
+    tracer = Tracer(Cusp())
+    assert not hasattr(tracer, "__next__")
+    assert iter(tracer) is not tracer
+
+
 def test_an_iterator_left_early_leaves_a_consistent_path():
     tracer = Tracer(Cusp())
     for step in tracer:
@@ -145,6 +151,73 @@ def test_an_iterator_left_early_leaves_a_consistent_path():
             break
     del step
     assert len(tracer.path) == 4
+    assert tracer.path.status is Status.INTERRUPTED
+
+
+def test_a_loop_that_was_left_goes_on_and_hands_out_every_step_once():
+    tracer, whole = Tracer(FreudensteinRoth()), trace(FreudensteinRoth())
+    seen = []
+    while not tracer.path.success:
+        for step in tracer:
+            seen.append(step.index)
+            if step.index % 4 == 1:
+                break
+    assert seen == list(range(len(whole)))
+    assert tracer.path.message == whole.message
+    np.testing.assert_array_equal(tracer.path.u, whole.u)
+    assert list(tracer) == []
+
+
+def test_a_loop_that_was_left_before_the_first_step_begins_there():
+    tracer = Tracer(Cusp())
+    iter(tracer).close()
+    assert [step.index for step in tracer] == list(range(len(trace(Cusp()))))
+
+
+def test_two_loops_over_one_tracer_are_refused():
+    tracer = Tracer(Cusp())
+    steps = iter(tracer)
+    next(steps)
+    with pytest.raises(RuntimeError, match="iterated already"):
+        next(iter(tracer))
+    assert next(steps).index == 1
+
+
+class Clock:
+    def __init__(self, monkeypatch):
+        self.now = 1e6
+        monkeypatch.setattr("continuation.step.tracer.time.perf_counter", lambda: self.now)
+
+
+def test_the_clock_runs_from_the_first_step_and_stands_still_between_loops(monkeypatch):
+    clock = Clock(monkeypatch)
+    tracer = Tracer(Cusp(), budget=Budget(seconds=100.0))
+    clock.now += 1000.0
+    assert tracer.seconds == 0.0
+    for step in tracer:
+        clock.now += 10.0
+        if step.index == 3:
+            break
+    assert tracer.seconds == tracer.path.seconds == 40.0
+    clock.now += 1000.0
+    for _ in tracer:
+        clock.now += 10.0
+    # One step each 10 seconds: the budget is reached before the eleventh.
+    assert tracer.path.status is Status.BUDGET_EXHAUSTED
+    assert len(tracer.path) == 10
+    assert tracer.path.seconds == 100.0
+
+
+def test_a_budget_in_seconds_of_a_resumed_path_counts_from_now_on(monkeypatch):
+    clock, watcher = Clock(monkeypatch), Watcher()
+    tracer = Tracer(Cusp(), budget=Budget(seconds=100.0), observers=(watcher,))
+    for _ in tracer:
+        clock.now += 40.0
+    assert len(tracer.path) == 3
+    rest = Tracer(Cusp(), budget=Budget(seconds=100.0), state=tracer.state)
+    for _ in rest:
+        clock.now += 40.0
+    assert [step.index for step in rest.path.steps] == [3, 4, 5]
 
 
 class Watcher:
@@ -177,7 +250,14 @@ def test_observers_see_all_of_it_in_order():
 def test_accepted_and_rejected_are_counted():
     path = trace(FreudensteinRoth())
     assert path.counts.accepted == len(path) - 1
-    assert path.counts.rejected == sum(step.rejections for step in path.steps)
+    assert path.counts.rejected == sum(step.rejections for step in path.steps) > 0
+    for step in path.steps:
+        assert len(step.rejected) == step.rejections
+        # Attempts at one step, each shorter than the one before, and the one that was accepted shorter than all.
+        tried = [*(attempt.h for attempt in step.rejected), step.step_length]
+        assert tried == sorted(tried, reverse=True)
+        assert {attempt.reason for attempt in step.rejected} <= {Rejection.CONTROLLER, Rejection.NOT_CONTRACTING}
+        assert all(attempt.contraction > 0.0 for attempt in step.rejected)
 
 
 # -- resuming ---------------------------------------------------------------------------------------------------
@@ -283,6 +363,9 @@ class Without:
         (from_functions(lambda y, lam: y, start=([np.nan], 0.0)), {}, ValueError, "start"),
         (from_functions(lambda y, lam: y, start=([0.0], np.inf)), {}, ValueError, "start"),
         (from_functions(lambda y, lam: y, start=([], 0.0)), {}, ValueError, "start"),
+        (Without(start=lambda: ([1j], 0.0), residual=abs), {}, ValueError, "start: expected real numbers, found compl"),
+        (Without(start=lambda: ([1.0], 1j), residual=abs), {}, ValueError, "start: expected real numbers, found compl"),
+        (Without(start=lambda: ([1.0], [0.0, 1.0]), residual=abs), {}, ValueError, "start: expected lam0 to be one"),
         (from_functions(lambda y, lam: y, start=(np.zeros((2, 2)), 0.0)), {}, ValueError, "start"),
         (from_functions(lambda y, lam: np.append(y, lam), start=([0.0], 0.0)), {}, ValueError, "residual"),
         (from_functions(lambda y, lam: y + 1j, start=([0.0], 0.0)), {}, ValueError, "residual"),

@@ -1,0 +1,115 @@
+"""Checks of arguments: every complaint says ``name: expected ..., found ...``, and a wrong type is a TypeError."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from numbers import Integral, Real
+from typing import Any
+
+import numpy as np
+from attrs import Attribute
+
+Validator = Callable[[Any, "Attribute[Any]", Any], None]
+
+
+def complain(error: type[Exception], name: str, expected: str, value: Any) -> Exception:
+    """The exception about an argument; of a value of the wrong type the type is said too."""
+    kind = f" ({type(value).__name__})" if error is TypeError else ""
+    return error(f"{name}: expected {expected}, found {value!r}{kind}")
+
+
+def is_number(value: Any) -> bool:
+    """Whether `value` is a real number of Python or numpy; True and False are none."""
+    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+
+
+def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> Validator:
+    """An attrs validator for real numbers.
+
+    Parameters
+    ----------
+    expected : str
+        What is allowed, as the complaint says it.
+    allowed : callable
+        Of the number; to be False of NaN, as every comparison is.
+
+    Returns
+    -------
+    callable
+        Raises TypeError for anything but a real number, ValueError for a number that is not allowed.
+    """
+
+    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+        if not is_number(value):
+            raise complain(TypeError, attribute.alias or attribute.name, "a real number", value)
+        if not allowed(float(value)):
+            raise complain(ValueError, attribute.alias or attribute.name, expected, value)
+
+    return check
+
+
+def integer(least: float = -math.inf) -> Validator:
+    """An attrs validator for integers, at least `least`."""
+
+    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+        if not isinstance(value, Integral) or isinstance(value, bool):
+            raise complain(TypeError, attribute.alias or attribute.name, "an integer", value)
+        if value < least:
+            raise complain(ValueError, attribute.alias or attribute.name, f"at least {least:g}", value)
+
+    return check
+
+
+def of_kind(expected: str, holds: Callable[[Any], bool]) -> Validator:
+    """An attrs validator that raises TypeError unless `holds` of the value."""
+
+    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+        if not holds(value):
+            raise complain(TypeError, attribute.alias or attribute.name, expected, value)
+
+    return check
+
+
+def sign(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+    """An attrs validator for a direction: -1, 0 or 1."""
+    check_sign(attribute.name, value)
+
+
+def check_sign(name: str, value: Any) -> None:
+    """Raise unless `value` is -1, 0 or 1."""
+    if not is_number(value) or value not in (-1, 0, 1):
+        raise complain(ValueError, name, "-1, 0 or 1", value)
+
+
+POSITIVE = number("a positive number", lambda x: x > 0.0)
+POSITIVE_FINITE = number("a positive finite number", lambda x: 0.0 < x < math.inf)
+NOT_NEGATIVE = number("a finite number, at least 0", lambda x: 0.0 <= x < math.inf)
+FINITE = number("a finite number")
+
+
+def instance_with(name: str, value: Any, attributes: Sequence[str], expected: str) -> None:
+    """Raise TypeError unless `value` is an object, not a class, that has the attributes."""
+    if isinstance(value, type):
+        raise TypeError(f"{name}: expected {expected}, found the class {value.__name__}; {value.__name__}() is one")
+    missing = [attribute for attribute in attributes if not hasattr(value, attribute)]
+    if missing:
+        raise TypeError(f"{name}: expected {expected}, found {value!r}, which has no `{missing[0]}`")
+
+
+def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """A copy of `value` as an array of floats.
+
+    Raises
+    ------
+    ValueError
+        If it holds anything but real numbers: a complex one would lose its imaginary part without a word.
+    """
+    try:
+        array = np.array(value)
+    except ValueError:
+        array = np.array(None)
+    if array.dtype.kind not in "fiu":
+        found = f"{array.dtype} numbers" if array.dtype.kind == "c" else f"{value!r}"
+        raise ValueError(f"{name}: expected real numbers, found {found}")
+    return array.astype(float)

@@ -1,0 +1,116 @@
+"""Iterations that add increments until one is small: one loop, and the ratios at which they are given up.
+
+An iteration whose increments shrink by a ratio q < 1 is, after an increment d, within q / (1 - q) |d| of its limit
+(Banach's fixed-point theorem); so the ratio says what the last increment is worth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from attrs import define, frozen
+
+from continuation.arrays import Array, largest
+
+HALVING = 0.5
+"""At this ratio the last increment is itself a bound of the error. Iterative refinement is stopped there (Higham,
+Accuracy and Stability of Numerical Algorithms, Section 12.1; LAPACK's xGERFS), and so are chord steps here."""
+
+RELIABLE = 0.3
+"""Where more hangs on it than one more factorisation: the sign of a determinant that is read off a factorisation from
+nearby, the coefficients of a series, the branch on which a path lands."""
+
+MONOTONE = 0.9
+"""Increments that merely fall, and do not crawl: Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems,
+Section 2.1) for an iteration whose limit is examined afterwards."""
+
+
+def magnitude(step: Array, x: Array) -> float:
+    """The largest component of an increment, whatever it is added to."""
+    return largest(step)
+
+
+@frozen
+class Contraction:
+    """When an iteration is given up.
+
+    Attributes
+    ----------
+    iterations : int
+        At most so many increments.
+    ratio : float
+        An increment larger than this, relative to the one before, is not added any more.
+    first : float or None
+        The same for the first two increments, which may be of unlike parts of the error; `ratio` unless given.
+    noise : float
+        Increments up to this size may be round-off: their ratios mean nothing, and are not looked at.
+    """
+
+    iterations: int
+    ratio: float = HALVING
+    first: float | None = None
+    noise: float = 0.0
+
+
+@define(eq=False)
+class Iteration:
+    """An iteration under way; what it has come to is to be read off it, also where an increment raised.
+
+    Attributes
+    ----------
+    x : ndarray
+        The iterate.
+    rule : Contraction
+    size : float
+        Of the last increment that was added.
+    ratio, worst : float
+        Of the last two increments, and the largest so far that was looked at.
+    count : int
+        Increments computed.
+    stalled : bool
+        Whether it was given up for its ratio.
+    """
+
+    x: Array
+    rule: Contraction
+    size: float = np.inf
+    ratio: float = 0.0
+    worst: float = 0.0
+    count: int = 0
+    stalled: bool = False
+
+    def run(
+        self, increment: Callable[[], Array], measure: Callable[[Array, Array], float], done: Callable[[float], bool]
+    ) -> bool:
+        """Add increments; whether it is done.
+
+        Parameters
+        ----------
+        increment : callable
+            The next increment at `x`.
+        measure : callable
+            Its size, of the increment and the iterate that it is added to.
+        done : callable
+            Whether an increment of that size, which has been added, was the last.
+        """
+        rule, before = self.rule, self.size
+        limit = rule.ratio if rule.first is None else rule.first
+        for k in range(rule.iterations):
+            step = increment()
+            size = measure(step, self.x)
+            self.count = k + 1
+            if k:
+                self.ratio = ratio = size / before if before > 0.0 else np.inf
+                if size > rule.noise:
+                    if ratio > self.worst:
+                        self.worst = ratio
+                    if ratio > limit:
+                        self.stalled = True
+                        return False
+                limit = rule.ratio
+            self.x = self.x + step
+            self.size = before = size
+            if done(size):
+                return True
+        return False

@@ -1,0 +1,166 @@
+"""Landing on the target: by a step of its own, or where an accepted arc crosses it or touches it."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import evolve, frozen
+from scipy.optimize import brentq
+
+from continuation.arrays import Array, generic_vector
+from continuation.contraction import HALVING, RELIABLE
+from continuation.correctors import BorderedNewton
+from continuation.evaluation.evaluator import EvaluationError
+from continuation.events import TargetValue, TurningPoint
+from continuation.events.locate import locate
+from continuation.metric import norm, share
+from continuation.point.arc import Arc, cut
+from continuation.point.linearization import NEAR_SINGULAR, Linearization
+from continuation.point.projection import PathSolver
+from continuation.predictors import Prediction
+from continuation.rejection import Rejected, Rejection
+from continuation.step.stepper import Attempt, Stepper
+
+RESOLUTION = 1e-9
+"""Of the step to the target, relative: Newton's method at the target's parameter value does the rest."""
+
+SINGULAR_SHARE = 1e-10
+"""Share of the parameter in the tangent below which an end counts as singular in the parameter."""
+
+ON_TARGET = 1e-13
+"""How near a fold must be to the target, relative to max(1, |target|), to lie on it: it is located to round-off, and
+so is its parameter value."""
+
+DISTANCE, ANGLE = 0.3, 1.0
+"""A landing that corrects the prediction by more than this fraction of the step, or turns the tangent by more than this
+(radians), has landed on another branch."""
+
+RETRY, LEAP = 0.3, 10.0
+"""An interior path creeps towards a target on its boundary. There a landing is tried from so many step lengths away,
+and again when so much of the way is left."""
+
+ROOM, EDGE = 0.9, 1e-6
+"""The least way to the boundary, in ways to the predicted end: a prediction may err by so much. The end itself may lie
+on the boundary, to within the other."""
+
+LANDING = BorderedNewton(max_iterations=8, max_contraction=RELIABLE)
+"""It must contract well: at a fixed parameter a far solution is as good as the path's own."""
+
+
+@frozen(eq=False)
+class Landing:
+    """Steps that end on the target."""
+
+    stepper: Stepper
+    target: float
+
+    @property
+    def lands_from_afar(self) -> bool:
+        """Whether landing is tried from many steps away, now and then: near a boundary steps become short."""
+        return self.stepper.solver.max_step is not None
+
+    def attempt(self, point: Linearization, prediction: Prediction, h: float, last_failed: float) -> Attempt | None:
+        """A step to the target, if the prediction reaches it.
+
+        Parameters
+        ----------
+        point : Linearization
+        prediction : Prediction
+        h : float
+            The step length that the controller wants.
+        last_failed : float
+            The parameter value at which landing was last tried in vain.
+        """
+        guess = self._guess(point, prediction, h, last_failed)
+        if guess is None:
+            return None
+        attempt = self._correct(point, *guess)
+        if isinstance(attempt, Rejected):
+            return attempt
+        arrival = attempt.point
+        if attempt.angle > ANGLE or share(arrival.weights, arrival.tangent) <= SINGULAR_SHARE:
+            return Rejected(attempt.h, Rejection.ELSEWHERE, contraction=attempt.correction.contraction)
+        return attempt
+
+    def _guess(
+        self, point: Linearization, prediction: Prediction, h: float, last_failed: float
+    ) -> tuple[Array, float] | None:
+        """The predicted point with the target's parameter value, and its step, if that is within reach."""
+        gap = self.target - point.lam
+        if gap * point.tangent[-1] <= 0.0:
+            return None
+        target, max_step = self.target, self.stepper.solver.max_step
+        if self.lands_from_afar:
+            if abs(gap) > RETRY * abs(last_failed - target):
+                return None
+            h *= LEAP
+        high = min(prediction.reach, h)
+        try:
+            if not (prediction(high)[-1] - target) * gap >= 0.0:
+                return None
+            high = float(brentq(lambda s: prediction(s)[-1] - target, 0.0, high, xtol=RESOLUTION * high))
+            guess = prediction(high).copy()
+        except EvaluationError:
+            return None
+        guess[-1] = target
+        if max_step is not None and max_step(point.u, guess - point.u) < ROOM:
+            return None
+        return guess, high
+
+    def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
+        """The parameter of `guess` is kept: the border is e_{N+1}."""
+        solver = self.stepper.solver
+        unit = np.zeros_like(guess)
+        unit[-1] = 1.0
+        correction = LANDING.correct(solver.evaluator, point, guess, unit, solver.tolerance)
+        rejected = correction.rejected(h)
+        if rejected is not None:
+            return rejected
+        border = point.border
+        along = float(np.dot(border, correction.u - point.u))
+        if along <= 0.0 or correction.distance > DISTANCE * h:
+            return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
+        # The target may lie on the boundary of the domain, so the end itself is exempt from the ratio test.
+        if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - EDGE:
+            return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
+        landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
+        return self.stepper.arrive(point, border, h, landed)
+
+
+def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:
+    """Where the arc first takes a parameter value that its ends enclose, or that it touches in a fold."""
+    before, after = arc.a.lam - value, arc.b.lam - value
+    if before * after < 0.0:
+        points = locate(solver, TargetValue(value), arc, before, after)
+        return points[0] if points else None
+    if before == 0.0 or arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
+        return None
+    # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
+    nearest = min((arc.segment.at(t)[-1] - value) * np.sign(before) for t in np.linspace(0.0, 1.0, 9))
+    if nearest > 0.5 * min(abs(before), abs(after)):
+        return None
+    fold = locate(solver, TurningPoint(), arc, float(arc.a.tangent[-1]), float(arc.b.tangent[-1]))
+    if not fold:
+        return None
+    gap = (fold[0].lam - value) * np.sign(before)
+    # A path that passes through the target on its way to a fold just behind it ends on the target.
+    if abs(gap) <= ON_TARGET * max(1.0, abs(value)):
+        return fold[0]
+    return crossing(solver, cut(arc, fold[0]), value) if gap < 0.0 else None
+
+
+def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
+    """Whether H' has full rank at a point that was corrected with the factorisation of `near`: if not, that is no end.
+
+    Where H_y vanishes at the target, as in lam F(y), anything solves H = 0 there. Refinement of a general right-hand
+    side contracts if H' is that of `near` but for a moderate change. If it does not, H' is factored at the point.
+    """
+    evaluator, r = solver.evaluator, generic_vector(end.u.size - 1)
+    z = near.solve(r)
+    size = norm(near.weights, z)
+    apply = evaluator.differential(end.u)
+    if apply is None or norm(near.weights, near.solve(r - apply(z))) <= HALVING * size:
+        return True
+    try:
+        return norm(near.weights, evaluator.factor(end.u, near.border).solve(r, 0.0)) <= NEAR_SINGULAR * size
+    except EvaluationError:
+        return False

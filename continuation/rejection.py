@@ -1,0 +1,56 @@
+"""Why an attempt at a step failed: one enum, which the controllers, the tracer and the path's verdict look at."""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+
+from attrs import frozen
+
+
+class Rejection(Enum):
+    """Why an attempt failed; the value says it in words."""
+
+    NO_VALUE = "the homotopy has no finite value at a point that was tried"
+    SINGULAR = "the bordered matrix has no factorisation at a point that was tried"
+    UNSOLVABLE = "a linear system could not be solved"
+    OVERFLOW = "the predicted point is not finite"
+    NOT_CONTRACTING = "the corrector does not contract"
+    NOT_CONVERGED = "the corrector did not converge"
+    BACKWARDS = "the step went backwards"
+    TOO_FAR = "the corrected point is farther from the prediction than that went"
+    OUTSIDE = "the corrected point lies outside the domain"
+    ELSEWHERE = "the end found is not where the path was heading"
+    CONTROLLER = "the controller refuses it, as it does the shortest step where the Jacobian is wrong"
+    ORIENTATION = "the determinant changes its sign on the arc, and no branch point is found there"
+    MIDPOINT = "the middle of the arc is not near the path"
+    ARC = "the inside of the arc could not be evaluated"
+
+    @property
+    def leaves_domain(self) -> bool:
+        """Whether it says that the homotopy cannot be evaluated ahead."""
+        return self in (Rejection.NO_VALUE, Rejection.OVERFLOW)
+
+
+@frozen
+class Rejected:
+    """An attempt that failed.
+
+    Attributes
+    ----------
+    h : float
+        Its step length.
+    reason : Rejection
+    detail : str
+        What is particular to this attempt.
+    contraction : float
+        Largest ratio of successive increments of the corrector; nan where it did not get so far.
+    """
+
+    h: float
+    reason: Rejection
+    detail: str = ""
+    contraction: float = math.nan
+
+    def __str__(self) -> str:
+        return f"{self.reason.value}: {self.detail}" if self.detail else self.reason.value

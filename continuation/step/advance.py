@@ -1,0 +1,208 @@
+"""One step: from a point of the path to the next that counts, or to the reason why there is none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from attrs import evolve, field, frozen
+
+from continuation.arrays import Array, largest
+from continuation.controllers import StepMeasures
+from continuation.ends.divergence import divergence
+from continuation.ends.endgame import SingularLimit
+from continuation.ends.landing import Landing
+from continuation.ends.target import Target
+from continuation.evaluation.evaluator import EvaluationError
+from continuation.metric import norm
+from continuation.path import LocatedEvent, Step
+from continuation.point.arc import angle_between, length_between
+from continuation.point.linearization import Linearization
+from continuation.point.projection import PathSolver
+from continuation.predictors import Knot, Prediction
+from continuation.rejection import Rejected, Rejection
+from continuation.step.acceptance import Accepted, Examiner
+from continuation.step.capabilities import interior_fraction
+from continuation.step.record import StepRecorder
+from continuation.step.settings import Settings
+from continuation.step.state import State
+from continuation.step.stepper import Arrival, Attempt, Stepper
+from continuation.step.verdict import Verdict, arc_ended, budget_spent, no_step_left, predictor_failed, singular_end
+
+SINGULAR_STRETCH = 1.19
+"""A step that ends in a branch point finds no factors there, and halves of it would only creep up to the place: the
+next one is so much longer than the controller asks for. Measured on 720 traces of lines over branch points at round
+values: without it 648 attempts are rejected and 9 traces stick; with 1.1 .. 1.5 it is 132 .. 144, and none does."""
+
+
+@frozen(eq=False)
+class Moved:
+    """A step that counts: the point after it, its record, the state, the events on it, and the verdict if it ends."""
+
+    point: Linearization
+    step: Step
+    state: State
+    events: list[LocatedEvent]
+    verdict: Verdict | None
+
+
+@frozen(eq=False)
+class Stopped:
+    """No step: the verdict, and the limit of the path where that was found."""
+
+    verdict: Verdict
+    end: Array | None = None
+
+
+@frozen(eq=False)
+class Advance:
+    """What a step is made with.
+
+    Attributes
+    ----------
+    solver : PathSolver
+    settings : Settings
+    recorder : StepRecorder
+    spent : callable
+        Which limit of the budget is reached, as text.
+    """
+
+    solver: PathSolver
+    settings: Settings
+    recorder: StepRecorder
+    spent: Callable[[], str]
+    stepper: Stepper = field(init=False)
+    target: Target = field(init=False)
+    landing: Landing | None = field(init=False)
+    examiner: Examiner = field(init=False)
+
+    @stepper.default
+    def _stepper(self) -> Stepper:
+        return Stepper(self.solver, self.settings.corrector, interior_fraction(self.settings.predictor))
+
+    @target.default
+    def _target(self) -> Target:
+        return Target(self.stepper, self.settings.target)
+
+    @landing.default
+    def _landing(self) -> Landing | None:
+        return None if self.settings.target is None else Landing(self.stepper, self.settings.target)
+
+    @examiner.default
+    def _examiner(self) -> Examiner:
+        return Examiner(self.solver, self.settings, self.target)
+
+    def advance(self, point: Linearization, state: State) -> Moved | Stopped:
+        """The next accepted point, or why there is none."""
+        settings, controller = self.settings, self.settings.controller
+        try:
+            prediction = settings.predictor.prepare(self.solver.evaluator, point, state.history)
+        except EvaluationError as error:
+            return Stopped(predictor_failed(error))
+        if settings.examine:
+            limit, state = self._limit_ahead(point, prediction, state)
+            if limit is not None:
+                return Stopped(singular_end(limit), limit.u)
+        h, memory = min(state.h, prediction.reach), state.controller
+        if math.isinf(h):
+            # A controller made for series with a predictor that has no range: begin with the size of the point.
+            h = 1.0 + norm(point.weights, point.u)
+        landing = self.landing and self.landing.attempt(point, prediction, h, state.last_failed_landing)
+        if landing is not None:
+            if isinstance(landing, Arrival):
+                found = self.examiner.examine(point, state, landing, prediction, landed=True)
+                if isinstance(found, Accepted):
+                    return self._moved(point, state, found, memory, state.h, ())
+            state = evolve(state, last_failed_landing=point.lam)
+        rejected: tuple[Rejected, ...] = ()
+        while True:
+            attempt = self.stepper.attempt(point, prediction, self.stepper.shortened(point, prediction, h))
+            decision = controller.update(memory, self._measures(attempt, prediction, len(rejected)))
+            memory, h = decision.state, decision.h
+            if isinstance(attempt, Rejected):
+                failed = attempt
+            elif not decision.accept:
+                failed = Rejected(attempt.h, Rejection.CONTROLLER, contraction=attempt.correction.contraction)
+            else:
+                examined = self.examiner.examine(point, state, attempt, prediction, landed=False)
+                if isinstance(examined, Accepted):
+                    return self._moved(point, state, examined, memory, h, rejected)
+                failed, h = examined, attempt.h / 2.0
+            rejected = (*rejected, failed)
+            self.solver.evaluator.counts.rejected += 1
+            if failed.reason is Rejection.SINGULAR:
+                h *= SINGULAR_STRETCH
+            verdict = budget_spent(self.spent(), rejected) or no_step_left(h, controller.bounds.minimum, rejected)
+            if verdict is not None:
+                return Stopped(verdict)
+
+    def _limit_ahead(
+        self, point: Linearization, prediction: Prediction, state: State
+    ) -> tuple[SingularLimit | None, State]:
+        """The end, where it is one that no step can reach; the state remembers what was tried."""
+        limit = self.target.fold_at_target(point, prediction)
+        if limit is None and self.target.endgame_is_due(point, state):
+            return self.target.endgame(point), evolve(state, last_failed_endgame=point.lam)
+        return limit, state
+
+    def _measures(self, attempt: Attempt, prediction: Prediction, rejections: int) -> StepMeasures:
+        order = getattr(prediction, "order", self.settings.predictor.order)
+        if isinstance(attempt, Rejected):
+            return StepMeasures(attempt.h, order, rejections, rejection=attempt.reason)
+        found = attempt.correction
+        return StepMeasures(
+            attempt.h, order, rejections, found.iterations, found.contraction, found.distance, attempt.angle
+        )
+
+    def _moved(
+        self,
+        point: Linearization,
+        state: State,
+        accepted: Accepted,
+        memory: tuple[float, ...],
+        h: float,
+        rejected: tuple[Rejected, ...],
+    ) -> Moved:
+        """Make the arrival the current point: metric, history, divergence, and the step's record."""
+        attempt, ending = accepted.attempt, accepted.ending
+        arrival, correction = ending.arc.b, attempt.correction
+        monitor, diverged = divergence(state.divergence_monitor, arrival.u, largest(state.origin.u[:-1]))
+        moved = arrival.with_weights(self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights))
+        angle = attempt.angle if ending.whole else angle_between(point, arrival)
+        step = self.recorder.record(
+            moved,
+            state.index + 1,
+            state.here.arclength + length_between(point, arrival, angle),
+            ending.kind,
+            residual_norm=correction.residual_norm if ending.whole else math.nan,
+            tangent=arrival.tangent,
+            step_length=attempt.h,
+            corrector_iterations=correction.iterations,
+            rejections=len(rejected),
+            rejected=rejected,
+            contraction=correction.contraction,
+            distance=correction.distance,
+            angle=angle,
+            segment=ending.arc.segment,
+            weights=point.weights,
+        )
+        knot = Knot(step.arclength, moved.u, moved.tangent)
+        # Every field by name: `evolve` would cost more than all the rest of this.
+        state = State(
+            history=(*state.history, knot)[-max(self.settings.predictor.memory, 1) :],
+            weights=moved.weights,
+            anchor=(moved.anchor.u, moved.anchor.border),
+            orientation=accepted.orientation,
+            h=h,
+            controller=memory,
+            divergence_monitor=monitor,
+            monitors=accepted.monitors,
+            occurrences=accepted.occurrences,
+            origin=state.origin,
+            origin_weights=state.origin_weights,
+            last_failed_landing=state.last_failed_landing,
+            last_failed_endgame=state.last_failed_endgame,
+            index=step.index,
+        )
+        event = accepted.events[-1].name if accepted.events else ""
+        return Moved(moved, step, state, accepted.events, arc_ended(ending, diverged, event))

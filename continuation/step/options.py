@@ -1,0 +1,222 @@
+"""The options of a path: the one list of their names, types, meanings and defaults, for every function that takes them.
+
+`PartOptions` say how a path is traced, `Options` add where it goes and how far. `trace`, `Tracer`, `resume`,
+`trace_many`, charts and the LCP solver take their `**options` from here.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from difflib import get_close_matches
+from typing import Any, NamedTuple, TypedDict, TypeVar
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.budget import Budget
+from continuation.checks import check_sign, complain, instance_with, is_number
+from continuation.controllers import Controller
+from continuation.correctors import Corrector
+from continuation.events import Event
+from continuation.metric import Metric
+from continuation.predictors import Predictor
+from continuation.presets import DEFAULT, Preset
+from continuation.step.start import point_and_direction
+from continuation.tolerance import Tolerance, as_tolerance
+
+
+class PartOptions(TypedDict, total=False):
+    """How a path is traced: its parts, and what is looked for on it.
+
+    Parameters
+    ----------
+    preset : Preset, default DEFAULT
+        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another: a predictor, a corrector and a controller.
+    predictor : Predictor, default None
+        In place of the preset's, like the next two.
+    corrector : Corrector, default None
+    controller : Controller, default None
+    metric : Metric, default None
+        In which arclength is measured. By default the homotopy's own, else `Automatic`.
+    events : sequence of Event, default ()
+        Added to the homotopy's own; turning points and branch points are watched for unasked.
+    check_jacobian : bool, default False
+        Compare the Jacobian with the residual at the start; a wrong one is a ValueError that says where.
+    examine : bool, default True
+        Watch for turning points and branch points, and look for a singular end by the endgame. Without it the path is
+        only followed, at two thirds of the cost: a step over a branch point is refused, and an end must be regular, or
+        be found by the homotopy's own `finish`. For searches that trace many paths for their ends.
+    """
+
+    preset: Preset
+    predictor: Predictor | None
+    corrector: Corrector | None
+    controller: Controller | None
+    metric: Metric | None
+    events: Sequence[Event]
+    check_jacobian: bool
+    examine: bool
+
+
+class Options(PartOptions, total=False):
+    """All options of a path.
+
+    Parameters
+    ----------
+    tolerance : float or Tolerance, default 1e-8
+        When a correction is small enough; a number is both the absolute and the relative part.
+    budget : Budget, default Budget()
+        Limits on steps, factorisations and seconds; 10,000 steps if nothing is said.
+    target : float or None, default "homotopy"
+        The parameter value to end at; None for a curve followed for its own sake. By default the homotopy's own
+        target, and 0 where it has none.
+    direction : int, default 0
+        Sign of the parameter's first movement; 0 means towards the target.
+    start : tuple of (u, v), default None
+        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector, and the direction to leave in.
+    """
+
+    tolerance: float | Tolerance
+    budget: Budget | None
+    target: float | str | None
+    direction: int
+    start: tuple[Array, Array] | None
+
+
+DEFAULTS: Options = {
+    "preset": DEFAULT,
+    "predictor": None,
+    "corrector": None,
+    "controller": None,
+    "metric": None,
+    "events": (),
+    "check_jacobian": False,
+    "examine": True,
+    "tolerance": 1e-8,
+    "budget": Budget(),
+    "target": "homotopy",
+    "direction": 0,
+    "start": None,
+}
+"""What is taken where nothing is said."""
+
+OPTIONS = tuple(Options.__annotations__)
+PART_OPTIONS = tuple(PartOptions.__annotations__)
+"""Their names."""
+
+
+class Part(NamedTuple):
+    """What an argument must offer to be taken for one."""
+
+    attributes: tuple[str, ...]
+    kind: str
+
+
+PARTS = {
+    "predictor": Part(("prepare", "memory", "order"), "a predictor"),
+    "corrector": Part(("correct",), "a corrector"),
+    "controller": Part(("init", "update", "bounds"), "a step controller"),
+    "metric": Part(("weights",), "a metric"),
+}
+
+OBSERVER = Part(("step", "event", "end"), "an observer")
+EVENT = Part(("monitor", "name", "kind", "terminal", "direction"), "events (wrap a function in Monitor(function))")
+
+
+def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: Mapping[str, str] | None = None) -> None:
+    """Refuse options that do not exist, or that are not the caller's to set.
+
+    Parameters
+    ----------
+    names : iterable of str
+        The options given.
+    known : collection of str
+        The options that there are.
+    owned : mapping of str to str, optional
+        Options that there are, but not here, and why not.
+
+    Raises
+    ------
+    TypeError
+        Naming the option, and the one that it is nearest to.
+    """
+    for name in names:
+        if owned and name in owned:
+            raise TypeError(f"{name}: expected no such option here, {owned[name]}")
+        if name not in known:
+            near = get_close_matches(name, known, n=1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise TypeError(f"{name}: expected one of the options {', '.join(sorted(known))}{hint}")
+
+
+def checked(options: Mapping[str, Any]) -> Options:
+    """The options with the defaults of those that are not given.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the option, what was expected and what was found.
+    """
+    check_names(options)
+    # The names are those of the TypedDict: that was checked a line above.
+    asked: Options = {**DEFAULTS, **options}  # type: ignore[typeddict-item]
+    if not isinstance(asked["preset"], Preset):
+        raise complain(TypeError, "preset", "FAST, DEFAULT, CONSERVATIVE, SERIES or another Preset", asked["preset"])
+    for name, part in PARTS.items():
+        if options.get(name) is not None:
+            instance_with(name, options[name], *part)
+    each("events", asked["events"], EVENT)
+    for name in ("check_jacobian", "examine"):
+        if not isinstance(value := options.get(name, False), bool | np.bool_):
+            raise complain(TypeError, name, "True or False", value)
+    as_tolerance(asked["tolerance"])
+    if not isinstance(asked["budget"], Budget | None):
+        raise complain(TypeError, "budget", "a Budget", asked["budget"])
+    if not names_homotopy(asked["target"]):
+        checked_target(asked["target"])
+    check_sign("direction", asked["direction"])
+    if asked["start"] is not None:
+        point_and_direction(asked["start"])
+    return asked
+
+
+def names_homotopy(target: Any) -> bool:
+    """Whether the target asked for is the homotopy's own."""
+    return isinstance(target, str) and target == "homotopy"
+
+
+def checked_target(target: Any) -> float | None:
+    """A target as a float or None; TypeError or ValueError for anything else."""
+    if target is None:
+        return None
+    if not is_number(target) or not math.isfinite(target):
+        error = ValueError if is_number(target) or isinstance(target, str) else TypeError
+        raise complain(error, "target", "a finite number or None", target)
+    return float(target)
+
+
+def each(name: str, values: Any, part: Part) -> None:
+    """Raise TypeError unless `values` is a sequence of such parts."""
+    if not isinstance(values, Sequence):
+        raise complain(TypeError, name, f"a list of {name}", values)
+    for value in values:
+        instance_with(name, value, *part)
+
+
+Documented = TypeVar("Documented", bound=Callable[..., Any])
+
+
+def documented(function: Documented) -> Documented:
+    """Put the list of options where the docstring says ``{options}``, or ``{parts}`` for the `PartOptions` alone."""
+    text = inspect.getdoc(function)
+    if text is not None:
+        parts, others = (_parameters(options) for options in (PartOptions, Options))
+        function.__doc__ = text.replace("{options}", parts + others).replace("{parts}", parts).replace("\n\n\n", "\n\n")
+    return function
+
+
+def _parameters(options: Any) -> str:
+    """The entries of a TypedDict's list of parameters."""
+    return (inspect.getdoc(options) or "").partition("----------\n")[2] + "\n"

@@ -1,0 +1,71 @@
+"""The record of a step, `continuation.path.Step`: made here and nowhere else during a trace."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from attrs import evolve, frozen
+
+from continuation.arrays import Array
+from continuation.evaluation.evaluator import Evaluator
+from continuation.metric import norm, share
+from continuation.path import Step
+from continuation.point.linearization import Linearization
+from continuation.status import Kind
+from continuation.step.state import State
+
+Observe = Callable[[Array, float], Mapping[str, float]]
+
+
+@frozen(eq=False)
+class StepRecorder:
+    """What every record is made with.
+
+    Attributes
+    ----------
+    evaluator : Evaluator
+    observe : callable or None
+        The homotopy's extra scalars at a point.
+    """
+
+    evaluator: Evaluator
+    observe: Observe | None
+
+    def record(
+        self, point: Linearization, index: int, arclength: float, kind: int, residual_norm: float = math.nan, **how: Any
+    ) -> Step:
+        """The record of a point.
+
+        Parameters
+        ----------
+        point : Linearization
+        index : int
+        arclength : float
+        kind : int
+            One of `Kind`.
+        residual_norm : float
+            Evaluated here where it is not known.
+        **how
+            How the point was reached: the other fields of `Step`.
+        """
+        return Step(
+            index=index,
+            u=point.u,
+            tangent=how.pop("tangent", point.tangent),
+            arclength=arclength,
+            residual_norm=self.evaluator.residual_norm(point.u) if math.isnan(residual_norm) else residual_norm,
+            orientation=point.orientation,
+            kind=kind,
+            share=share(point.weights, point.tangent),
+            observed={} if self.observe is None else self.observe(point.y, point.lam),
+            **how,
+        )
+
+    def end(self, point: Linearization, state: State, u: Array) -> Step:
+        """The record of an end that was found otherwise than by a step, from the last point on the path."""
+        chord = u - point.u
+        length = norm(point.weights, chord)
+        end = evolve(point, u=u, tangent=chord / length if length > 0.0 else point.tangent)
+        return self.record(end, state.index + 1, state.here.arclength + length, Kind.TARGET, step_length=length)

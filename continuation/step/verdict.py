@@ -1,0 +1,112 @@
+"""Why a path ends: every status of a trace is given here, with its sentence and what is particular to the path.
+
+The functions stand in the order in which a trace asks: at the start, before a step, at a failed attempt, after a step.
+Each gives a `Verdict`, or None where the path goes on.
+"""
+
+from __future__ import annotations
+
+from attrs import frozen
+
+from continuation.ends.endgame import SingularLimit
+from continuation.ends.target import ArcEnd, EndsAt
+from continuation.evaluation.evaluator import EvaluationError
+from continuation.rejection import Rejected
+from continuation.status import Status
+from continuation.step.start import SingularStartError, StartError
+
+
+@frozen(eq=False)
+class Verdict:
+    """How a path ended.
+
+    Attributes
+    ----------
+    status : Status
+    particulars : str
+        What is said of this path beyond the status' sentence.
+    limit : SingularLimit or None
+        Where the end is singular.
+    rejected : tuple of Rejected
+        The failed attempts at the last point.
+    """
+
+    status: Status
+    particulars: str = ""
+    limit: SingularLimit | None = None
+    rejected: tuple[Rejected, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.status} {self.particulars}" if self.particulars else str(self.status)
+
+
+INTERRUPTED = Verdict(Status.INTERRUPTED)
+"""Ctrl-C, an exception of the plug-in's own, or a consumer that stopped iterating."""
+
+
+
+def refused_start(error: StartError) -> Verdict:
+    """The path cannot begin."""
+    singular = isinstance(error, SingularStartError)
+    return Verdict(Status.SINGULAR_START if singular else Status.START_NOT_ON_PATH, str(error))
+
+
+def start_on_target(lam: float, target: float | None) -> Verdict | None:
+    """The path ends where it begins."""
+    return Verdict(Status.REACHED_TARGET, "The start lies on it.") if lam == target else None
+
+
+def budget_spent(limit: str, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
+    """A limit of the budget is reached, `limit` says which; asked before a step and between attempts."""
+    return Verdict(Status.BUDGET_EXHAUSTED, f"Reached: {limit}.", rejected=rejected) if limit else None
+
+
+def predictor_failed(error: EvaluationError) -> Verdict:
+    """The predictor has no curve to offer."""
+    return Verdict(Status.PREDICTOR_FAILED, f"It says: {error}.")
+
+
+def singular_end(limit: SingularLimit) -> Verdict:
+    """A limit that no step can reach was found on the target."""
+    w = limit.winding_number
+    power = f"|lam - target|^(1/{w})" if w > 1 else "lam - target"
+    found = f"There it is a power series in {power}; error of the limit about {limit.error:.1g}."
+    return Verdict(Status.REACHED_TARGET, found, limit)
+
+
+def finished(residual_norm: float) -> Verdict:
+    """The homotopy's own finish found the end: certified by the problem; what H is there is said."""
+    found = f"The homotopy's own finish found the end; the residual of H there is {residual_norm:.1e}."
+    return Verdict(Status.REACHED_TARGET, found)
+
+
+def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Verdict | None:
+    """The step length to try next is below its floor: the last attempt's reason decides which end that is."""
+    if h >= minimum:
+        return None
+    last = rejected[-1]
+    status = Status.LEFT_DOMAIN if last.reason.leaves_domain else Status.STEP_TOO_SMALL
+    return Verdict(status, f"Last reason: {last}.", rejected=rejected)
+
+
+def arc_ended(end: ArcEnd, diverged: bool, event: str) -> Verdict | None:
+    """An accepted arc ends the path: by where it ends, else because the path runs off to infinity.
+
+    Parameters
+    ----------
+    end : ArcEnd
+    diverged : bool
+    event : str
+        Name of the last event on the arc, if there is one.
+    """
+    if end.limit is not None:
+        return singular_end(end.limit)
+    if end.at is EndsAt.TARGET:
+        return Verdict(Status.REACHED_TARGET)
+    if end.at is EndsAt.EVENT:
+        return Verdict(Status.STOPPED_AT_EVENT, f"It is: {event}.")
+    if end.at is EndsAt.START:
+        return Verdict(Status.CLOSED)
+    if end.at is EndsAt.START_PARAMETER:
+        return Verdict(Status.TURNED_BACK)
+    return Verdict(Status.DIVERGED) if diverged else None

@@ -1,0 +1,97 @@
+"""What a homotopy's own `max_step` and `finish` may return, and buffers that a homotopy may reuse."""
+
+import numpy as np
+import pytest
+
+from continuation import CONSERVATIVE, DEFAULT, FAST, Budget, Status, check_jacobian, trace
+from continuation.predictors import Hermite, Polynomial, Taylor
+from continuation.step.capabilities import interior_fraction, max_step_of
+from problems.bifurcation import FreudensteinRoth
+
+
+class Straight:
+    """y = lam, from 0 to 1, with capabilities given as arguments."""
+
+    target = 1.0
+
+    def __init__(self, **capabilities):
+        self.__dict__.update(capabilities)
+
+    def start(self):
+        return np.zeros(1), 0.0
+
+    def residual(self, y, lam):
+        return y - lam
+
+
+@pytest.mark.parametrize("value", [np.nan, None, "a", np.ones(2)])
+def test_a_max_step_that_is_no_number_is_named(value):
+    """NaN once shortened the step for ever, past every budget."""
+    homotopy = Straight(max_step=lambda u, v: value)
+    with pytest.raises((TypeError, ValueError), match="max_step: expected a number, at least 0, or inf, found"):
+        trace(homotopy, budget=Budget(steps=20))
+
+
+def test_a_max_step_of_zero_ends_the_path():
+    assert trace(Straight(max_step=lambda u, v: 0.0)).status is Status.STEP_TOO_SMALL
+
+
+def test_a_direction_that_overflows_has_no_room():
+    room = max_step_of(Straight(max_step=lambda u, v: float(v @ u) * np.nan))
+    assert room(np.ones(2), np.array([np.inf, 1.0])) == 0.0
+
+
+@pytest.mark.parametrize("end", [np.array([np.nan]), np.ones(3), "a", 1j * np.ones(1)])
+def test_a_finish_that_gives_no_point_is_named(end):
+    with pytest.raises(ValueError, match="finish: expected"):
+        trace(Straight(finish=lambda y, lam: end))
+
+
+def test_a_finish_whose_end_does_not_solve_the_equations_is_believed_with_its_residual_said():
+    """A problem's certificate may be about some unknowns alone, so that H need not vanish at its end."""
+    path = trace(Straight(finish=lambda y, lam: y + 7.0))
+    assert path.status is Status.REACHED_TARGET
+    assert path.message.endswith(f"the residual of H there is {path.endpoint.residual_norm:.1e}.")
+    assert path.endpoint.residual_norm > 5.0
+
+
+def test_a_predictor_says_how_near_to_the_boundary_it_may_go():
+    assert interior_fraction(Taylor()) == 0.9999
+    # However high the degree of a polynomial, it only continues what is past.
+    assert interior_fraction(Polynomial(8)) == interior_fraction(Hermite()) == 0.9
+
+
+class OneBuffer:
+    """A homotopy that returns the same arrays every time."""
+
+    def __init__(self, homotopy, jacobian):
+        self.plain, self.target = homotopy, homotopy.target
+        self.kept = [np.empty(2), np.empty((2, 2)), np.empty(2)]
+        if jacobian:
+            self.jacobian = self._jacobian
+
+    def start(self):
+        return self.plain.start()
+
+    def residual(self, y, lam):
+        self.kept[0][:] = self.plain.residual(y, lam)
+        return self.kept[0]
+
+    def _jacobian(self, y, lam):
+        self.kept[1][...], self.kept[2][...] = self.plain.jacobian(y, lam)
+        return self.kept[1], self.kept[2]
+
+
+@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+def test_a_homotopy_may_reuse_its_arrays(preset):
+    path = trace(OneBuffer(FreudensteinRoth(), jacobian=True), preset=preset)
+    np.testing.assert_array_equal(path.u, trace(FreudensteinRoth(), preset=preset).u)
+
+
+def test_a_residual_that_reuses_its_array_has_derivatives():
+    """By differences: jets and complex numbers do not fit into an array of floats."""
+    homotopy = OneBuffer(FreudensteinRoth(), jacobian=False)
+    path = trace(homotopy)
+    assert path.status is Status.REACHED_TARGET
+    assert len(path.turning_points) == 2
+    assert check_jacobian(OneBuffer(FreudensteinRoth(), jacobian=True)).correct

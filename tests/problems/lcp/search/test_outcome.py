@@ -1,0 +1,23 @@
+"""Outcomes: which one is a success, and a solution in one line."""
+
+import numpy as np
+
+from problems import lcp
+
+
+def test_an_outcome_is_true_exactly_where_a_solution_was_found():
+    assert [bool(outcome) for outcome in lcp.Outcome] == [outcome is lcp.Outcome.SOLVED for outcome in lcp.Outcome]
+
+
+def test_a_solution_in_one_line():
+    solution = lcp.solve(lcp.LCP(np.eye(2), -np.ones(2)))
+    assert solution.success
+    assert solution.solved
+    assert repr(solution) == "<Solution SOLVED: n = 2, residual 0.0e+00, 0 paths>"
+
+
+def test_a_failure_is_not_a_success():
+    solution = lcp.solve(lcp.LCP([[-1.0]], [-1.0]))
+    assert solution.outcome is lcp.Outcome.UNSOLVABLE
+    assert not solution.success
+    assert not solution.outcome
