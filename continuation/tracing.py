@@ -30,7 +30,7 @@ def trace(
     observers : tuple of Observer
     **options
         As for `continuation.Tracer`: predictor, corrector, controller, preset, metric, events, tolerance, budget,
-        target, direction, start, check_jacobian, examine.
+        target, direction, start, finish, check_jacobian, examine.
 
     Returns
     -------

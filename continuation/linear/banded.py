@@ -107,7 +107,15 @@ def factor_banded(matrix: Banded, column: Array, row: Array) -> BorderedSystem:
     def whole() -> BorderedSystem:
         return factor_whole(matrix.tosparse(), column, row)
 
-    room = np.zeros((2 * lower + upper + 1, n), order="F")
+    factor = factor_band(matrix)
+    return whole() if factor is None else eliminate(bordered, factor, whole)
+
+
+def factor_band(matrix: Banded) -> BandedLU | None:
+    """LU factors of a banded matrix by itself; None where a pivot is exactly zero."""
+    lower, upper = matrix.lower, matrix.upper
+    # Row exchanges fill as many diagonals more as there are below the main one.
+    room = np.zeros((2 * lower + upper + 1, matrix.shape[0]), order="F")
     room[lower:] = matrix.ab
     lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
-    return whole() if info > 0 else eliminate(bordered, BandedLU(lu, pivots, lower, upper), whole)
+    return BandedLU(lu, pivots, lower, upper) if info == 0 else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -83,6 +83,8 @@ class Tracer:
     state : State, optional
         Resume from here: the steps that follow are bit for bit those of an uninterrupted trace.
 
+    finish : callable, optional
+        ``(y, lam)`` to the end y or None, tried after each step in place of the homotopy's own; no archive holds it.
     check_jacobian : bool
         Compare the Jacobian with the residual at the start, and refuse a wrong one with a ValueError that says where.
     examine : bool
@@ -117,6 +119,7 @@ class Tracer:
         observers: Sequence[Observer] = (),
         start: tuple[Array, Array] | None = None,
         state: State | None = None,
+        finish: Callable[[Array, float], Array | None] | None = None,
         check_jacobian: bool = False,
         examine: bool = True,
     ) -> None:
@@ -146,7 +149,10 @@ class Tracer:
         self._stepper = stepper
         self._ends = Target(stepper, self.settings.target)
         self._examiner = Examiner(self._evaluator, self.settings, self._ends)
-        self._finish = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
+        if finish is not None and not callable(finish):
+            raise TypeError(f"finish: expected a function of (y, lam), found {finish!r}")
+        own = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
+        self._finish = finish if finish is not None else own
         self._observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._start = start
         self._check = check_jacobian
@@ -356,7 +362,7 @@ class Tracer:
     # -- after acceptance -------------------------------------------------------------------------------------
 
     def _move(self, point: Linearization, accepted: Accepted) -> Linearization | None:
-        """Make the arrival the current point: metric, history, divergence, and the homotopy's own finish."""
+        """Make the arrival the current point: metric, history, divergence, and the finish."""
         state, trial, ending = accepted.state, accepted.trial, accepted.ending
         arrival, correction = ending.arc.b, trial.correction
         assert correction is not None
@@ -408,7 +414,7 @@ class Tracer:
         y = self._finish(moved.y, moved.lam) if self._finish is not None else None
         if y is not None:
             lam = self.settings.target if self.settings.target is not None else moved.lam
-            message = f"{Status.REACHED_TARGET} The homotopy's own finish found the end."
+            message = f"{Status.REACHED_TARGET} The finish found the end."
             self._append_end(moved, np.append(y, lam), message)
             return None
         return moved

@@ -24,10 +24,10 @@ CONVERGED = 1e-9
 RESOLVED = 1e-6
 """A component smaller than this, of the largest one in the units of the point, need not have relative accuracy."""
 
-ROUND_OFF = 1e-13
+FIRM_CORRECTION = 1e-13
 """Relative size of the tangent's correction below which the core's solutions are taken as they are."""
 
-SPREAD = 1e3
+FIRM_SPREAD = 1e3
 """Ratio of the largest to the smallest factor of the pairs up to which the tangent's correction speaks for others."""
 
 UNRELIABLE = 1e-3
@@ -191,7 +191,7 @@ class CoreSystem:
         return TangentSolve(self.quick, solution[0], self._firm(solution[1]))
 
     def _firm(self, moved: float) -> bool:
-        return moved <= ROUND_OFF and self.full.spread <= SPREAD
+        return moved <= FIRM_CORRECTION and self.full.spread <= FIRM_SPREAD
 
     def _robustly(self, r: Array, rho: float) -> tuple[Array, float]:
         """The solution by the robust core, corrected once whatever that does, and the size of the correction."""
@@ -232,3 +232,30 @@ class CoreSystem:
             return 0.0, 0.0
         relative = np.abs(correction) / (np.abs(z) + (RESOLVED * size) * units)
         return float(relative.max()), float(np.abs(correction / units).max()) / size
+
+
+def core_system(
+    full: Full, quick: BorderedSystem | None, make_robust: Callable[[], BorderedSystem], refine: bool
+) -> BorderedSystem:
+    """The system to solve with: the quick core alone, or both, corrected.
+
+    Parameters
+    ----------
+    full : Full
+    quick : BorderedSystem or None
+    make_robust : callable
+        Called only where the quick core fails.
+    refine : bool
+        Whether solutions are corrected in full; without it a quick core is taken as it is.
+
+    Raises
+    ------
+    SingularError
+        If there is no quick core and the robust one has no factorisation: said here, not at the first solve.
+    """
+    if quick is not None and not refine:
+        return quick
+    system = CoreSystem(full, quick, make_robust)
+    if quick is None:
+        _ = system.robust
+    return system

@@ -1,10 +1,13 @@
 """`solve`: its outcomes are true, its answers exact, its parts switchable, its door firm."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
 import continuation
+from continuation.archive import open_archive
 from continuation.predictors import Taylor
 from problems import lcp
 from problems.lcp.data.matrix_facts import matrix_facts
@@ -85,7 +88,7 @@ def test_a_feasible_problem_without_solution_is_not_called_unsolvable():
     assert solution.outcome in (Outcome.STATIONARY, Outcome.NOT_FOUND)
 
 
-@pytest.mark.parametrize("name", ["auto", "kkt", "wang", "yu", "xu"])
+@pytest.mark.parametrize("name", ["auto", "kkt", "wang", "yu", "xu", "kmm"])
 def test_every_homotopy_by_name(name):
     solution = lcp.solve(PD, name)
     expected = np.array([0.25, 0.0, 1.0]) - [0.125, 0.0, 0.0]
@@ -227,12 +230,22 @@ def test_the_look_proves_what_it_says():
     assert (seen.symmetric, seen.semidefinite, seen.z_matrix, seen.nonnegative) == (False, False, False, True)
     seen = matrix_facts(lcp.Structure(lcp.LCP([[-1.0]], [1.0])))
     assert seen.negative_diagonal
-    assert seen.names[0] == "kkt"
 
 
-def test_outcomes_read_as_sentences():
-    for outcome in Outcome:
-        assert str(outcome).endswith(".")
+def test_a_message_begins_with_what_the_outcome_means():
+    sentences = {str(outcome) for outcome in Outcome}
+    assert len(sentences) == len(Outcome)
+    unsolvable = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
+    stopped = {"finish": False, "budget": continuation.Budget(steps=1)}
+    for problem, options, outcome in (
+        (PD, {}, Outcome.SOLVED),
+        (COUNTEREXAMPLES[0].problem, {"homotopy": "kkt"}, Outcome.STATIONARY),
+        (unsolvable, {}, Outcome.UNSOLVABLE),
+        (PD, stopped, Outcome.NOT_FOUND),
+    ):
+        solution = lcp.solve(problem, **options)
+        assert solution.outcome is outcome
+        assert solution.message.startswith(f"{outcome} ")
 
 
 @pytest.mark.parametrize(
@@ -245,7 +258,8 @@ def test_outcomes_read_as_sentences():
         (lambda: lcp.solve(PD, "kkt", colour="red"), TypeError, "colour"),
         (lambda: lcp.solve(PD, tolerance=-1.0), ValueError, "tolerance"),
         (lambda: lcp.solve(PD, restarts=-1), ValueError, "restarts"),
-        (lambda: lcp.solve(PD, archive="x.h5", executor=object()), ValueError, "executor"),
+        (lambda: lcp.solve(PD, executor=object()), TypeError, "executor"),
+        (lambda: lcp.solve(PD, "kkt", target=0.5), TypeError, "target"),
     ],
 )
 def test_bad_input_is_refused_by_name(call, error, name):
@@ -254,12 +268,69 @@ def test_bad_input_is_refused_by_name(call, error, name):
 
 
 def test_the_archive_holds_the_path(tmp_path):
-    from continuation.archive import open_archive
-
     file = tmp_path / "run.h5"
     solution = lcp.solve(PD, "kkt", archive=file, progress=False)
     with open_archive(file) as archive:
         np.testing.assert_array_equal(archive[0].y, solution.path.y)
+        assert archive.attributes["homotopy"] == "problems.lcp.homotopies.kkt:KKTHomotopy"
+
+
+BIMATRIX = lcp.LCP([[0, 0, 1, 2], [0, 0, 3, 1], [1, 3, 0, 0], [2, 1, 0, 0]], [-1.0, -1.0, -1.0, -1.0])
+
+
+@pytest.mark.parametrize("problem", [PD, BIMATRIX, COUNTEREXAMPLES[0].problem], ids=["no path", "a path", "restarts"])
+@pytest.mark.parametrize("workers", [0, 1])
+def test_an_archive_changes_nothing_of_what_is_done(problem, workers, tmp_path):
+    def solved(file):
+        if not workers:
+            return lcp.solve(problem, restarts=3, archive=file)
+        with ThreadPoolExecutor(workers) as executor:
+            return lcp.solve(problem, restarts=3, archive=file, executor=executor)
+
+    without, with_archive = solved(None), solved(tmp_path / "run.h5")
+    assert with_archive.message == without.message
+    assert with_archive.counts == without.counts
+    np.testing.assert_array_equal(with_archive.x, without.x)
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive) == max(len(without.paths), 1)
+        ends = [path.endpoint.u for path in archive]
+    for end, path in zip(ends, without.paths):
+        np.testing.assert_array_equal(end[np.isfinite(end)], path.endpoint.u)
+
+
+def test_an_archive_without_a_path_holds_the_solution_as_the_end_of_the_kkt_path(tmp_path):
+    file = tmp_path / "run.h5"
+    solution = lcp.solve(PD, archive=file)
+    assert not solution.paths
+    with open_archive(file) as archive:
+        path = archive.path(0)
+        homotopy = lcp.KKTHomotopy(PD)
+        assert archive.attributes["homotopy"] == "problems.lcp.homotopies.kkt:KKTHomotopy"
+    assert path.status is continuation.Status.REACHED_TARGET
+    assert solution.message in path.message
+    assert len(path) == 1
+    np.testing.assert_array_equal(path.endpoint.y, np.concatenate([solution.x, solution.w, solution.x]))
+    assert path.endpoint.lam == 0.0
+    assert np.abs(homotopy.residual(path.endpoint.y, 0.0)).max() <= 1e-15
+
+
+def test_an_archive_without_a_point_holds_the_reason(tmp_path):
+    file = tmp_path / "run.h5"
+    solution = lcp.solve(lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0]), archive=file)
+    assert solution.outcome is Outcome.UNSOLVABLE
+    with open_archive(file) as archive:
+        assert len(archive) == 1
+        assert archive.paths["n_points"][0] == 0
+        assert solution.message[:60] in archive.path(0).message
+
+
+def test_a_path_is_traced_where_one_is_asked_for():
+    for problem in (PD, lcp.LCP(np.eye(2), [1.0, 2.0]), lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])):
+        plain, wanted = lcp.solve(problem), lcp.solve(problem, path=True)
+        assert not plain.paths
+        assert wanted.paths
+        assert wanted.outcome is plain.outcome
+        assert len(wanted.path) > 1
 
 
 SMOKE = 500
