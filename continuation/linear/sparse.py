@@ -133,7 +133,14 @@ def _factor(matrix: Matrix) -> SuperLU | None:
 
 
 def factor_superlu(matrix: Matrix, **how: Any) -> SuperLU | None:
-    """Factors of a sparse (CSC) matrix by itself, with SuperLU's options; None where a pivot is exactly zero."""
+    """Factors of a sparse (CSC) matrix by itself, with SuperLU's options; None where a pivot is exactly zero.
+
+    Parameters
+    ----------
+    matrix : csc_array of shape (N, N)
+    **how
+        As for `scipy.sparse.linalg.splu`.
+    """
     try:
         return SuperLU(splu(matrix, **how))
     except RuntimeError as error:

@@ -122,6 +122,12 @@ def _factor(symmetric: Symmetric) -> Factored | None:
 
 
 def factor_cholesky(matrix: Array) -> Cholesky | None:
-    """The Cholesky factor of a symmetric matrix by itself; None where a pivot is not positive."""
+    """The Cholesky factor of a symmetric matrix by itself; None where a pivot is not positive.
+
+    Parameters
+    ----------
+    matrix : Array of shape (N, N)
+        Only the lower triangle is read.
+    """
     lower, info = dpotrf(matrix, lower=1, clean=0)
     return Cholesky(lower) if info == 0 else None

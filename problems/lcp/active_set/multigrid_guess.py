@@ -24,14 +24,20 @@ COARSEST = Policy(steps=SMALL - 1)
 """There: for an M-matrix each step from x = 0 enlarges the active set until it is right, so this is enough."""
 
 SLOW = 0.8
-"""Coarsening that keeps more than this share of the unknowns is given up."""
+"""Coarsening that keeps more than this share of the unknowns, where a grid keeps half of them, is given up."""
 
 ELSEWHERE = Policy(steps=11)
 """On every other level: interpolation puts the boundary within a few lines of its place."""
 
 
 def suitable(structure: Structure) -> bool:
-    """Whether A is large and sparse, with a positive diagonal and nearly all other entries nonpositive."""
+    """Whether A is large and sparse, with a positive diagonal and nearly all other entries nonpositive.
+
+    Parameters
+    ----------
+    structure : Structure
+        Of the problem.
+    """
     problem = structure.problem
     if not problem.sparse or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
         return False
@@ -39,7 +45,13 @@ def suitable(structure: Structure) -> bool:
 
 
 def guess(problem: LCP) -> Array:
-    """An approximate solution, shape (n,), from the coarser problems; its support is the guess of the active set."""
+    """An approximate solution, shape (n,), from the coarser problems; its support is the guess of the active set.
+
+    Parameters
+    ----------
+    problem : LCP
+        One that is `suitable`.
+    """
     if problem.n <= SMALL:
         return _corrected(problem, problem.q < 0.0, COARSEST)
     P = _interpolation(problem.A)

@@ -16,16 +16,19 @@ from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError
 
 REFINEMENTS = 4
-"""Corrections in the full system that a solve may take; one is the rule."""
+"""Corrections in the full system that a solve may take; one is the rule, and each gains three digits (`UNRELIABLE`)."""
 
 CONVERGED = 1e-9
-"""Relative size of a correction, component by component, after which the corrected solution is at round-off."""
+"""Relative size of a correction, component by component, after which the next would be below 1e-12 (`UNRELIABLE`)."""
 
 RESOLVED = 1e-6
-"""A component smaller than this, of the largest one in the units of the point, need not have relative accuracy."""
+"""A component smaller than this, of the largest one in the units of the point, need not have relative accuracy.
+
+What it does to the point is a millionth of what the step does.
+"""
 
 FIRM_CORRECTION = 1e-13
-"""Relative size of the tangent's correction below which the core's solutions are taken as they are."""
+"""Relative size of the tangent's correction, round-off, below which the core's solutions are taken as they are."""
 
 FIRM_SPREAD = 1e3
 """Ratio of the largest to the smallest factor of the pairs up to which the tangent's correction speaks for others."""
@@ -62,7 +65,13 @@ class Pairs:
 
 @_silently
 def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate every p: what is left keeps the symmetry of the core."""
+    """Eliminate every p: what is left keeps the symmetry of the core.
+
+    Parameters
+    ----------
+    s, x, c : Array of shape (n,)
+        Of the pairs ``s v + x p - c l = r``.
+    """
     f = 1.0 / x
     ones, zeros = np.ones_like(x), np.zeros_like(x)
     return Pairs(ones, -s * f, zeros, f, c, _parity(np.count_nonzero(x < 0.0)))
@@ -70,7 +79,13 @@ def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
 
 @_silently
 def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate the unknown with the larger coefficient: no cancellation, and either coefficient may be zero."""
+    """Eliminate the unknown with the larger coefficient: no cancellation, and either coefficient may be zero.
+
+    Parameters
+    ----------
+    s, x, c : Array of shape (n,)
+        Of the pairs ``s v + x p - c l = r``.
+    """
     swapped = np.abs(x) < np.abs(s)
     pivot = np.where(swapped, s, x)
     inverse = 1.0 / pivot

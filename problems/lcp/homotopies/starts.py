@@ -52,6 +52,13 @@ class Start:
 def positive_vector(name: str, value: Any, n: int) -> Array:
     """A copy of `value` as n positive finite floats.
 
+    Parameters
+    ----------
+    name : str
+        What the message calls it.
+    value : array_like
+    n : int
+
     Raises
     ------
     ValueError
@@ -75,6 +82,10 @@ def natural_units(problem: LCP) -> tuple[float, float]:
     """Sizes (of x, of w) at which A x and q balance: |q|_inf over the largest row norm of A, and |q|_inf.
 
     One where A or q is zero.
+
+    Parameters
+    ----------
+    problem : LCP
     """
     squares = problem.A.multiply(problem.A) if problem.sparse else problem.A * problem.A
     row = float(np.sqrt(np.max(squares.sum(axis=1))))
@@ -83,19 +94,37 @@ def natural_units(problem: LCP) -> tuple[float, float]:
 
 
 def relaxed_w(problem: LCP, x0: Array, margin: float | Array) -> Array:
-    """A x0 + q where all of it is positive, else max(A x0 + q, 0) + margin, componentwise."""
+    """A x0 + q where all of it is positive, else max(A x0 + q, 0) + margin, componentwise.
+
+    Parameters
+    ----------
+    problem : LCP
+    x0 : Array of shape (n,)
+    margin : float or Array
+    """
     w = problem.w(x0)
     return w if (w > 0.0).all() else np.maximum(w, 0.0) + margin
 
 
 def centred(x0: Array, w0: Array) -> Start:
-    """The start whose products x0 z1 and w0 z2 all equal the geometric mean of the x0_i w0_j."""
+    """The start whose products x0 z1 and w0 z2 all equal the geometric mean of the x0_i w0_j.
+
+    Parameters
+    ----------
+    x0, w0 : Array of shape (n,)
+        Positive.
+    """
     product = float(np.exp(np.log(x0).mean() + np.log(w0).mean()))
     return Start(x0, product / x0, product / w0, w0)
 
 
 def default_start(problem: LCP) -> Start:
-    """All components of x alike, in natural units; feasible where that is, else relaxed; centred."""
+    """All components of x alike, in natural units; feasible where that is, else relaxed; centred.
+
+    Parameters
+    ----------
+    problem : LCP
+    """
     x, w = natural_units(problem)
     x0 = np.full(problem.n, x)
     return centred(x0, relaxed_w(problem, x0, w))

@@ -62,7 +62,12 @@ PURE_TOLERANCE = 1e-4
 
 
 def search_preset(n: int) -> Preset:
-    """The parts of a restart for a problem of order n: the longest steps that pay."""
+    """The parts of a restart for a problem of order n: the longest steps that pay.
+
+    Parameters
+    ----------
+    n : int
+    """
     return Preset(
         "SEARCH",
         "steps that turn up to 40 degrees, for one path among many",
@@ -73,7 +78,16 @@ def search_preset(n: int) -> Preset:
 
 
 def reweighted(problem: LCP, weights: Array | None, path: Path) -> Array | None:
-    """Weights of the x_i w_i in the objective after a path that failed: those that are not zero at its end gain."""
+    """Weights of the x_i w_i in the objective after a path that failed: those that are not zero at its end gain.
+
+    Parameters
+    ----------
+    problem : LCP
+    weights : Array or None
+        Those of the path, shape (n,); None for ones.
+    path : Path
+        The one that failed; its first n unknowns are x.
+    """
     if not path.steps:
         return weights
     x = np.maximum(path.endpoint.y[: problem.n], 0.0)
@@ -136,7 +150,7 @@ class Restart:
         observers : tuple of Observer
         """
         homotopy = self.homotopy()
-        # A pure path is its own end, so it is traced in earnest. Else what counts is the active set that it leads to.
+        # The end of a pure path is the answer. With the finish only the active set counts that the path leads to.
         pure = self.tolerance is None
         options = {
             "preset": search_preset(self.structure.n),
@@ -164,12 +178,24 @@ def _patience(homotopy: LCPHomotopy) -> Patience:
 
 
 def light(path: Path) -> Path:
-    """The same path with only its two ends, and no curve between them."""
+    """The same path with only its two ends, and no curve between them.
+
+    Parameters
+    ----------
+    path : Path
+        Is changed.
+    """
     if path.steps:
         path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
     return path
 
 
 def trace_light(restart: Restart, budget: Budget) -> Path:
-    """What a worker does: trace a restart and send back what is small enough to send."""
+    """What a worker does: trace a restart and send back what is small enough to send.
+
+    Parameters
+    ----------
+    restart : Restart
+    budget : Budget
+    """
     return light(restart.trace(budget))

@@ -33,13 +33,19 @@ POLISHED = 1e-15
 """An end of this relative residual, a few units in the last place, needs no polish."""
 
 STATIONARY = 1e-6
-"""Relative to the data and the point: how well the optimality conditions hold at what is called stationary."""
+"""Relative to the data and the point: how well the optimality conditions hold at what is called stationary.
+
+A degenerate end is a series in the root of lambda, so that half of the digits of a good end can be asked of it.
+"""
 
 IN_FLIGHT = 64
-"""Restarts handed to an executor before the first of them has come back."""
+"""Restarts handed to an executor before the first of them has come back: more than one machine has workers.
+
+A constant, since restart k goes on from restart k - IN_FLIGHT: the answer must not depend on the number of workers.
+"""
 
 LARGEST_KEPT = 4_000_000
-"""Numbers of path points kept in memory; of further paths only the two ends are."""
+"""Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
 
 
 @frozen(eq=False)
@@ -181,6 +187,15 @@ class Search:
         """Trace restarts until one solves the problem, or the budget or the count is used up; how many were begun.
 
         Over an executor the first solution in the order of the restarts is taken among those that are there.
+
+        Parameters
+        ----------
+        name : str
+            Of the homotopy.
+        seed, count : int
+        executor : Executor or None
+        bands : tuple of intervals
+            How far out they begin, in turn.
         """
         tolerance = None if self.finish is None else self.tolerance
 
