@@ -12,6 +12,7 @@ from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import dia_array
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.dense import lu_sign
 from continuation.linear.entries import real
 from continuation.linear.refine import BorderedMatrix, eliminate
 from continuation.linear.sparse import factor_whole
@@ -81,10 +82,8 @@ class BandedLU:
 
     @property
     def sign(self) -> int:
-        """Sign of det A: row exchanges and negative pivots, counted."""
-        swaps = np.count_nonzero(self.pivots != np.arange(len(self.pivots)))
-        negative = np.count_nonzero(self.lu[self.lower + self.upper] < 0)
-        return -1 if (swaps + negative) % 2 else 1
+        """Sign of det A."""
+        return lu_sign(self.pivots, self.lu[self.lower + self.upper])
 
     def solve(self, rhs: Array) -> Array:
         """The solution of A x = rhs, shape (N,)."""

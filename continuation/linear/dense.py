@@ -14,6 +14,20 @@ EQUILIBRATED = 0.1
 """Ratio of the smallest to the largest row above which scaling changes nothing (as in LAPACK's expert drivers)."""
 
 
+def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
+    """Sign of the determinant of LAPACK's LU factors: row exchanges and negative pivots, counted.
+
+    Parameters
+    ----------
+    exchanges : Array
+        With which row each one was exchanged.
+    pivots : Array
+        The diagonal of U.
+    """
+    odd = np.count_nonzero(exchanges != np.arange(len(exchanges))) + np.count_nonzero(pivots < 0)
+    return -1 if odd % 2 else 1
+
+
 @frozen(eq=False)
 class LU:
     """LU factors of a dense matrix, with partial pivoting."""
@@ -23,10 +37,8 @@ class LU:
 
     @property
     def sign(self) -> int:
-        """Sign of the determinant: row exchanges and negative pivots, counted."""
-        swaps = np.count_nonzero(self.pivots != np.arange(len(self.pivots)))
-        negative = np.count_nonzero(self.lu.diagonal() < 0)
-        return -1 if (swaps + negative) % 2 else 1
+        """Sign of the determinant."""
+        return lu_sign(self.pivots, self.lu.diagonal())
 
     def solve(self, rhs: Array) -> Array:
         """The solution of A x = rhs, shape (N,)."""

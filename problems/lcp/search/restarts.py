@@ -164,7 +164,7 @@ class Restart:
 
 
 def _patience(homotopy: LCPHomotopy) -> Patience:
-    """A path among many is not followed at any price."""
+    """A path among many is not worth every step."""
     least, longest = smallest_parameter(homotopy, SMALLEST), LONGEST + homotopy.n
 
     def reason(step: Step) -> str:

@@ -41,17 +41,12 @@ def follow(
     before = 0 if finish is None else finish.counts.factorizations
     along = None if finish is None else AlongPath.of(finish, homotopy)
     tracer = Tracer(homotopy, finish=along, budget=budget, observers=observers, **options)
-    reason = _traced(tracer, patience)
+    reason = ""
+    for step in tracer:
+        if patience is not None and (reason := patience(step)):
+            break
     if reason:
         tracer.path.message = f"Given up: {reason}."
     if finish is not None:
         tracer.path.counts.factorizations += finish.counts.factorizations - before
     return tracer.path
-
-
-def _traced(tracer: Tracer, patience: Patience | None) -> str:
-    """Trace to the end, or until patience runs out: then the reason."""
-    for step in tracer:
-        if patience is not None and (reason := patience(step)):
-            return reason
-    return ""

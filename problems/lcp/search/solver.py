@@ -31,7 +31,7 @@ from problems.lcp.homotopies.starts import positive_vector
 from problems.lcp.search.judging import answer, unscaled
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.search import Search
-from problems.lcp.search.strategy import AUTOMATIC, NAMED, Attempt, Case, settled_by
+from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
 
 OWN = {"homotopy", "observers", "state", "start", "finish", "target"}
 """Arguments of a trace that `solve` sees to."""
@@ -123,9 +123,10 @@ def solve(
         progress,
         options,
     )
-    case = Case(search, problem, start, "kkt" if automatic else homotopy, path, restarts, seed, executor)
+    case = Case(search, problem, start, "kkt" if automatic else homotopy, restarts, seed, executor)
+    strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     with search.log if search.log is not None else nullcontext():
-        settled = settled_by(case, AUTOMATIC if automatic else NAMED)
+        settled = settled_by(case, strategy)
         found = answer(search, _account(case, settled))
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)
@@ -150,7 +151,7 @@ def _account(case: Case, settled: Attempt | None) -> str:
     """What was done: what settled the problem, or what the paths came to and how many there were."""
     parts = [f"A is {case.facts}."] if case.facts is not None else []
     if settled is not None:
-        return " ".join([*parts, settled.sentence(case)])
+        return " ".join([*parts, settled.said.format(case=case)])
     search = case.search
     if search.paths:
         parts.append(f"The first path: {search.paths[0].message}")

@@ -1,4 +1,4 @@
-"""What is tried, and in what order: `AUTOMATIC` for ``homotopy="auto"``, `NAMED` for a homotopy by name.
+"""What is tried, and in what order: `AUTOMATIC` for ``homotopy="auto"``, `NAMED` for a homotopy by name (at the end).
 
 Each entry says when it is tried, what it does, and what is said where that settled the problem: by a solution, or by a
 proof that there is none. Another attempt is one more entry in its place, and its function.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor
+from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
@@ -54,16 +55,16 @@ class Case:
         The problem as given, whatever the units of the search.
     x0 : Array or None
         A start, in the units of the search.
-    homotopy : str
-        That of the paths which the strategy does not name.
-    path : bool
-        Whether a path is wanted, so that what would make it needless is left out.
+    asked : str
+        The homotopy of the paths for which the strategy names none.
     restarts, seed : int
     executor : Executor or None
     facts : MatrixFacts or None
         What has been found out about the matrix by now.
     proof_sought : bool
         Whether a proof was looked for.
+    followed : str
+        The homotopy of the last path but for restarts.
     tried : int
         How many restarts were begun.
     reason : str
@@ -73,13 +74,13 @@ class Case:
     search: Search
     given: LCP
     x0: Array | None
-    homotopy: str
-    path: bool
+    asked: str
     restarts: int
     seed: int
     executor: Executor | None
     facts: MatrixFacts | None = field(default=None, init=False)
     proof_sought: bool = field(default=False, init=False)
+    followed: str = field(default="", init=False)
     tried: int = field(default=0, init=False)
     reason: str = field(default="", init=False)
 
@@ -120,17 +121,13 @@ class Attempt:
     run : callable
         Tries it; whether that settled the problem.
     said : str
-        What is said then; `homotopy`, `tried`, `seed` and `reason` of the case in braces.
+        What is said then, with attributes of the case in braces.
     """
 
     name: str
     when: Callable[[Case], bool]
     run: Callable[[Case], bool]
     said: str
-
-    def sentence(self, case: Case) -> str:
-        """What is said where it settled the problem."""
-        return self.said.format(homotopy=case.homotopy, tried=case.tried, seed=case.seed, reason=case.reason)
 
 
 # -- the attempts ---------------------------------------------------------------------------------------------
@@ -182,33 +179,43 @@ def _feasible_start(case: Case) -> bool:
     return False
 
 
-def _path(name: str) -> Callable[[Case], bool]:
+def _path(name: str = "", **options: Any) -> Callable[[Case], bool]:
+    """The path of a homotopy by name, or of the one that was asked for."""
+
     def run(case: Case) -> bool:
-        homotopy = HOMOTOPIES[name].make(case.problem, case.x0, structure=case.search.structure)
-        return case.search.follow(homotopy, preset=FAST)
+        case.followed = name or case.asked
+        homotopy = HOMOTOPIES[case.followed].make(case.problem, case.x0, structure=case.search.structure)
+        return case.search.follow(homotopy, **options)
 
     return run
-
-
-def _named_path(case: Case) -> bool:
-    homotopy = HOMOTOPIES[case.homotopy].make(case.problem, case.x0, structure=case.search.structure)
-    return case.search.follow(homotopy)
 
 
 def _restarts(case: Case) -> bool:
     # Of a matrix that a homotopy by name was chosen for nothing was found out.
     near = case.facts is not None and case.facts.nonnegative
     case.tried = case.search.restart(
-        case.homotopy, case.seed, case.restarts, case.executor, NEAR_STARTS if near else FAR_STARTS
+        case.asked, case.seed, case.restarts, case.executor, NEAR_STARTS if near else FAR_STARTS
     )
     return case.search.solved
 
 
-# -- when they are tried --------------------------------------------------------------------------------------
+# -- when they are tried, and what is said --------------------------------------------------------------------
+
+
+def _always(case: Case) -> bool:
+    return True
+
+
+def _has_coarser_problems(case: Case) -> bool:
+    return suitable(case.search.structure)
 
 
 def _definite_perhaps(case: Case) -> bool:
     return case.known.symmetric and not case.known.z_matrix and not case.known.negative_diagonal
+
+
+def _monotone(case: Case) -> bool:
+    return case.semidefinite and not case.known.symmetric
 
 
 def _wang_may_do(case: Case) -> bool:
@@ -216,37 +223,48 @@ def _wang_may_do(case: Case) -> bool:
     return not case.known.negative_diagonal
 
 
-_PROVED = "A linear program gave the proof."
-_SETTLED = "Solved by active sets alone, before any path."
-_RESTARTED = "Solved by a path of the {homotopy} homotopy from random start {tried} (seed {seed})."
+def _provable(case: Case) -> bool:
+    return case.problem.n <= LARGEST_PROOF
 
-AUTOMATIC: tuple[Attempt, ...] = (
-    # What is cheap and cannot mislead comes first.
-    Attempt("x = 0", lambda c: not c.path and bool((c.problem.q >= 0.0).all()), _zero,
-            "q >= 0, so x = 0 is a solution."),
-    Attempt("active sets, from coarser problems", lambda c: not c.path and suitable(c.search.structure),
-            _from_coarser_problems, _SETTLED),
-    Attempt("active sets of A + shift I, from x = 0", lambda c: not c.path and _definite_perhaps(c),
-            _proximally_from_zero, _SETTLED),
-    Attempt("active sets, from x = 0", lambda c: not c.path, _from_zero, _SETTLED),
-    Attempt("active sets, from x0", lambda c: not c.path and c.x0 is not None, _from_x0, _SETTLED),
-    Attempt("active sets of A + shift I, from the last", lambda c: c.semidefinite and not c.known.symmetric
-            and not c.path, _proximally_from_last, "Solved by active sets of A + shift I, before any path."),
-    Attempt("proof, early", lambda c: not c.path and c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
-    # Wang's path is half as long as the other where it can be expected to arrive, and the other arrives more often.
-    Attempt("Wang's path", _wang_may_do, _path("wang"), "Solved by the path of the wang homotopy."),
-    Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt"), "Solved by the path of the kkt homotopy."),
-    Attempt("proof", lambda c: c.in_budget and not c.proof_sought and c.problem.n <= LARGEST_PROOF, _proof, _PROVED),
-    Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt"),
-            "Solved by the path of the kkt homotopy."),
+
+def _lacks_feasible_start(case: Case) -> bool:
+    return case.x0 is None and HOMOTOPIES[case.asked].feasible
+
+
+_PROVED = "A linear program gave the proof."
+_FOLLOWED = "Solved by the path of the {case.followed} homotopy."
+_SETTLED = "Solved by active sets alone, before any path."
+_SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
+_RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
+
+WITHOUT_PATH: tuple[Attempt, ...] = (
+    Attempt("x = 0", lambda c: bool((c.problem.q >= 0.0).all()), _zero, "q >= 0, so x = 0 is a solution."),
+    Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
+    Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
+    Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
+    Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
+    Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
+    Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
+)
+"""What is cheap and cannot mislead."""
+
+# The end of Wang's path solves the problem, where it has one; the KKT path has an end, which need not solve it.
+PATHS: tuple[Attempt, ...] = (
+    Attempt("Wang's path", _wang_may_do, _path("wang", preset=FAST), _FOLLOWED),
+    Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
+    Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, _PROVED),
+    Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, _RESTARTED),
-)  # fmt: skip
+)
+"""Any of these may cost the whole budget."""
+
+AUTOMATIC = (*WITHOUT_PATH, *PATHS)
 """For any matrix."""
 
 NAMED: tuple[Attempt, ...] = (
-    Attempt("feasible start", lambda c: HOMOTOPIES[c.homotopy].feasible and c.x0 is None, _feasible_start, "{reason}"),
-    Attempt("path", lambda c: True, _named_path, "Solved by the path of the {homotopy} homotopy."),
-    Attempt("proof", lambda c: c.problem.n <= LARGEST_PROOF, _proof, _PROVED),
+    Attempt("feasible start", _lacks_feasible_start, _feasible_start, "{case.reason}"),
+    Attempt("path", _always, _path(), _FOLLOWED),
+    Attempt("proof", _provable, _proof, _PROVED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, _RESTARTED),
 )
 """For a homotopy that was asked for."""

@@ -7,7 +7,6 @@ import pytest
 from attrs import evolve
 
 import continuation
-from continuation.archive import open_archive
 from problems import lcp
 from problems.lcp.homotopies.starts import LOG_DEVIATION, natural_units
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, Restart, light, reweighted, search_preset, trace_light
@@ -166,16 +165,6 @@ def test_an_executor_stops_at_the_count():
     assert solution.outcome is lcp.Outcome.STATIONARY
     assert len(solution.paths) == 6
     assert "Restarts from random starts: 5" in solution.message
-
-
-def test_every_attempt_is_in_the_archive(tmp_path):
-    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
-    file = tmp_path / "all.h5"
-    solution = lcp.solve(problem, restarts=3, archive=file)
-    with open_archive(file) as archive:
-        assert len(archive) == len(solution.paths) == 5
-        # Wang's path has 2n unknowns, the others 3n: the shorter one is filled up.
-        assert sorted({int(np.isfinite(path.y[0]).sum()) for path in archive}) == [4, 6]
 
 
 def test_light_paths_keep_their_ends():

@@ -11,7 +11,7 @@ from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.search import strategy
 from problems.lcp.search.search import Search
-from problems.lcp.search.strategy import AUTOMATIC, NAMED, Attempt, Case, settled_by
+from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
 
 INFEASIBLE = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
 ZERO = "active sets, from x = 0"
@@ -20,7 +20,7 @@ ZERO = "active sets, from x = 0"
 def case(problem, **changes):
     structure = lcp.Structure(problem)
     search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, continuation.Budget(), None, False, {})
-    asked = {"x0": None, "homotopy": "kkt", "path": False, "restarts": 2, "seed": 0, "executor": None} | changes
+    asked = {"x0": None, "asked": "kkt", "restarts": 2, "seed": 0, "executor": None} | changes
     return Case(search, problem, **asked)
 
 
@@ -52,7 +52,7 @@ def test_the_order_depends_on_the_matrix():
 
 
 def test_a_path_that_is_wanted_comes_first():
-    assert tried(case(INFEASIBLE, path=True), AUTOMATIC)[0] == "Wang's path"
+    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", "restarts"]
 
 
 def test_what_is_dear_is_left_out_when_the_budget_is_spent():
@@ -62,9 +62,9 @@ def test_what_is_dear_is_left_out_when_the_budget_is_spent():
 
 
 def test_a_homotopy_by_name_looks_for_the_start_that_it_needs():
-    assert tried(case(INFEASIBLE, homotopy="zhao"), NAMED) == ["feasible start", "path", "proof", "restarts"]
-    assert tried(case(INFEASIBLE, homotopy="zhao", x0=np.ones(2)), NAMED)[0] == "path"
-    assert tried(case(INFEASIBLE, homotopy="wang", restarts=0), NAMED) == ["path", "proof"]
+    assert tried(case(INFEASIBLE, asked="zhao"), NAMED) == ["feasible start", "path", "proof", "restarts"]
+    assert tried(case(INFEASIBLE, asked="zhao", x0=np.ones(2)), NAMED)[0] == "path"
+    assert tried(case(INFEASIBLE, asked="wang", restarts=0), NAMED) == ["path", "proof"]
 
 
 def test_another_attempt_is_one_more_entry():
@@ -74,7 +74,7 @@ def test_another_attempt_is_one_more_entry():
     one = case(lcp.LCP(np.eye(2), [-1.0, -1.0]))
     settled = settled_by(one, (guess, *AUTOMATIC))
     assert settled is guess
-    assert settled.sentence(one) == "Guessed."
+    assert settled.said == "Guessed."
     np.testing.assert_array_equal(one.search.best().certificate.x, [1.0, 1.0])
 
 
