@@ -15,7 +15,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError
 
-REFINEMENTS = 4
+CORE_REFINEMENTS = 4
 """Corrections in the full system that a solve may take; one is the rule, and each gains three digits (`UNRELIABLE`)."""
 
 CONVERGED = 1e-9
@@ -224,7 +224,7 @@ class CoreSystem:
             with np.errstate(all="ignore"):
                 z = core.solve(r, rho)
                 changes: list[float] = []
-                while len(changes) < REFINEMENTS:
+                while len(changes) < CORE_REFINEMENTS:
                     correction = core.solve(*self.full.residual(z, r, rho))
                     z = z + correction
                     moved, overall = self._moved(correction, z)
