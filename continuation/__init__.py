@@ -19,8 +19,7 @@ from continuation.status import Kind, Status
 from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance
 from continuation.tracing import trace
-
-__version__ = "0.1.0"
+from continuation.version import __version__
 
 __all__ = [
     "CONSERVATIVE",
@@ -43,6 +42,7 @@ __all__ = [
     "Tolerance",
     "Tracer",
     "TurningPoint",
+    "__version__",
     "arclength",
     "audit",
     "branch_directions",

@@ -189,7 +189,7 @@ class Archive(Sequence[Path]):
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
-        return frames.dataset(self, self.points, self.paths)
+        return frames.dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
 
     def to_dataframe(self) -> Any:
         """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
@@ -287,7 +287,10 @@ class Selection:
 
     def to_xarray(self) -> Any:
         """The selected points and paths as an `xarray.Dataset`; ``path_index`` keeps the numbers of the file."""
-        return frames.dataset(self.archive, self.points, self.paths)
+        archive = self.archive
+        return frames.dataset(
+            self.points, self.paths, archive.event_names, archive.layout.unknowns, archive.attributes
+        )
 
     def to_dataframe(self) -> Any:
         """The selected points as a `pandas.DataFrame`."""

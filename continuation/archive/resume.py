@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 
-from continuation.archive.checkpoint import Checkpoint, whole
-from continuation.archive.codec import UnknownError, decode
+from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
 from continuation.archive.copies import Share, put, write_copy
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import check_writable
@@ -19,6 +18,7 @@ from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import check_dead, kept
 from continuation.archive.store import Store, check_new
+from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.path import Path
 from continuation.status import Status
@@ -35,6 +35,7 @@ def resume(
     *,
     archive: str | PathLike[str] | None = None,
     observers: tuple[Observer, ...] = (),
+    trust: Sequence[Any] = (),
     **options: Any,
 ) -> Path:
     """Go on with the last path of an archive; the points that follow are bit for bit those of an uninterrupted trace.
@@ -51,6 +52,9 @@ def resume(
     archive : path, optional
         A new file to write to; else `file` itself goes on.
     observers : tuple of Observer
+    trust : sequence of class or function
+        What may be made besides the parts of the library and the homotopies that installed packages register: a file
+        names classes, and is not obeyed.
     **options
         Of `continuation.Tracer`, in place of the stored ones: ``budget`` for a path whose budget is used up.
 
@@ -71,11 +75,12 @@ def resume(
     target = name if archive is None else File(archive)
     if archive is not None:
         check_new(target)
+    known = registry(trust)
     with open_archive(name) as source:
         checkpoint = _checkpoint(source, options)
-        tracer = Tracer(
-            _homotopy(source, checkpoint, homotopy), state=checkpoint.state, **_options(source, checkpoint, options)
-        )
+        if homotopy is None:
+            homotopy = stored_homotopy(source, checkpoint, known)
+        tracer = Tracer(homotopy, state=checkpoint.state, **_options(source, checkpoint, known, options))
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         _check_homotopy(tracer.homotopy, checkpoint, float(source.points["residual_norm"][rows - 1]))
         before = source.path(checkpoint.path)
@@ -119,33 +124,42 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     return checkpoint
 
 
-def _homotopy(source: Archive, checkpoint: Checkpoint, given: Any) -> Any:
-    if given is not None:
-        return given
-    tree: Any = checkpoint.run["homotopy"]
-    fetch: Callable[[Any], Any] = whole
-    if tree.get("problem"):
-        text, arrays = source.problem()
-        tree, fetch = json.loads(text), arrays.__getitem__
+def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
+    """The homotopy, made of what the file says of it; `known` is the `registry`.
+
+    Raises
+    ------
+    ArchiveError
+        If it was not stored, or is not among what is trusted.
+    """
     try:
+        tree: Any = checkpoint.run["homotopy"]
+        fetch: Callable[[Any], Any] = whole
+        if tree.get("problem"):
+            text, arrays = source.problem()
+            tree, fetch = json.loads(text), arrays.__getitem__
         if "unstorable" in tree:
             raise UnknownError(tree["unstorable"])
-        return decode(tree, fetch)
-    except UnknownError as error:
+        return decode(tree, fetch, known)
+    except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
         reason = f"the homotopy cannot be made from the file ({error}); pass homotopy="
         raise ArchiveError(f"{source.file}: {reason}") from None
 
 
-def _options(source: Archive, checkpoint: Checkpoint, given: Mapping[str, Any]) -> dict[str, Any]:
+def _options(
+    source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
+) -> dict[str, Any]:
     stored = {}
-    for name, tree in checkpoint.run["options"].items():
+    trees = checkpoint.run.get("options")
+    for name in OPTIONS:
         if name in given:
             continue
         try:
+            tree = trees[name]
             if isinstance(tree, dict) and "unstorable" in tree:
                 raise UnknownError(tree["unstorable"])
-            stored[name] = decode(tree, whole)
-        except UnknownError as error:
+            stored[name] = decode(tree, whole, known)
+        except (UnknownError, KeyError, TypeError) as error:
             raise ArchiveError(f"{source.file}: {name} cannot be made from the file ({error}); pass {name}=") from None
     return {**stored, **given}
 
