@@ -7,10 +7,10 @@ from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path as File
 
+from continuation.archive.atomic import check_new
 from continuation.archive.copies import everything, leading, put, write_copy
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import open_archive
-from continuation.archive.store import check_new
 
 
 def merge(
@@ -43,11 +43,11 @@ def merge(
     check_new(whole)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
-        first = leading(archives).attributes
+        first = leading([archive.contents for archive in archives]).attributes
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
         attributes = {**first, **process(), **history(first, f"merged from {len(archives)} files: {names}")}
         if title:
             attributes["title"] = title
         shares = [everything(archive) for archive in archives]
-        put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression)).close()
+        put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
     return whole

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import COUNT_NAMES
@@ -24,7 +25,28 @@ _UNBROKEN = "\N{NO-BREAK SPACE}"
 
 
 def describe(archive: Archive) -> str:
-    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many."""
+    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many.
+
+    Parameters
+    ----------
+    archive : Archive
+
+    Raises
+    ------
+    ArchiveError
+        If what the file says of itself makes no sense.
+    """
+    try:
+        page = _page(archive)
+    except ArchiveError:
+        raise
+    except (ValueError, TypeError, AttributeError, LookupError, RecursionError, ArithmeticError) as error:
+        raise archive.contents.damaged(error) from error
+    # A title of somebody else's is no way to the terminal's control codes.
+    return "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
+
+
+def _page(archive: Archive) -> str:
     parts = [_head(archive)]
     if not len(archive):
         parts.append("No path was begun.")
@@ -49,7 +71,7 @@ def _head(archive: Archive) -> str:
                           ("h5py", "h5py"), ("HDF5", "hdf5"))
     )
     lines = [
-        ("file", f"{archive.file}, {_bytes(archive.file.stat().st_size)}, {about.get('schema', '')}"),
+        ("file", f"{archive.file}, {_bytes(archive.contents.size)}, {about.get('schema', '')}"),
         ("holds", f"{_plural(len(archive), 'path')}, {_plural(archive.points.size, 'point')} of "
                   f"{_plural(archive.layout.unknowns, 'unknown')}"),
         ("when", f"{about.get('created', '')} on {about.get('host', '')}"),

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack, closing
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 
+from continuation.archive.atomic import beside, check_new, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
-from continuation.archive.copies import Share, put, write_copy
+from continuation.archive.copies import leading_paths, write_copy
 from continuation.archive.errors import ArchiveError
-from continuation.archive.files import check_writable
+from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.recover import check_dead, kept
-from continuation.archive.store import Store, check_new
+from continuation.archive.recover import kept, own
+from continuation.archive.store import Store, publish_live
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.path import Path
@@ -72,19 +75,22 @@ def resume(
         If the homotopy given is not the one of the file.
     """
     name = File(file)
-    target = name if archive is None else File(archive)
+    target = File(os.path.realpath(name)) if archive is None else File(archive)
     if archive is not None:
         check_new(target)
     known = registry(trust)
-    with open_archive(name) as source:
+    with ExitStack() as stack:
+        source = stack.enter_context(open_archive(name))
+        if archive is None:
+            stack.enter_context(closing(own(source.contents, target)))
+        elif not source.closed_by_writer and is_held(name):
+            raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
-        if homotopy is None:
-            homotopy = stored_homotopy(source, checkpoint, known)
-        tracer = Tracer(homotopy, state=checkpoint.state, **_options(source, checkpoint, known, options))
+        tracer = _tracer(source, checkpoint, known, homotopy, options)
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         _check_homotopy(tracer.homotopy, checkpoint, float(source.points["residual_norm"][rows - 1]))
         before = source.path(checkpoint.path)
-        store = _beginning(source, checkpoint, rows, target)
+        store = _beginning(source, checkpoint, rows, target, archive is None)
     tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
     tracer.path.events[:] = [event for event in before.events if event.step <= checkpoint.state.index]
     log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer)
@@ -95,6 +101,20 @@ def resume(
         log.close()
     tracer.path.seconds += checkpoint.seconds
     return tracer.path
+
+
+def _tracer(
+    source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Any, options: Mapping[str, Any]
+) -> Tracer:
+    homotopy = stored_homotopy(source, checkpoint, known) if given is None else given
+    settings = _options(source, checkpoint, known, options)
+    try:
+        return Tracer(homotopy, state=checkpoint.state, **settings)
+    except (TypeError, ValueError, AttributeError, RecursionError) as error:
+        fault = str(error).partition(":")[0]
+        if fault in options or (given is not None and fault not in settings):
+            raise
+        raise ArchiveError(f"{source.file}: what it stores cannot be used ({short(error)})") from None
 
 
 def _run(tracer: Tracer, checkpoint: Checkpoint) -> None:
@@ -108,8 +128,6 @@ def _run(tracer: Tracer, checkpoint: Checkpoint) -> None:
 
 
 def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
-    if not source.closed_by_writer:
-        check_dead(source)
     if not len(source):
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
@@ -142,7 +160,7 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
             raise UnknownError(tree["unstorable"])
         return decode(tree, fetch, known)
     except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
-        reason = f"the homotopy cannot be made from the file ({error}); pass homotopy="
+        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy="
         raise ArchiveError(f"{source.file}: {reason}") from None
 
 
@@ -160,7 +178,8 @@ def _options(
                 raise UnknownError(tree["unstorable"])
             stored[name] = decode(tree, whole, known)
         except (UnknownError, KeyError, TypeError) as error:
-            raise ArchiveError(f"{source.file}: {name} cannot be made from the file ({error}); pass {name}=") from None
+            reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
+            raise ArchiveError(f"{source.file}: {reason}") from None
     return {**stored, **given}
 
 
@@ -175,21 +194,12 @@ def _check_homotopy(homotopy: Any, checkpoint: Checkpoint, stored: float) -> Non
         raise ValueError(f"homotopy: expected the archive's residual {stored:.2g} at its last point, found {found:.2g}")
 
 
-def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File) -> Store:
-    """The file up to the checkpoint, ready to grow.
-
-    It is never closed on the way: a file opened again is, for a moment, neither closed nor safe from a kill.
-    """
-    if target == source.file:
-        check_writable(target)
+def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
+    """The file up to the checkpoint, ready to grow, and already so when it takes the place of the old one."""
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
-    share = Share(source, checkpoint.path, rows)
-
-    def write(part: File) -> Store:
+    share = leading_paths(source, checkpoint.path, rows)
+    with beside(target) as part:
         store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
-        store.share()
-        return store
-
-    return put(target, write)
+        return publish_live(store, target, replace=replace)

@@ -1,4 +1,4 @@
-"""The schema `continuation-path-1`: names, types, units and meanings of everything in the two tables."""
+"""The schema `continuation-path-2`: names, types, units and meanings of everything in the two tables."""
 
 from __future__ import annotations
 
@@ -12,8 +12,11 @@ from attrs import field, frozen
 from continuation.counts import Counts
 from continuation.status import Kind, Status
 
-SCHEMA = "continuation-path-1"
-"""Additions keep the name; a change of meaning would be `continuation-path-2`, which this reader refuses."""
+SCHEMA = "continuation-path-2"
+"""Additions keep the name; a change of meaning would be `continuation-path-3`, which this reader refuses."""
+
+UNCHECKED = "continuation-path-1"
+"""The same tables without checksums: read as they are, since nothing tells what was written."""
 
 TEXT = 240
 """Bytes (UTF-8) of a path's message."""

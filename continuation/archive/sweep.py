@@ -13,11 +13,11 @@ from typing import Any
 
 from attrs import frozen
 
+from continuation.archive.atomic import check_new
 from continuation.archive.errors import ArchiveError
 from continuation.archive.merge import merge
 from continuation.archive.reader import open_archive
 from continuation.archive.record import sentence
-from continuation.archive.store import check_new
 from continuation.archive.writer import PathLog
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Status

@@ -13,6 +13,7 @@ import numpy as np
 from attrs import define, field, frozen
 
 from continuation.archive import record
+from continuation.archive.atomic import check_new
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.errors import ArchiveError
 from continuation.archive.problem import problem_data
@@ -20,7 +21,7 @@ from continuation.archive.provenance import root_attributes, scalars
 from continuation.archive.record import Record, counted
 from continuation.archive.rows import Row, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout
-from continuation.archive.store import SLOTS, Store, check_new
+from continuation.archive.store import SLOTS, Store, create
 from continuation.path import LocatedEvent, Step
 from continuation.status import Status
 from continuation.step.state import State
@@ -253,7 +254,7 @@ class PathLog:
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, self._title)
-        self._store = Store(self.file, layout, attributes, problem, durable=self._durable)
+        self._store = create(self.file, layout, attributes, problem, durable=self._durable)
         for event in tracer.settings.events if tracer is not None else ():
             self._store.name_event(event.name)
         self._store.commit()
@@ -265,13 +266,18 @@ class PathLog:
         store, buffer, path = self._store, self._buffer, self._open
         assert store is not None
         points, checkpoints = None, {}
-        if path is not None and buffer.rows:
-            points = to_columns(buffer.rows, path.number, store.layout, store.name_event)
+        # A commit that Ctrl-C interrupted may have been complete.
+        start = max(buffer.start, store.committed.points)
+        rows = buffer.rows[start - buffer.start :]
+        if path is not None and rows:
+            points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
             checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
-        paths = record.to_columns(row, store.layout) if row is not None else None
-        store.commit(points, buffer.start, paths, row["path"] if row is not None else 0, checkpoints)
-        self._buffer = _Buffer(buffer.start + len(buffer.rows))
+        paths = None
+        if row is not None and row["path"] >= store.committed.paths:
+            paths = record.to_columns(row, store.layout)
+        store.commit(points, start, paths, row["path"] if row is not None else 0, checkpoints)
+        self._buffer = _Buffer(start + len(rows))
         self._sequence += 1
         self._commit_at = time.monotonic() + self._limits.seconds
 
