@@ -17,12 +17,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import astuple, frozen
 
 GROUP = "checks"
 RECORDS = "commits"
 PLACES = 2
-_RECORD = struct.Struct("<6QI")
+_RECORD = struct.Struct("<7QI")
 RECORD_BYTES = _RECORD.size
 _BOUNDS = struct.Struct("<QQ")
 _STOP = 2
@@ -40,7 +40,7 @@ class DamageError(ValueError):
 
 @frozen
 class Committed:
-    """How much of a file is valid: a commit's number, and the rows, blocks and event names up to it."""
+    """How much of a file is valid: a commit's number; rows, blocks, event names and the last checkpoint up to it."""
 
     sequence: int = 0
     points: int = 0
@@ -48,11 +48,11 @@ class Committed:
     point_blocks: int = 0
     path_blocks: int = 0
     names: int = 0
+    checkpoint: int = 0
 
     def pack(self) -> Array:
         """As bytes, with a CRC-32."""
-        numbers = (self.sequence, self.points, self.paths, self.point_blocks, self.path_blocks, self.names)
-        body = _RECORD.pack(*numbers, 0)[:-4]
+        body = _RECORD.pack(*astuple(self), 0)[:-4]
         return np.frombuffer(body + struct.pack("<I", zlib.crc32(body)), dtype="u1")
 
 

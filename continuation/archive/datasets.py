@@ -20,7 +20,8 @@ LIMIT = 1 << 28
 _CHUNK = 1 << 26
 """Bytes of a chunk: HDF5 reads it whole. Ours have 512 KiB, or one row."""
 
-_FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE)
+_FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF)
+"""Those that h5py brings itself; any other would be a library that is loaded to read the file."""
 
 
 class StructureError(ValueError):
@@ -100,7 +101,7 @@ def dataset(
     for k in range(properties.get_nfilters()):
         code = properties.get_filter(k)[0]
         if code not in _FILTERS:
-            raise StructureError(f"{name} is stored by the filter number {code}, expected gzip and shuffle")
+            raise StructureError(f"{name} is stored by the filter number {code}, which h5py does not bring itself")
     if found.chunks is not None and math.prod(found.chunks) * found.dtype.itemsize > _CHUNK and math.prod(
         found.chunks[1:]
     ) * found.dtype.itemsize > _CHUNK >> 3:

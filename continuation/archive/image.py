@@ -19,6 +19,7 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _VERSION, _IN_USE, _LENGTH, _CRC, _HEAD = 8, 11, 28, 44, 48
 _SWMR = 4
 _WORD = 0xFFFFFFFF
+_HEAP = b"GCOL"
 
 
 class Image:
@@ -103,6 +104,8 @@ class Image:
             count = min(len(self._head) - self._at, len(view))
             view[:count] = self._head[self._at : self._at + count]
         self._at += len(view)
+        if view[:4] == _HEAP:
+            _check_heap(view)
         return len(view)
 
     def close(self) -> None:
@@ -219,6 +222,24 @@ def _check(file: File, head: bytes) -> None:
         raise ArchiveError(f"{file}: is not an HDF5 file, so not an archive")
     if len(head) < _HEAD:
         raise ArchiveError(f"{file}: truncated, only its first {len(head)} bytes are there")
+
+
+def _check_heap(heap: memoryview) -> None:
+    """Whether the objects of a global heap, which has no checksum, fill it: HDF5 goes round for ever in one of zeros.
+
+    Raises
+    ------
+    OSError
+        If they do not.
+    """
+    (size,) = struct.unpack_from("<Q", heap, 8)
+    at = 16
+    while size <= len(heap) and size - at >= 16:
+        index, length = struct.unpack_from("<H6xQ", heap, at)
+        # The object number 0 is the space that is free, its own head included.
+        at += length if not index else 16 + (length + 7) // 8 * 8
+        if at > size or (not index and at != size):
+            raise OSError("a heap of texts is not sound")
 
 
 def lookup3(data: bytes) -> int:

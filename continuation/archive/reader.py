@@ -51,6 +51,7 @@ class Archive(Sequence[Path]):
         self.contents = contents = Contents(file, limit=limit)
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
         self.layout, self.event_names = contents.layout, contents.event_names
+        self._last_checkpoint = contents.committed.checkpoint if contents.checked else None
         self._committed_paths, self._committed_points = contents.committed.paths, contents.committed.points
         try:
             self._read_lengths()
@@ -237,9 +238,15 @@ class Archive(Sequence[Path]):
         self._unended = row
         checkpoint = self.checkpoint()
         if checkpoint is not None and checkpoint.path == number:
-            row["member"] = number if checkpoint.run["member"] is None else checkpoint.run["member"]
+            told = checkpoint.run.get("member")
+            row["member"] = number if told is None else int(told)
+        mine = checkpoint is not None and checkpoint.path == number
+        if checkpoint is not None and mine and self._last_checkpoint in (None, checkpoint.sequence):
             row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
             row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
+        else:
+            # An older checkpoint is good to resume from, and tells the work of then.
+            row |= {**dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         return row
 
 

@@ -55,9 +55,11 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
         real = File(os.path.realpath(name))
         with closing(own(contents, real, force=force)):
             shares = salvaged(contents, lost)
+            if not shares:
+                raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
             dropped = sum(stop - start for start, stop in lost["point"])
             what = f"recovered: {'; '.join(contents.flaws) or 'damaged'}; {dropped} points were not what was written"
-            attributes = {**contents.attributes, **history(contents.attributes, what)}
+            attributes = _legible({**contents.attributes, **history(contents.attributes, what)})
             # What is dropped may be worth more to somebody else than it is to us.
             if damaged:
                 _keep_aside(real)
@@ -91,6 +93,15 @@ def _keep_aside(file: File) -> None:
         raise ArchiveError(f"{file}: is damaged, and would be kept as {aside.name}, which exists already") from None
     except OSError as error:
         raise ArchiveError(f"{file}: is damaged, and cannot be kept as {aside.name} ({error.strerror})") from None
+
+
+def _legible(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Attributes that can be written again, whatever happened to their text."""
+    return {
+        name.encode(errors="replace").decode(): value.encode(errors="replace").decode()
+        if isinstance(value, str) else value
+        for name, value in attributes.items()
+    }  # fmt: skip
 
 
 def interrupt(paths: Mapping[str, Any]) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 from h5py import h5s
 
 from continuation.archive.atomic import beside, check_new, like, publish, short
+from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import (
     GROUP,
     PLACES,
@@ -225,6 +226,7 @@ class Store:
             before.point_blocks + bool(points),
             before.path_blocks + bool(paths),
             len(self.events),
+            max([before.checkpoint, *(HEAD.unpack_from(raw)[0] for raw in (checkpoints or {}).values())]),
         )
         try:
             for block, start, table, number in (
