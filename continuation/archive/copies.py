@@ -13,8 +13,9 @@ from continuation.archive.atomic import beside, like, publish
 from continuation.archive.contents import Contents
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
-from continuation.archive.schema import Layout
+from continuation.archive.schema import TEXT, Layout, text
 from continuation.archive.store import Store
+from continuation.status import Status
 
 _BLOCK_BYTES = 1 << 23
 
@@ -48,6 +49,13 @@ def leading_paths(archive: Archive, paths: int, points: int) -> Share:
 def everything(archive: Archive) -> Share:
     """All that was committed."""
     return leading_paths(archive, len(archive), archive.points.size)
+
+
+def interrupt(paths: Mapping[str, Any]) -> None:
+    """A path that was being traced when its writer died counts as interrupted."""
+    open_ = paths["status"] == int(Status.TRACING)
+    paths["status"][open_] = int(Status.INTERRUPTED)
+    paths["message"][open_] = text(f"{Status.INTERRUPTED} Its writer was killed.", TEXT)
 
 
 def leading(sources: Sequence[Contents]) -> Contents:

@@ -11,14 +11,13 @@ from typing import Any
 
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
-from continuation.archive.copies import everything, put, write_copy
+from continuation.archive.copies import everything, interrupt, put, write_copy
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import check_writable
 from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
 from continuation.archive.salvage import salvaged
-from continuation.archive.schema import TEXT, text
 from continuation.status import Status
 
 
@@ -102,13 +101,6 @@ def _legible(attributes: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(value, str) else value
         for name, value in attributes.items()
     }  # fmt: skip
-
-
-def interrupt(paths: Mapping[str, Any]) -> None:
-    """A path that was being traced when its writer died counts as interrupted."""
-    open_ = paths["status"] == int(Status.TRACING)
-    paths["status"][open_] = int(Status.INTERRUPTED)
-    paths["message"][open_] = text(f"{Status.INTERRUPTED} Its writer was killed.", TEXT)
 
 
 def kept(checkpoint: Checkpoint | None) -> dict[int, bytes]:

@@ -237,6 +237,8 @@ def _hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
             if group is not None:
                 at = root
                 for part in filter(None, group.split("/")):
+                    if part not in at:
+                        raise ValueError(f"no group {group}")
                     at = subgroup(at, part)
             else:
                 nested = subgroup(root, "problem") if "problem" in root and "A" not in root else None
