@@ -17,6 +17,8 @@ from continuation.archive.contents import Contents
 from continuation.archive.datasets import LIMIT
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES
+from continuation.archive.stored import events as events_of
+from continuation.archive.stored import stored_path
 from continuation.archive.tables import Table
 from continuation.citation import entries
 from continuation.counts import Counts
@@ -88,8 +90,10 @@ class Archive(Sequence[Path]):
             return [self.path(i) for i in range(*index.indices(len(self)))]
         return self.path(index)
 
-    def path(self, index: int) -> Path:
+    def path(self, index: int, *, keep: str = "all") -> Path:
         """One path, as it was traced: status, message, steps, events, counts.
+
+        With ``keep="ends"`` its steps are read from the file when they are asked for, also after the archive is closed.
 
         Tangents are NaN where the file holds none; then `Path.__call__` interpolates linearly between points.
 
@@ -97,12 +101,26 @@ class Archive(Sequence[Path]):
         ------
         IndexError
             If there is no such path.
+        ValueError
+            For another `keep` than ``"all"`` or ``"ends"``.
         """
+        if keep not in ("all", "ends"):
+            raise ValueError(f'keep: expected "all" or "ends", found {keep!r}')
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         index %= len(self)
-        block = self.points.block(self.rows(index))
-        steps, events = from_columns(block, self.event_names, self.layout.observed)
+        try:
+            return self._path(index, keep == "all")
+        except (ValueError, IndexError) as error:
+            raise self.contents.damaged(error) from error
+
+    def _path(self, index: int, whole: bool) -> Path:
+        steps: Any
+        if whole:
+            block = self.points.block(self.rows(index))
+            steps, events = from_columns(block, self.event_names, self.layout.observed)
+        else:
+            steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
         row = {name: column[0] for name, column in self.paths.block(slice(index, index + 1)).items()}
         end_error, winding = float(row["end_error"]), int(row["winding_number"])
         return Path(

@@ -16,11 +16,13 @@ from continuation.archive.atomic import beside, check_new, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
 from continuation.archive.copies import leading_paths, write_copy
 from continuation.archive.errors import ArchiveError
+from continuation.archive.live import publish_live
 from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own
-from continuation.archive.store import Store, publish_live
+from continuation.archive.store import Store
+from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.path import Path
@@ -39,6 +41,7 @@ def resume(
     archive: str | PathLike[str] | None = None,
     observers: tuple[Observer, ...] = (),
     trust: Sequence[Any] = (),
+    keep: str = "all",
     **options: Any,
 ) -> Path:
     """Go on with the last path of an archive; the points that follow are bit for bit those of an uninterrupted trace.
@@ -58,6 +61,8 @@ def resume(
     trust : sequence of class or function
         What may be made besides the parts of the library and the homotopies that installed packages register: a file
         names classes, and is not obeyed.
+    keep : str
+        Which steps the path keeps in memory, as for `PathLog`.
     **options
         Of `continuation.Tracer`, in place of the stored ones: ``budget`` for a path whose budget is used up.
 
@@ -88,12 +93,16 @@ def resume(
         checkpoint = _checkpoint(source, options)
         tracer = _tracer(source, checkpoint, known, homotopy, options)
         rows = source.rows(checkpoint.path).start + checkpoint.rows
-        _check_homotopy(tracer.homotopy, checkpoint, float(source.points["residual_norm"][rows - 1]))
-        before = source.path(checkpoint.path)
+        _check_homotopy(tracer.homotopy, checkpoint, float(source.points.some("residual_norm", slice(rows - 1, rows))[0]))
+        every = kept_every(keep)
+        before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
         store = _beginning(source, checkpoint, rows, target, archive is None)
-    tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
+    if every == 1:
+        tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
+    else:
+        tracer.path.steps = _stored(store.file, checkpoint, every)
     tracer.path.events[:] = [event for event in before.events if event.step <= checkpoint.state.index]
-    log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer)
+    log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer, every)
     tracer.observers = (log, *observers)
     try:
         _run(tracer, checkpoint)
@@ -101,6 +110,12 @@ def resume(
         log.close()
     tracer.path.seconds += checkpoint.seconds
     return tracer.path
+
+
+def _stored(file: File, checkpoint: Checkpoint, every: int) -> Any:
+    """The steps up to the checkpoint, in the new file."""
+    with open_archive(file) as archive:
+        return stored_path(archive, open_archive, file, checkpoint.path, every)
 
 
 def _tracer(

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 from h5py import h5s
 
-from continuation.archive.atomic import beside, check_new, like, publish, short
+from continuation.archive.atomic import short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import (
     GROUP,
@@ -306,46 +306,6 @@ class Store:
             for held in (self._sink, self._lock):
                 if held is not None:
                     held.close()
-
-
-def create(target: File, *arguments: Any, **options: Any) -> Store:
-    """A new file, live from the moment on at which it has its name; arguments as for `Store`.
-
-    Parameters
-    ----------
-    target : pathlib.Path
-
-    Raises
-    ------
-    ArchiveError
-        If the file exists or cannot be made.
-    """
-    check_new(target)
-    with beside(target) as part:
-        return publish_live(Store(part, *arguments, **options), target)
-
-
-def publish_live(store: Store, target: File, *, replace: bool = False) -> Store:
-    """Let a file written beside go live, and give it its name.
-
-    Parameters
-    ----------
-    store : Store
-    target : pathlib.Path
-    replace : bool
-        As for `publish`.
-    """
-    part = store.file
-    try:
-        store.go_live()
-        if replace:
-            like(part, target)
-        publish(part, target, replace=replace)
-    except BaseException:
-        store.close()
-        raise
-    store.file = target
-    return store
 
 
 def _rows(block: Block | None) -> int:

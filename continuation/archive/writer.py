@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
@@ -16,12 +17,15 @@ from continuation.archive import record
 from continuation.archive.atomic import check_new
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.errors import ArchiveError
+from continuation.archive.live import create
 from continuation.archive.problem import problem_data
 from continuation.archive.provenance import root_attributes, scalars
+from continuation.archive.reader import open_archive
 from continuation.archive.record import Record, counted
 from continuation.archive.rows import Row, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout
-from continuation.archive.store import SLOTS, Store, create
+from continuation.archive.store import SLOTS, Store
+from continuation.archive.stored import StoredSteps, kept_every
 from continuation.path import LocatedEvent, Step
 from continuation.status import Status
 from continuation.step.state import State
@@ -86,6 +90,9 @@ class PathLog:
     title : str
     limits : Limits
         When to commit.
+    keep : str
+        Which steps the path keeps in memory: ``"all"``, ``"ends"`` (the first and the last) or ``"every k"``. The
+        others are read from the file when they are asked for.
 
     Attributes
     ----------
@@ -108,12 +115,13 @@ class PathLog:
         tangents: bool = False,
         title: str = "",
         limits: Limits | None = None,
+        keep: str = "all",
     ) -> None:
         check_new(File(file))
-        self._begin(File(file), durable, tangents, title, limits or Limits())
+        self._begin(File(file), durable, tangents, title, limits or Limits(), kept_every(keep))
 
-    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits) -> None:
-        self.file = file
+    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
+        self.file, self._every = file, every
         self.member: int | None = None
         self._durable, self._tangents, self._title, self._limits = durable, tangents, title, limits
         self._many = self._closed = False
@@ -127,10 +135,12 @@ class PathLog:
         self._commit_at = 0.0
 
     @classmethod
-    def continued(cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer) -> PathLog:
+    def continued(
+        cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer, every: int
+    ) -> PathLog:
         """A log that goes on with a path of which the file holds the beginning; for `resume`."""
         log = cls.__new__(cls)
-        log._begin(store.file, store.durable, store.layout.tangents, "", Limits())
+        log._begin(store.file, store.durable, store.layout.tangents, "", Limits(), every)
         log._store, log._buffer, log._paths, log._sequence = store, _Buffer(points), paths, checkpoint.sequence
         log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
         mark = _Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
@@ -145,6 +155,8 @@ class PathLog:
         path = self._path(tracer)
         if self._store is None:
             self._make(tracer, step.u.size - 1, tuple(step.observed))
+        if self._every != 1 and not isinstance(tracer.path.steps, StoredSteps):
+            tracer.path.steps = self._stored(path.number, tracer.path.steps)
         self._add_step(path, step, tracer.path.events)
         state = tracer.state
         if state is not None and state.index == step.index:
@@ -233,6 +245,9 @@ class PathLog:
             held = self._store.layout.unknowns
             raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {u.size - 1}")
         self._buffer.rows.append(row)
+        steps: Any = path.tracer.path.steps
+        if row.step is None and isinstance(steps, StoredSteps):
+            steps.locate()
         self._buffer.nbytes += u.nbytes
         path.rows += 1
 
@@ -278,8 +293,16 @@ class PathLog:
             paths = record.to_columns(row, store.layout)
         store.commit(points, start, paths, row["path"] if row is not None else 0, checkpoints)
         self._buffer = _Buffer(start + len(rows))
+        if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
+            path.tracer.path.steps.committed()
         self._sequence += 1
         self._commit_at = time.monotonic() + self._limits.seconds
+
+    def _stored(self, number: int, steps: Iterable[Step]) -> Any:
+        stored = StoredSteps(open_archive, self.file, number, self._every)
+        for step in steps:
+            stored.append(step)
+        return stored
 
     def _checkpoint(self, path: _Open, mark: _Mark) -> bytes:
         if path.run is None:
