@@ -39,8 +39,9 @@ def beside(target: File) -> Iterator[File]:
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         yield part
-    except ArchiveError:
-        raise
+    except ArchiveError as error:
+        # The name that people know.
+        raise type(error)(str(error).replace(str(part), str(target))) from error
     except (OSError, RuntimeError) as error:
         raise ArchiveError(f"{target}: could not be written ({short(error)})") from error
     finally:
@@ -134,6 +135,8 @@ def check_new(file: File) -> None:
         If it exists, or its directory does not, or may not be written.
     """
     try:
+        if "\0" in str(file):
+            raise ValueError("it holds a NUL")
         if os.path.lexists(file):
             raise exists(file)
         if not file.parent.is_dir():

@@ -17,7 +17,8 @@ from continuation.archive.schema import TEXT, Layout, text
 from continuation.archive.store import Store
 from continuation.status import Status
 
-_BLOCK_BYTES = 1 << 23
+_BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
+"""Of what is copied at once, and so of the blocks that a reader checks whole."""
 
 
 @frozen(eq=False)
@@ -116,7 +117,7 @@ def _copy(share: Share, store: Store, point: int, path: int) -> tuple[int, int]:
     """Append a share; the numbers of points and paths then."""
     source, layout, rows = share.source, store.layout, share.points
     numbers = np.array([store.name_event(name) for name in source.event_names] + [-1], dtype="i2")
-    size = max(_BLOCK_BYTES // (8 * (layout.unknowns + 16)), 1)
+    size = min(max(_BLOCK_BYTES // (8 * (layout.unknowns + 16)), 1), _BLOCK_ROWS)
     for start in range(rows.start, rows.stop, size):
         part = slice(start, min(start + size, rows.stop))
         block = {column.name: source.read("point", column.name, part) for column in source.layout.point_columns}

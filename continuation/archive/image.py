@@ -16,7 +16,7 @@ from continuation.archive.errors import ArchiveError
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # The superblock, versions 2 and 3: byte 8 is the version, byte 11 says whether and how a writer has the file open
 # (version 3), at byte 28 there is the length that the file is to have, at byte 44 a checksum of what is before.
-_VERSION, _IN_USE, _LENGTH, _CRC, _HEAD = 8, 11, 28, 44, 48
+_VERSION, _IN_USE, _LENGTH, _CRC, HEAD_BYTES = 8, 11, 28, 44, 48
 _SWMR = 4
 _WORD = 0xFFFFFFFF
 _HEAP = b"GCOL"
@@ -52,12 +52,12 @@ class Image:
 
     def refresh(self) -> None:
         """Read the beginning anew, of a file that is being written."""
-        head = os.pread(self._descriptor, _HEAD, 0)
+        head = os.pread(self._descriptor, HEAD_BYTES, 0)
         size = os.fstat(self._descriptor).st_size
         _check(self.file, head)
         self.closed_by_writer, self.missing, self.length = True, 0, size
         if head[_VERSION] in (2, 3):
-            (length,) = struct.unpack_from("<Q", head, _LENGTH)
+            length = stated_length(head)
             if struct.unpack_from("<I", head, _CRC)[0] != lookup3(head[:_CRC]):
                 raise ArchiveError(f"{self.file}: truncated or damaged, HDF5 cannot open it (its head is not sound)")
             self.closed_by_writer = head[_VERSION] < 3 or not head[_IN_USE]
@@ -197,6 +197,11 @@ class Sink:
             self.descriptor = -1
 
 
+def stated_length(head: bytes) -> int:
+    """The bytes that a file is to have, as its superblock says."""
+    return int(struct.unpack_from("<Q", head, _LENGTH)[0])
+
+
 def _opened(file: File) -> int:
     try:
         # Without O_NONBLOCK a FIFO would wait for somebody to write to it.
@@ -220,7 +225,7 @@ def _check(file: File, head: bytes) -> None:
         raise ArchiveError(f"{file}: is empty; its writer ended before anything was written")
     if not head.startswith(SIGNATURE):
         raise ArchiveError(f"{file}: is not an HDF5 file, so not an archive")
-    if len(head) < _HEAD:
+    if len(head) < HEAD_BYTES:
         raise ArchiveError(f"{file}: truncated, only its first {len(head)} bytes are there")
 
 

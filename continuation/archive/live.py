@@ -1,4 +1,4 @@
-"""Files that grow under their final name: made beside it, and readable, locked and safe from a kill once they have it."""
+"""Files that grow under their final name: made beside it; readable, locked and safe from a kill once they have it."""
 
 from __future__ import annotations
 

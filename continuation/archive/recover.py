@@ -17,7 +17,7 @@ from continuation.archive.files import check_writable
 from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
-from continuation.archive.salvage import salvaged
+from continuation.archive.salvage import nothing, salvaged
 from continuation.status import Status
 
 
@@ -54,6 +54,8 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
         real = File(os.path.realpath(name))
         with closing(own(contents, real, force=force)):
             shares = salvaged(contents, lost)
+            if not shares and not damaged:
+                shares = [nothing(contents)]
             if not shares:
                 raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
             dropped = sum(stop - start for start, stop in lost["point"])

@@ -93,7 +93,8 @@ def resume(
         checkpoint = _checkpoint(source, options)
         tracer = _tracer(source, checkpoint, known, homotopy, options)
         rows = source.rows(checkpoint.path).start + checkpoint.rows
-        _check_homotopy(tracer.homotopy, checkpoint, float(source.points.some("residual_norm", slice(rows - 1, rows))[0]))
+        residual = source.points.some("residual_norm", slice(rows - 1, rows))
+        _check_homotopy(tracer.homotopy, checkpoint, float(residual[0]))
         every = kept_every(keep)
         before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
         store = _beginning(source, checkpoint, rows, target, archive is None)

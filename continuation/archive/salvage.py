@@ -39,6 +39,13 @@ def salvaged(contents: Contents, lost: Mapping[str, Spans]) -> list[Share]:
     return shares
 
 
+def nothing(contents: Contents) -> Share:
+    """No row at all, of a file to which none was committed."""
+    columns = contents.layout.path_columns
+    empty = {column.name: contents.read("path", column.name, slice(0, 0)) for column in columns}
+    return Share(contents, empty, slice(0, 0))
+
+
 def _outside(spans: Spans, size: int) -> np.ndarray[Any, Any]:
     mask = np.ones(size, dtype=bool)
     for start, stop in spans:

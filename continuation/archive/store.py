@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path as File
 from typing import Any
 
@@ -30,7 +31,7 @@ from continuation.archive.checks import (
     width,
 )
 from continuation.archive.errors import ArchiveError
-from continuation.archive.image import Sink
+from continuation.archive.image import HEAD_BYTES, Sink, stated_length
 from continuation.archive.locks import Lock
 from continuation.archive.problem import write_problem
 from continuation.archive.schema import COMPONENT, EVENT_NAME, NAME, Column, Layout, text
@@ -249,6 +250,7 @@ class Store:
             self._counters["points"][()], self._counters["paths"][()] = after.points, after.paths
             self._flush()
         except (OSError, RuntimeError, ValueError) as error:
+            self.abandon()
             reason = f"could not be written ({short(error)}); what was committed is safe"
             raise ArchiveError(f"{self.file}: {reason}") from error
 
@@ -306,6 +308,23 @@ class Store:
             for held in (self._sink, self._lock):
                 if held is not None:
                     held.close()
+
+    def abandon(self) -> None:
+        """Leave the file as a kill would, and let HDF5 write what it still has to nowhere.
+
+        A write that fails while it closes a file ends the process.
+        """
+        if self._sink is not None:
+            return
+        descriptor = self._h5.id.get_vfd_handle()
+        with suppress(OSError), self.file.open("rb") as head:
+            # The length that the file says it has may be beyond what could be written; zeros do for what is missing.
+            stated = stated_length(head.read(HEAD_BYTES))
+            if stated > os.fstat(descriptor).st_size:
+                os.truncate(self.file, stated)
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, descriptor)
+        os.close(nowhere)
 
 
 def _rows(block: Block | None) -> int:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
+from attrs.validators import ge
 
 from continuation.archive import record
 from continuation.archive.atomic import check_new
@@ -23,7 +24,7 @@ from continuation.archive.provenance import root_attributes, scalars
 from continuation.archive.reader import open_archive
 from continuation.archive.record import Record, counted
 from continuation.archive.rows import Row, to_columns
-from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout
+from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
 from continuation.archive.store import SLOTS, Store
 from continuation.archive.stored import StoredSteps, kept_every
 from continuation.path import LocatedEvent, Step
@@ -36,9 +37,9 @@ from continuation.step.tracer import Tracer
 class Limits:
     """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
 
-    rows: int = 256
-    nbytes: int = 4 << 20
-    seconds: float = 1.0
+    rows: int = field(default=256, validator=ge(1))
+    nbytes: int = field(default=4 << 20, validator=ge(1))
+    seconds: float = field(default=1.0, validator=ge(0.0))
 
 
 @frozen(eq=False)
@@ -175,6 +176,9 @@ class PathLog:
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
+        if self._closed and self._open is not None:
+            # The disk is full, and has been told of.
+            return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         row = record.of_path(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
@@ -262,6 +266,7 @@ class PathLog:
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> None:
         """Make the file, and write the rows of paths that ended before there was one."""
+        check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
         names = {name for row in self._early for name in row["scalars"]} | set(scalars(homotopy))
@@ -291,7 +296,12 @@ class PathLog:
         paths = None
         if row is not None and row["path"] >= store.committed.paths:
             paths = record.to_columns(row, store.layout)
-        store.commit(points, start, paths, row["path"] if row is not None else 0, checkpoints)
+        try:
+            store.commit(points, start, paths, row["path"] if row is not None else 0, checkpoints)
+        except ArchiveError:
+            self._closed = True
+            store.close()
+            raise
         self._buffer = _Buffer(start + len(rows))
         if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
             path.tracer.path.steps.committed()
