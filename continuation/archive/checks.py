@@ -90,7 +90,7 @@ def latest(records: Array) -> Committed:
 
 def digest(values: Any, seed: int = 0) -> int:
     """32 bits that differ for any damage that is likely: CRC-32, of large matrices that of their sums."""
-    whole = np.ascontiguousarray(values)
+    whole: Any = np.ascontiguousarray(values)
     if whole.ndim == 2 and whole.nbytes >= _LARGE and whole.itemsize == 8:
         words = whole.view("u8")
         return zlib.crc32(np.add.reduce(words, axis=1), zlib.crc32(np.add.reduce(words, axis=0), seed))

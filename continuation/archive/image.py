@@ -262,7 +262,7 @@ def lookup3(data: bytes) -> int:
     for shift in (14, 11, 25, 16, 4, 14, 24):
         c = ((c ^ b) - _turned(b, shift)) & _WORD
         a, b, c = b, c, a
-    return b
+    return int(b)
 
 
 def _turned(x: int, k: int) -> int:

@@ -70,8 +70,8 @@ def gather(files: Sequence[File], target: File, *, finished: bool = False) -> No
         archives = [stack.enter_context(open_archive(file)) for file in files]
         chosen: dict[int, tuple[bool, int, int]] = {}
         for k, archive in enumerate(archives):
-            rows = zip(archive.paths["member"].tolist(), archive.paths["status"].tolist(), strict=True)
-            for index, (member, status) in enumerate(rows):
+            ends = zip(archive.paths["member"].tolist(), archive.paths["status"].tolist(), strict=True)
+            for index, (member, status) in enumerate(ends):
                 if finished and status == int(Status.TRACING):
                     continue
                 candidate = (status == int(Status.TRACING), k, index)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import zlib
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -73,7 +73,7 @@ def read_problem(group: Any, checked: bool, limit: int) -> tuple[str, dict[str, 
     arrays = {}
     for name in names(group):
         found = dataset(group, name, None, None, limit)
-        lying = "F" if found.attrs["order"] == "F" else "C"
+        lying: Literal["C", "F"] = "F" if found.attrs["order"] == "F" else "C"
         arrays[name] = np.asarray(found[()], order=lying)
         if checked and digest(arrays[name]) != found.attrs["checksum"]:
             raise DamageError(f"the array {name} of its problem is not what was written")

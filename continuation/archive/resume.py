@@ -184,7 +184,7 @@ def _options(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
 ) -> dict[str, Any]:
     stored = {}
-    trees = checkpoint.run.get("options")
+    trees: Any = checkpoint.run.get("options")
     for name in OPTIONS:
         if name in given:
             continue

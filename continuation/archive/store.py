@@ -89,7 +89,7 @@ class Store:
         part: File,
         layout: Layout,
         attributes: Mapping[str, Any],
-        problem: tuple[str, dict[str, Any]] | None = None,
+        problem: tuple[str, Mapping[str, Any]] | None = None,
         *,
         compression: int = 0,
         durable: bool = False,

@@ -63,7 +63,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     from continuation.progress import Progress
 
     limits = {name: getattr(arguments, name) for name in ("steps", "factorizations") if getattr(arguments, name)}
-    options = {"budget": Budget(**limits)} if limits else {}
+    options: dict[str, Any] = {"budget": Budget(**limits)} if limits else {}
     observers = (Progress(),) if arguments.progress else ()
     with _complaints("FILE", new="--archive"):
         path = resume(
