@@ -101,7 +101,9 @@ class Store:
         self._committed = Committed(sequence=1)
         self._lock: Lock | None = None
         self._sink: Sink | None = Sink(part)
-        self._h5 = h5py.File(self._sink, "w", libver=LIBVER)
+        # Without a cache HDF5 writes what it is given; 1 MiB for each column, kept for nothing, would be 25 MiB.
+        self._cache = {} if compression else {"rdcc_nbytes": 0}
+        self._h5 = h5py.File(self._sink, "w", libver=LIBVER, **self._cache)
         try:
             self._h5.attrs.update(attributes)
             self._build(compression)
@@ -124,7 +126,7 @@ class Store:
         """From now on the file can be read while it grows, survives a kill, and is locked."""
         self.finish(sync=self.durable)
         self._lock = Lock(self.file)
-        self._h5 = h5py.File(self.file, "r+", libver=LIBVER)
+        self._h5 = h5py.File(self.file, "r+", libver=LIBVER, **self._cache)
         self._bind()
         self._h5.swmr_mode = True
 

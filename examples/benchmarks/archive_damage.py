@@ -30,6 +30,7 @@ SECONDS, MEBIBYTES = 5.0, 200
 """What one damaged file may cost, all operations together: seconds of the processor, and memory above the start."""
 
 PAGE = 4096
+_OFTEN = 1000
 PATHS = {column.name: column.storage for column in PATH_COLUMNS}
 
 
@@ -206,7 +207,9 @@ def damage(folder: Path, count: int, seed: int = 0) -> bool:
             if verdict not in ("right", "error"):
                 good = False
                 print(f"  case {k} of seed {seed}, {kind} of {file.name}: {name}: {verdict}", flush=True)
-    print(f"{count} damaged files:", flush=True)
+        if k % _OFTEN == _OFTEN - 1:
+            print(f"  {k + 1} so far", flush=True)
+    print(f"{count} damaged files:")
     for (name, verdict), number in sorted(tally.items()):
         print(f"  {name:<9} {number:6} {verdict}")
     return good
