@@ -18,7 +18,8 @@ from continuation.linear import BorderedSystem
 from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.proof.certificate import Certificate, certify
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.verdict import confirmed
 
 Mask = NDArray[np.bool_]
 
@@ -176,21 +177,27 @@ class Finish:
 
     def _plausible(self, x: Array, w: Array) -> bool:
         """Whether the signs are right to about the tolerance, so that a certificate is worth its cost."""
-        lowest = min(float(x.min()), float(w.min()))
-        return lowest >= 0.0 or lowest >= -self.tolerance * self.problem.scale(x)
+        size = float(np.abs(x).max())
+        return bool(
+            x.min() >= -self.tolerance * size and w.min() >= -self.tolerance * (self.problem.scale(x) - 1.0)
+        )
 
     def _certified(self, face: Face, x: Array) -> tuple[Array, bool]:
-        """The point, clipped to x >= 0 and certified; else corrected in twice the working precision, for its signs."""
-        for _ in range(CORRECTIONS):
-            clipped = np.maximum(x, 0.0)
-            certificate = certify(self.problem, clipped)
-            if certificate.solves(self.tolerance):
-                self.certificate = certificate
-                return clipped, True
+        """The point, clipped to x >= 0 and certified, corrected in twice the working precision until that is round-off."""
+        best: Certificate | None = None
+        for left in reversed(range(CORRECTIONS + 1)):
+            certificate = certify(self.problem, np.maximum(x, 0.0))
+            if best is None or certificate.relative_residual < best.relative_residual:
+                best = certificate
+            if best.relative_residual <= ROUND_OFF or not left:
+                break
             better = face.refined(x)
             if not np.isfinite(better).all():
                 break
             x = better
+        if best is not None and confirmed(self.problem, best, self.tolerance):
+            self.certificate = best
+            return best.x, True
         return x, False
 
 

@@ -196,6 +196,6 @@ def _within(problem: LCP, rows: Exponents, columns: Exponents) -> bool:
     for part, powers in ((values, exponents), (problem.q, rows)):
         chosen = part != 0.0
         logs = (np.frexp(part)[1] + powers)[chosen]
-        if logs.size and not (SMALLEST <= logs.min() and logs.max() <= LARGEST):
+        if logs.size and not (logs.min() >= SMALLEST and logs.max() <= LARGEST):
             return False
     return True

@@ -22,18 +22,13 @@ from problems.lcp.active_set.face import Mask
 from problems.lcp.active_set.finish import Finish, Finishing
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import KKTHomotopy, Structure
-from problems.lcp.proof.certificate import Certificate, certify
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.verdict import confirmed, stationary
 from problems.lcp.search.padded import Padded
 from problems.lcp.search.restarts import FAR, TWO_VECTOR, Band, Restart, light, reweighted, trace_light
 
 MAKERS: dict[str, Callable[..., Any]] = {"kkt": KKTHomotopy, **TWO_VECTOR}
 """By the name that `solve` takes."""
-
-ROUND_OFF = 1e-15
-"""An end of this relative residual needs no polish."""
-
-STATIONARY = 1e-6
-"""Relative to the data and the point: how well the optimality conditions hold at what is called stationary."""
 
 IN_FLIGHT = 64
 """Restarts handed to an executor before the first of them has come back."""
@@ -104,7 +99,7 @@ class Search:
     @property
     def solved(self) -> bool:
         """Whether the last end is a solution."""
-        return bool(self.ends) and self.ends[-1].certificate.solves(self.tolerance)
+        return bool(self.ends) and self._confirmed(self.ends[-1])
 
     def accept(self, certificate: Certificate) -> None:
         """Take a point that no path led to into account."""
@@ -143,21 +138,15 @@ class Search:
         self.counts = self.counts + path.counts
         if path.steps:
             arrived = path.status is Status.REACHED_TARGET
-            stationary = arrived and not weighted and self._stationary(path)
-            self.ends.append(Candidate(self._certified(path, arrived), len(self.paths), stationary))
+            at_stationary = arrived and not weighted and stationary(self.problem, path.endpoint.y)
+            self.ends.append(Candidate(self._certified(path, arrived), len(self.paths), at_stationary))
             self._kept += len(path) * path.endpoint.u.size
         if self._kept > LARGEST_KEPT:
             light(path)
         self.paths.append(path)
 
-    def _stationary(self, path: Path) -> bool:
-        """Whether the end satisfies the optimality conditions of min x'w: those that the KKT homotopy relaxes."""
-        end, n = path.endpoint, self.problem.n
-        if end.y.size != 3 * n:
-            return False
-        size = STATIONARY * (1.0 + float(np.abs(self.problem.q).max()) + float(np.abs(end.y).max()))
-        lowest = min(float(end.y.min()), float(self.problem.w(end.y[:n]).min()))
-        return end.residual_norm <= size and lowest >= -size
+    def _confirmed(self, end: Candidate) -> bool:
+        return confirmed(self.problem, end.certificate, self.tolerance)
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
         """The certificate of a path's end, which the finish brings to round-off where it can."""
@@ -244,5 +233,5 @@ class Search:
         """The solution, else the best stationary point, else the end of least residual."""
         if not self.ends:
             return None
-        return min(self.ends, key=lambda end: (not end.certificate.solves(self.tolerance), not end.stationary,
+        return min(self.ends, key=lambda end: (not self._confirmed(end), not end.stationary,
                                                end.certificate.residual))

@@ -23,13 +23,15 @@ from problems.lcp.active_set.finish import PATIENCE, Finish
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import LCP
-from problems.lcp.data.scaling import Scaled, balanced
+from problems.lcp.data.scaling import OutOfRange, Scaled, balanced
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.starts import positive_vector
 from problems.lcp.proof.certificate import certify
-from problems.lcp.proof.farkas import Farkas, farkas
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, in_given_units, infeasibility
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint
-from problems.lcp.search.outcome import Outcome, Solution
+from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, at, beyond_floats, confirmed, judged, rounded
+from problems.lcp.reference.enumeration import Exhaustion, exhaust
+from problems.lcp.search.outcome import Solution
 from problems.lcp.search.restarts import FAR, NEAR
 from problems.lcp.search.search import MAKERS, Search
 
@@ -41,14 +43,11 @@ FIRST_STEPS = 30
 LEAST_STEPS = 1000
 """The same for a Z-matrix, where every correction makes the active set larger until it is right."""
 
-LARGEST_PROOF = 300
-"""The largest order at which a proof that there is no solution is looked for unasked."""
-
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program costs less than a path, so it comes first."""
 
-NEARLY = 1e-5
-"""An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
+PROOF_SHARE = 0.2
+"""Of the time left, the most that the linear program of a proof takes. It is mostly far quicker than a path."""
 
 
 def solve(
@@ -120,7 +119,12 @@ def solve(
     if archive is not None and executor is not None:
         raise ValueError("executor: expected None with an archive, which one process writes")
     start = None if x0 is None else positive_vector("x0", x0, problem.n)
-    scaled = balanced(problem) if homotopy == "auto" else None
+    try:
+        scaled = balanced(problem) if homotopy == "auto" else None
+    except OutOfRange:
+        if problem.n > LARGEST_DECIDED:
+            raise
+        return beyond_floats(problem, tolerance)
     structure = Structure(problem if scaled is None else scaled.problem)
     search = Search(
         structure,
@@ -153,19 +157,16 @@ def _check_options(tolerance: Any, restarts: Any, options: dict[str, Any]) -> No
 
 
 def _unscaled(problem: LCP, scaled: Scaled, answer: Solution, tolerance: float) -> Solution:
-    """The answer for the problem as given, judged anew there."""
+    """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units."""
     message = f"{answer.message} Rows and columns were scaled by powers of two; the paths are in scaled units."
-    certificate = None if answer.x is None else certify(problem, scaled.x(answer.x))
-    outcome = answer.outcome
-    if outcome is Outcome.SOLVED and certificate is not None and not certificate.solves(tolerance):
-        outcome = Outcome.NOT_FOUND
-        message += f" Unscaled, the solution misses the tolerance: its residual is {certificate.residual:.1e}."
-    if outcome is Outcome.UNSOLVABLE:
-        proof = farkas(problem)
-        if proof is None:
-            outcome = Outcome.NOT_FOUND
-        return evolve(answer, problem=problem, outcome=outcome, certificate=certificate, message=message, farkas=proof)
-    return evolve(answer, problem=problem, outcome=outcome, certificate=certificate, message=message)
+    found = evolve(
+        answer,
+        problem=problem,
+        message=message,
+        farkas=None if answer.farkas is None else in_given_units(answer.farkas, problem, scaled.rows),
+        float_farkas=None if answer.float_farkas is None else in_given_units(answer.float_farkas, problem, scaled.rows),
+    )
+    return found if answer.x is None else at(found, scaled.x(answer.x), tolerance)
 
 
 def _automatic(search: Search, x0: Array | None, restarts: int, seed: int, executor: Executor | None) -> Solution:
@@ -184,14 +185,18 @@ def _automatic(search: Search, x0: Array | None, restarts: int, seed: int, execu
     early = problem.n <= LARGEST_EARLY_PROOF
     for name in known.names:
         first = name == known.names[0]
-        if first and early and (proof := farkas(problem)) is not None:
+        if first and early and (proof := _proof(search)) is not None:
             return _answer(search, f"{said} A linear program gave the proof.", proof)
         if search.follow(MAKERS[name](problem, x0, structure=search.structure), preset=FAST):
             return _answer(search, f"{said} Solved by the path of the {name} homotopy.")
         if search.exhausted:
             return _failure(search, said, 0, seed)
-        if first and not early and (proof := _proof(problem)) is not None:
+        if first and not early and (proof := _proof(search)) is not None:
             return _answer(search, f"{said} A linear program gave the proof.", proof)
+    if problem.n <= LARGEST_DECIDED and (decided := exhaust(problem, max(search.budget.seconds - search.seconds, 0.0))):
+        if decided.x is not None:
+            search.accept(certify(problem, rounded(decided.x)))
+        return _answer(search, f"{said} All complementary faces were tried in exact arithmetic.", exhaustion=decided)
     tried = search.restart("kkt", seed, restarts, executor, NEAR if known.nonnegative else FAR)
     if search.solved:
         return _answer(search, f"{said} Solved by a path of the kkt homotopy from random start {tried} (seed {seed}).")
@@ -223,7 +228,7 @@ def _named(
         return _answer(search, str(error), proof if proof is not None and proof.no_feasible_point else None)
     if search.follow(homotopy):
         return _answer(search, f"By the path of the {name} homotopy.")
-    proof = _proof(search.problem)
+    proof = _proof(search)
     if proof is not None:
         return _answer(search, "A linear program gave the proof.", proof)
     tried = search.restart(name, seed, restarts, executor)
@@ -232,31 +237,32 @@ def _named(
     return _failure(search, "", tried, seed)
 
 
-def _proof(problem: LCP) -> Farkas | None:
-    """An exact proof that there is no feasible point, where looking for it is cheap."""
-    return farkas(problem) if problem.n <= LARGEST_PROOF else None
+def _proof(search: Search) -> Farkas | FloatFarkas | None:
+    """A proof that there is no feasible point, exact or to working precision."""
+    return infeasibility(search.problem, PROOF_SHARE * max(search.budget.seconds - search.seconds, 0.0))
 
 
-def _answer(search: Search, message: str, proof: Farkas | None = None) -> Solution:
+def _answer(
+    search: Search, message: str, proof: Farkas | FloatFarkas | None = None, exhaustion: Exhaustion | None = None
+) -> Solution:
     end = search.best()
-    outcome = Outcome.NOT_FOUND
-    if end is not None and end.certificate.solves(search.tolerance):
-        outcome = Outcome.SOLVED
-    elif proof is not None:
-        outcome = Outcome.UNSOLVABLE
-    elif end is not None and end.stationary and not end.certificate.solves(NEARLY):
-        outcome = Outcome.STATIONARY
-    return Solution(
+    solved = end is not None and confirmed(search.problem, end.certificate, search.tolerance)
+    at_stationary = end is not None and end.stationary and not end.certificate.solves(NEARLY)
+    outcome = judged(solved, proof, exhaustion, at_stationary)
+    answer = Solution(
         search.problem,
         outcome,
-        f"{outcome} {message}",
+        message,
         None if end is None else end.certificate,
         tuple(search.paths),
         -1 if end is None else end.path,
         search.counts,
         search.seconds,
-        proof,
+        proof if isinstance(proof, Farkas) else None,
+        exhaustion,
+        proof if isinstance(proof, FloatFarkas) else None,
     )
+    return evolve(answer, message=" ".join(part for part in (str(outcome), answer.proof, message) if part))
 
 
 def _failure(search: Search, said: str, tried: int, seed: int) -> Solution:
