@@ -183,7 +183,7 @@ class Finish:
         )
 
     def _certified(self, face: Face, x: Array) -> tuple[Array, bool]:
-        """The point, clipped to x >= 0 and certified, corrected in twice the working precision until that is round-off."""
+        """The point, clipped to x >= 0 and certified, corrected in twice the precision until that is round-off."""
         best: Certificate | None = None
         for left in reversed(range(CORRECTIONS + 1)):
             certificate = certify(self.problem, np.maximum(x, 0.0))

@@ -27,9 +27,14 @@ missing is smooth, a common unit of neighbours, and changes no entry of the scal
 ACCURACY = 1e-6
 """Of the logarithms: far below the 1/2 at which rounding decides."""
 
-SMALLEST, LARGEST = -962.0, 962.0
-"""Base-2 logarithms between which all entries must lie, about 1e-290 and 1e290: products of two rows' terms may
-underflow or overflow beyond."""
+LARGEST = 300
+"""Base-2 logarithm of the largest entry, about 1e90: products of three larger ones overflow."""
+
+SMALLEST = -1021
+"""Base-2 logarithm below which a float has fewer digits, so that scaling may round it."""
+
+LEAST_WEIGHT = 1e-4
+"""Entries of less weight do not count at all."""
 
 
 class OutOfRange(ValueError):
@@ -45,11 +50,14 @@ class Scaled:
     problem : LCP
     rows, columns : integer arrays of shape (n,)
         R = diag(2^rows) and C = diag(2^columns).
+    exact : bool
+        Whether no entry was rounded: one below 1e-290 of the others may be, or vanish.
     """
 
     problem: LCP
     rows: Exponents
     columns: Exponents
+    exact: bool
 
     def x(self, u: Array) -> Array:
         """The point of the problem as given; infinite or zero where it is beyond the range of floats."""
@@ -66,7 +74,7 @@ def balanced(problem: LCP) -> Scaled | None:
     Raises
     ------
     OutOfRange
-        If neither these units nor the given ones keep all entries within 1e-290 .. 1e290.
+        If neither in these units nor in the given ones all entries are below 1e90.
 
     References
     ----------
@@ -75,14 +83,16 @@ def balanced(problem: LCP) -> Scaled | None:
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
         return None
-    if not _within(problem, rows, columns):
-        if _within(problem, np.zeros_like(rows), np.zeros_like(columns)):
+    least, largest = _range(problem, rows, columns)
+    if largest > LARGEST:
+        if _range(problem, np.zeros_like(rows), np.zeros_like(columns))[1] <= LARGEST:
             return None
         raise OutOfRange(
-            "A, q: expected entries that some units of rows and columns bring within 1e-290 .. 1e290, found none: "
-            "their sizes are too far apart"
+            "A, q: expected entries that some units of rows and columns bring below 1e90, found none: their sizes are "
+            "too far apart"
         )
-    return Scaled(LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows)), rows, columns)
+    scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows))
+    return Scaled(scaled, rows, columns, exact=least > SMALLEST)
 
 
 def units(problem: LCP) -> tuple[Exponents, Exponents]:
@@ -91,18 +101,20 @@ def units(problem: LCP) -> tuple[Exponents, Exponents]:
     Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
     they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
     """
-    pattern, row_sums, column_sums = _logarithms(problem.A)
-    r, c = _least_squares(pattern, row_sums, column_sums)
-    part_of_row, part_of_column = _parts(pattern)
+    weights, row_sums, column_sums = _logarithms(problem.A)
+    r, c = _least_squares(weights, row_sums, column_sums)
+    part_of_row, part_of_column = _parts(weights)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1
     pairs = np.unique(parts * part_of_row + part_of_column, return_inverse=True)[1]
     difference = _rounded(r - c, pairs)
     rows = _rounded(0.5 * (r + c + difference), pairs)
     columns = rows - difference
     # What rounding has added to all entries of a connected part of A is taken off again.
-    in_row, in_column = pattern @ np.ones(problem.n), pattern.T @ np.ones(problem.n)
-    added = np.bincount(part_of_row, in_row * (rows - r), parts) + np.bincount(part_of_column, in_column * (columns - c), parts)
-    rows = rows - np.round(added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)).astype(np.int64)[part_of_row]
+    in_row, in_column = weights @ np.ones(problem.n), weights.T @ np.ones(problem.n)
+    added = np.bincount(part_of_row, in_row * (rows - r), parts)
+    added += np.bincount(part_of_column, in_column * (columns - c), parts)
+    mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), LEAST_WEIGHT)
+    rows = rows - np.round(mean).astype(np.int64)[part_of_row]
     # Each part leaves a factor between its rows and columns free: the largest entry of q there becomes about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
@@ -112,28 +124,39 @@ def units(problem: LCP) -> tuple[Exponents, Exponents]:
 
 
 def _logarithms(A: Matrix) -> tuple[Any, Array, Array]:
-    """The pattern of A, with ones for its nonzero entries, and the sums over rows and columns of their logarithms."""
+    """How much each entry of A counts, and the sums over rows and columns of their logarithms, so weighted.
+
+    Of a dense matrix an entry a_ij counts by the root of |a_ij a_ji / (a_ii a_jj)| where that is below 1, which does
+    not depend on units: entries of 1e-300 in a matrix of a kernel exp(-d^2) say nothing about units. Those of a sparse
+    matrix all count alike; it has zeros for such entries.
+    """
     if sp.issparse(A):
-        pattern = sp.csr_array(A)
-        pattern = sp.csr_array((pattern.data, pattern.indices, pattern.indptr), shape=A.shape)
-        pattern.eliminate_zeros()
-        logs = sp.csr_array((np.log2(np.abs(pattern.data)), pattern.indices, pattern.indptr), shape=A.shape)
-        pattern = sp.csr_array((np.ones(pattern.nnz), pattern.indices, pattern.indptr), shape=A.shape)
+        stored = sp.csr_array((A.data, A.indices, A.indptr), shape=A.shape, copy=True)
+        stored.eliminate_zeros()
+        logs = sp.csr_array((np.log2(np.abs(stored.data)), stored.indices, stored.indptr), shape=A.shape)
+        pattern = sp.csr_array((np.ones(stored.nnz), stored.indices, stored.indptr), shape=A.shape)
         return pattern, np.asarray(logs.sum(axis=1)).ravel(), np.asarray(logs.sum(axis=0)).ravel()
     present = A != 0.0
     logs = np.log2(np.abs(A), where=present, out=np.zeros_like(A))
-    return present.astype(float), logs.sum(axis=1), logs.sum(axis=0)
+    weights = present.astype(float)
+    compared = present & present.T & present.diagonal()[:, None] & present.diagonal()
+    excess = logs + logs.T - logs.diagonal()[:, None] - logs.diagonal()
+    np.exp2(0.5 * np.minimum(excess, 0.0), where=compared, out=weights)
+    weights[weights < LEAST_WEIGHT] = 0.0
+    logs *= weights
+    return weights, logs.sum(axis=1), logs.sum(axis=0)
 
 
-def _least_squares(pattern: Any, row_sums: Array, column_sums: Array) -> tuple[Array, Array]:
-    """The r and c of least sum of (log |a_ij| + r_i + c_j)^2 over the nonzero entries; zero for empty rows and columns.
+def _least_squares(weights: Any, row_sums: Array, column_sums: Array) -> tuple[Array, Array]:
+    """The r and c of least weighted sum of (log |a_ij| + r_i + c_j)^2; zero for empty rows and columns.
 
     Conjugate gradients for c, after elimination of r.
     """
     ones = np.ones(row_sums.size)
-    in_row, in_column = np.maximum(pattern @ ones, 1.0), np.maximum(pattern.T @ ones, 1.0)
+    in_row, in_column = weights @ ones, weights.T @ ones
+    in_row, in_column = np.where(in_row > 0.0, in_row, 1.0), np.where(in_column > 0.0, in_column, 1.0)
     c = np.zeros(ones.size)
-    residual = pattern.T @ (row_sums / in_row) - column_sums
+    residual = weights.T @ (row_sums / in_row) - column_sums
     direction, last = c, 1.0
     for _ in range(SWEEPS):
         preconditioned = residual / in_column
@@ -141,35 +164,33 @@ def _least_squares(pattern: Any, row_sums: Array, column_sums: Array) -> tuple[A
             break
         product = float(residual @ preconditioned)
         direction = preconditioned + (product / last) * direction
-        image = in_column * direction - pattern.T @ ((pattern @ direction) / in_row)
+        image = in_column * direction - weights.T @ ((weights @ direction) / in_row)
         curvature = float(direction @ image)
         if not curvature > 0.0:
             break
         c = c + (product / curvature) * direction
         residual = residual - (product / curvature) * image
         last = product
-    return -(row_sums + pattern @ c) / in_row, c
+    return -(row_sums + weights @ c) / in_row, c
 
 
-def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+def _parts(weights: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     """Which connected part each row and each column is of."""
-    n = pattern.shape[0]
-    ones = np.ones(n)
-    in_row = pattern @ ones
-    if in_row.max() == n and in_row.min() > 0.0:
-        # A full row joins all columns, and every row has an entry in one.
+    n = weights.shape[0]
+    if not sp.issparse(weights) and (weights > 0.0).all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
-    entries = sp.coo_array(pattern)
+    entries = sp.coo_array(weights)
     graph = sp.coo_array((entries.data, (entries.row, n + entries.col)), shape=(2 * n, 2 * n))
     labels = connected_components(graph, directed=False)[1]
     return labels[:n], labels[n:]
 
 
 def _rounded(values: Array, groups: NDArray[Any]) -> Exponents:
-    """The values rounded to integers, in each group about the mean of their fractions, so that what is alike stays so."""
+    """The values rounded to integers, in each group about the mean of their fractions: what is alike stays so."""
     turns = np.exp(2j * np.pi * values)
     fraction = np.angle(np.bincount(groups, turns.real) + 1j * np.bincount(groups, turns.imag)) / (2.0 * np.pi)
-    return np.round(values - fraction[groups]).astype(np.int64)
+    exponents: Exponents = np.round(values - fraction[groups]).astype(np.int64)
+    return exponents
 
 
 def _times(values: Array, exponents: Exponents) -> Array:
@@ -186,16 +207,14 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
     return sp.csr_array((_times(stored.data, exponents), stored.indices, stored.indptr), shape=A.shape)
 
 
-def _within(problem: LCP, rows: Exponents, columns: Exponents) -> bool:
-    """Whether every entry that is not zero stays within range, so that the scaling is exact."""
+def _range(problem: LCP, rows: Exponents, columns: Exponents) -> tuple[int, int]:
+    """The base-2 logarithms of the smallest and the largest entry that is not zero, once scaled; zeros without any."""
     if sp.issparse(problem.A):
         entries = sp.coo_array(problem.A)
         values, exponents = entries.data, rows[entries.row] + columns[entries.col]
     else:
         values, exponents = problem.A, rows[:, None] + columns
-    for part, powers in ((values, exponents), (problem.q, rows)):
-        chosen = part != 0.0
-        logs = (np.frexp(part)[1] + powers)[chosen]
-        if logs.size and not (logs.min() >= SMALLEST and logs.max() <= LARGEST):
-            return False
-    return True
+    logs = np.concatenate([
+        (np.frexp(part)[1] + powers)[part != 0.0] for part, powers in ((values, exponents), (problem.q, rows))
+    ])  # fmt: skip
+    return int(logs.min(initial=0)), int(logs.max(initial=0))

@@ -178,9 +178,10 @@ class ExactCertificate:
 def certify_exactly(problem: LCP, x: Array) -> ExactCertificate:
     """Solve on the active set of x in rational arithmetic and decide exactly whether that solves the LCP.
 
-    The active set is {x_i > w_i}, each relative to the terms of the rows; if its point is not a solution, two more are tried, in which the
-    indices that are zero in both x and w, to `SMALL`, are left out or taken in. On a singular active set the dependent entries of x
-    keep their float values, so degenerate and rank-deficient problems have certificates too.
+    The active set is {x_i > w_i}, each relative to the terms of the rows; if its point is not a solution, two more
+    are tried, in which the indices that are zero in both x and w, to `SMALL`, are left out or taken in. On a singular
+    active set the dependent entries of x keep their float values, so degenerate and rank-deficient problems have
+    certificates too.
 
     Parameters
     ----------

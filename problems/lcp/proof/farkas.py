@@ -70,6 +70,16 @@ class Farkas:
         """Whether {x >= 0, A x + q >= 0} is proved empty, so that the LCP has no solution."""
         return self.gap < 0
 
+    def in_units(self, problem: LCP, rows: NDArray[np.int64]) -> Farkas:
+        """The multiplier for `problem`, where this one is for the problem whose rows are 2^rows times those of it."""
+        least = int(rows.min())
+        y = [value << (int(power) - least) for value, power in zip(self.y, rows)]
+        return _farkas(_integers_of(problem).gap, y)
+
+    def holds(self, problem: LCP) -> bool:
+        """Whether it proves, exactly, that `problem` has no feasible point."""
+        return _integers_of(problem).hold(list(self.y), strict=True)
+
 
 @frozen(eq=False)
 class FloatFarkas:
@@ -91,6 +101,11 @@ class FloatFarkas:
     y: Array
     error: float
     gap: float
+
+    def in_units(self, rows: NDArray[np.int64]) -> FloatFarkas:
+        """The multiplier for the problem whose rows are 2^-rows times those of this one."""
+        y = np.ldexp(self.y, rows - int(rows[self.y > 0.0].max()))
+        return FloatFarkas(y / y.max(), self.error, self.gap)
 
 
 def farkas(problem: LCP) -> Farkas | None:
@@ -133,16 +148,6 @@ def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFark
         return None
     proof = _exact(problem, matrix, guess, rows, strict=True)
     return proof if proof is not None else _nearly(LCP(matrix, vector), guess, rows)
-
-
-def in_given_units(proof: Farkas | FloatFarkas, problem: LCP, rows: NDArray[np.int64]) -> Farkas | FloatFarkas:
-    """The proof for `problem`, from that for the problem whose rows are 2^rows times those of this one."""
-    if isinstance(proof, FloatFarkas):
-        y = np.ldexp(proof.y, rows - int(rows[proof.y > 0.0].max()))
-        return FloatFarkas(y / y.max(), proof.error, proof.gap)
-    least = int(rows.min())
-    numbers = [value << (int(power) - least) for value, power in zip(proof.y, rows)]
-    return _farkas(integer_rows(problem.q[None, :], np.zeros(1))[0], numbers)
 
 
 def empty_interior(problem: LCP) -> Farkas | None:
@@ -195,9 +200,7 @@ def _multiplier(problem: LCP, strict: bool) -> Farkas | None:
 def _exact(problem: LCP, matrix: Matrix, guess: Array, rows: Array, strict: bool) -> Farkas | None:
     """The first candidate near the guess that passes the check in integers."""
     # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
-    conditions = _Conditions(
-        integer_rows(_transposed(problem.A), np.zeros(problem.n)), integer_rows(problem.q[None, :], np.zeros(1))[0]
-    )
+    conditions = _integers_of(problem)
     for candidate in _candidates(conditions, matrix, guess, rows):
         if conditions.hold(candidate, strict):
             return _farkas(conditions.gap, candidate)
@@ -262,6 +265,12 @@ class _Conditions:
         if gap > 0 or (strict and gap == 0):
             return False
         return all(column.times(y, 1) <= 0 for column in self.columns)
+
+
+def _integers_of(problem: LCP) -> _Conditions:
+    """The conditions on a multiplier, on the data as given."""
+    columns = integer_rows(_transposed(problem.A), np.zeros(problem.n))
+    return _Conditions(columns, integer_rows(problem.q[None, :], np.zeros(1))[0])
 
 
 def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array) -> Iterator[list[int]]:

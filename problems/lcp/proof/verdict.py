@@ -1,4 +1,4 @@
-"""What may be said of a problem: which points count as solutions, which as stationary, and what proves that there is none."""
+"""What may be said of a problem: which points solve it, which are stationary, and what proves that none solves it."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from attrs import evolve
 from continuation.arrays import Array
 from continuation.counts import Counts
 from problems.lcp.data.problem import LCP
+from problems.lcp.data.scaling import Scaled
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import DROWNED, ROUND_OFF, Certificate, certify, certify_exactly
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
@@ -104,18 +105,31 @@ def _float(value: Fraction) -> float:
         return math.inf
 
 
-def at(found: Solution, x: Array, tolerance: float) -> Solution:
-    """The answer at a point x of the problem as given, which was found in other units.
+def in_units(found: Solution, scaled: Scaled, tolerance: float) -> Solution:
+    """The answer in the units of the problem as given: what was judged does not depend on units.
 
     Parameters
     ----------
     found : Solution
-        Of the problem as given, but for its point.
-    x : Array of shape (n,)
-        Infinite or zero where the point is beyond the range of floats.
+        Of the problem as given, but for its point and its proofs, which are in those of `scaled`.
+    scaled : Scaled
     tolerance : float
         Of the relative residual.
     """
+    exact, nearly = found.farkas, found.float_farkas
+    if exact is not None:
+        moved = exact.in_units(found.problem, scaled.rows)
+        if not scaled.exact and not moved.holds(found.problem):
+            message = f"{Outcome.NOT_FOUND} A Farkas vector fails for the digits that scaling lost. {found.message}"
+            return evolve(found, outcome=Outcome.NOT_FOUND, certificate=None, message=message, farkas=None)
+        found = evolve(found, farkas=moved)
+    if nearly is not None:
+        found = evolve(found, float_farkas=nearly.in_units(scaled.rows))
+    return found if found.x is None else _at(found, scaled.x(found.x), tolerance)
+
+
+def _at(found: Solution, x: Array, tolerance: float) -> Solution:
+    """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
     if found.outcome is not Outcome.SOLVED or (
@@ -123,8 +137,8 @@ def at(found: Solution, x: Array, tolerance: float) -> Solution:
     ):
         return evolve(found, certificate=certificate)
     i = int(np.argmax(bad)) if bad.any() else int(np.argmin(np.where(x > 0.0, x, np.inf)))
-    message = f"{Outcome.NOT_FOUND} There is a solution, but no float holds it: x[{i}] is {_size(x[i])}. {found.message}"
-    return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=message)
+    message = f"{Outcome.NOT_FOUND} There is a solution, but no float holds it: x[{i}] is {_size(x[i])}."
+    return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")
 
 
 def _size(value: float) -> str:
@@ -132,13 +146,13 @@ def _size(value: float) -> str:
 
 
 def beyond_floats(problem: LCP, tolerance: float) -> Solution:
-    """The answer to a small problem whose entries are too far apart to work with in floats: by exact arithmetic alone."""
+    """The answer to a small problem whose entries are too far apart for floats: by exact arithmetic alone."""
     began = time.perf_counter()
     decided = exhaust(problem)
     assert decided is not None
     outcome = Outcome.SOLVED if decided.solvable else Outcome.UNSOLVABLE
-    message = "The sizes of the entries are too far apart for floats; all complementary faces were tried in exact arithmetic."
+    message = "Its entries are too far apart for floats; all complementary faces were tried in exact arithmetic."
     found = Solution(
         problem, outcome, f"{outcome} {message}", None, (), -1, Counts(), time.perf_counter() - began, None, decided
     )
-    return found if decided.x is None else at(found, rounded(decided.x), tolerance)
+    return found if decided.x is None else _at(found, rounded(decided.x), tolerance)

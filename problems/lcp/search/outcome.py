@@ -32,19 +32,18 @@ class Outcome(IntEnum):
 
 
 _SENTENCES = {
-    Outcome.SOLVED: "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, each row relative to its own terms, verified in "
-    "twice the working precision.",
+    Outcome.SOLVED: "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, each row relative to its own terms, "
+    "verified in twice the working precision.",
     Outcome.STATIONARY: "A stationary point of min x'w over x >= 0, w >= 0 was found, and it does not solve the LCP; "
     "other solutions may exist.",
     Outcome.UNSOLVABLE: "The LCP has no solution, which is proved exactly.",
     Outcome.NOT_FOUND: "No solution was found, and none is excluded.",
-    Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x >= 0 has w >= 0: a vector y >= 0 has q'y < 0, and A'y <= 0 "
-    "but for rounding. A change of A in its last digits makes that a proof.",
+    Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x >= 0 has w >= 0: a vector y >= 0 has q'y < 0, and "
+    "A'y <= 0 but for rounding. A change of A in its last digits makes that a proof.",
 }
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
-    "exhaustion": "Some x >= 0 may have w >= 0, but none of the 2^n complementary faces holds a solution: all were tried "
-    "in exact arithmetic.",
+    "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried in exact arithmetic.",
 }
 
 

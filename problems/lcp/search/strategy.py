@@ -27,9 +27,9 @@ from problems.lcp.data.scaling import OutOfRange, Scaled, balanced
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.starts import positive_vector
 from problems.lcp.proof.certificate import certify
-from problems.lcp.proof.farkas import Farkas, FloatFarkas, in_given_units, infeasibility
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, infeasibility
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint
-from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, at, beyond_floats, confirmed, judged, rounded
+from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, beyond_floats, confirmed, in_units, judged, rounded
 from problems.lcp.reference.enumeration import Exhaustion, exhaust
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.restarts import FAR, NEAR
@@ -125,6 +125,8 @@ def solve(
         if problem.n > LARGEST_DECIDED:
             raise
         return beyond_floats(problem, tolerance)
+    if scaled is not None and not scaled.exact and problem.n <= LARGEST_DECIDED:
+        return beyond_floats(problem, tolerance)
     structure = Structure(problem if scaled is None else scaled.problem)
     search = Search(
         structure,
@@ -135,7 +137,8 @@ def solve(
         progress,
         options,
     )
-    with search.log if search.log is not None else nullcontext():
+    # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
+    with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
         if homotopy != "auto":
             return _named(search, homotopy, start, restarts, seed, executor)
         if scaled is None:
@@ -159,14 +162,7 @@ def _check_options(tolerance: Any, restarts: Any, options: dict[str, Any]) -> No
 def _unscaled(problem: LCP, scaled: Scaled, answer: Solution, tolerance: float) -> Solution:
     """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units."""
     message = f"{answer.message} Rows and columns were scaled by powers of two; the paths are in scaled units."
-    found = evolve(
-        answer,
-        problem=problem,
-        message=message,
-        farkas=None if answer.farkas is None else in_given_units(answer.farkas, problem, scaled.rows),
-        float_farkas=None if answer.float_farkas is None else in_given_units(answer.float_farkas, problem, scaled.rows),
-    )
-    return found if answer.x is None else at(found, scaled.x(answer.x), tolerance)
+    return in_units(evolve(answer, problem=problem, message=message), scaled, tolerance)
 
 
 def _automatic(search: Search, x0: Array | None, restarts: int, seed: int, executor: Executor | None) -> Solution:
@@ -228,9 +224,9 @@ def _named(
         return _answer(search, str(error), proof if proof is not None and proof.no_feasible_point else None)
     if search.follow(homotopy):
         return _answer(search, f"By the path of the {name} homotopy.")
-    proof = _proof(search)
-    if proof is not None:
-        return _answer(search, "A linear program gave the proof.", proof)
+    proved = _proof(search)
+    if proved is not None:
+        return _answer(search, "A linear program gave the proof.", proved)
     tried = search.restart(name, seed, restarts, executor)
     if search.solved:
         return _answer(search, f"By a path of the {name} homotopy from random start {tried} (seed {seed}).")
