@@ -41,7 +41,8 @@ def planted(A: Array, r: np.random.Generator) -> Array:
     """A q with a solution."""
     n = len(A)
     support = r.random(n) < 0.5
-    q: Array = np.where(support, 0.0, r.uniform(0.1, 2.0, n)) - A @ np.where(support, r.uniform(0.1, 2.0, n), 0.0)
+    x, w = r.integers(1, 17, (2, n)) / 8.0  # so that no rounding spoils what integers plant
+    q: Array = np.where(support, 0.0, w) - A @ np.where(support, x, 0.0)
     return q
 
 

@@ -1,8 +1,9 @@
 """Rows and columns brought to comparable size by powers of two, which is exact, and undone in the answer.
 
 LCP(q, A) and LCP(R q, R A C) have the same solutions up to their units, for all positive diagonal R and C. The units
-taken here are those in which the logarithms of the entries of A have the least sum of squares: they lead to the same
-problem, up to the rounding to powers of two, whatever the units of the problem as given.
+taken here make the largest entry of each row and column of A about 1. Such units are not unique; those are taken to
+which Ruiz's iteration leads from the units in which the logarithms of the entries have the least sum of squares. So
+they lead to the same problem, up to the rounding to powers of two, whatever the units of the problem as given.
 """
 
 from __future__ import annotations
@@ -19,6 +20,9 @@ from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP
 
 Exponents = NDArray[np.int64]
+
+RUIZ = 8
+"""Sweeps of Ruiz's iteration: each takes the root of what the largest entries of rows and columns are off."""
 
 SWEEPS = 30
 """Of conjugate gradients. A full matrix needs one, sparse random ones about ten; on long chains what is then still
@@ -78,7 +82,8 @@ def balanced(problem: LCP) -> Scaled | None:
 
     References
     ----------
-    Curtis and Reid, On the automatic reordering and scaling of matrices, J. Inst. Maths Applics 10, 1972.
+    Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
+    Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
     """
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
@@ -102,7 +107,7 @@ def units(problem: LCP) -> tuple[Exponents, Exponents]:
     they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
     """
     weights, row_sums, column_sums = _logarithms(problem.A)
-    r, c = _least_squares(weights, row_sums, column_sums)
+    r, c = _equilibrated(problem.A, *_least_squares(weights, row_sums, column_sums))
     part_of_row, part_of_column = _parts(weights)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1
     pairs = np.unique(parts * part_of_row + part_of_column, return_inverse=True)[1]
@@ -172,6 +177,35 @@ def _least_squares(weights: Any, row_sums: Array, column_sums: Array) -> tuple[A
         residual = residual - (product / curvature) * image
         last = product
     return -(row_sums + weights @ c) / in_row, c
+
+
+def _equilibrated(A: Matrix, r: Array, c: Array) -> tuple[Array, Array]:
+    """Ruiz's iteration from r and c towards largest entries 1 in all rows and columns."""
+    n = r.size
+    if sp.issparse(A):
+        stored = sp.csr_array(A)
+        row, column, values = np.repeat(np.arange(n), np.diff(stored.indptr)), stored.indices, stored.data
+        row, column, values = row[values != 0.0], column[values != 0.0], values[values != 0.0]
+        logs = np.log2(np.abs(values)) + r[row] + c[column]
+    else:
+        with np.errstate(divide="ignore"):
+            logs = np.log2(np.abs(A))
+        logs += r[:, None]
+        logs += c
+    moved_r, moved_c = np.zeros(n), np.zeros(n)
+    for _ in range(RUIZ):
+        if sp.issparse(A):
+            of_rows, of_columns = np.full(n, -np.inf), np.full(n, -np.inf)
+            now = logs + moved_r[row] + moved_c[column]
+            np.maximum.at(of_rows, row, now)
+            np.maximum.at(of_columns, column, now)
+        else:
+            now = logs + moved_r[:, None]
+            now += moved_c
+            of_rows, of_columns = now.max(axis=1), now.max(axis=0)
+        moved_r = moved_r - 0.5 * np.where(np.isfinite(of_rows), of_rows, 0.0)
+        moved_c = moved_c - 0.5 * np.where(np.isfinite(of_columns), of_columns, 0.0)
+    return r + moved_r, c + moved_c
 
 
 def _parts(weights: Any) -> tuple[NDArray[Any], NDArray[Any]]:

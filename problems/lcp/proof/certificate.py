@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.data.scaling import units
+from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
 from problems.lcp.proof.rational import IntegerRow, Integers, fractions, integer_rows, solve_exactly
@@ -80,7 +81,7 @@ class Certificate:
         return self.relative_residual <= tolerance and self.drowned <= DROWNED
 
 
-def certify(problem: LCP, x: Array) -> Certificate:
+def certify(problem: LCP, x: Array, zero: float = 0.0) -> Certificate:
     """Evaluate the natural residual and its parts at x with compensated arithmetic.
 
     Parameters
@@ -88,6 +89,10 @@ def certify(problem: LCP, x: Array) -> Certificate:
     problem : LCP
         Dense or sparse.
     x : Array of shape (n,)
+    zero : float
+        Entries of x up to this, in natural units (|q|_inf over the largest row norm of A), are taken for zeros, and
+        the certificate is that of the point with zeros there: the end of a path is near a solution whose zeros are
+        exact, and a small x_i may be a large part of row i.
 
     Raises
     ------
@@ -95,6 +100,8 @@ def certify(problem: LCP, x: Array) -> Certificate:
         If x is not a finite vector of n numbers.
     """
     x = finite_vector("x", x, problem.n)
+    if zero > 0.0:
+        x = np.where(np.abs(x) <= zero * natural_units(problem)[0], 0.0, x)
     terms = row_terms(problem, x)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         w = np.ldexp(terms.w, terms.exponents)
@@ -122,14 +129,18 @@ def _shares(terms: Terms, x: Array, asked: NDArray[np.bool_]) -> Array:
     shares = np.where(x == 0.0, 0.0, np.inf)
     indices = np.flatnonzero(asked & (x != 0.0))
     if indices.size:
-        with np.errstate(under="ignore", invalid="ignore", divide="ignore"):
-            inverse = np.where(terms.size > 0.0, 1.0 / terms.size, 0.0)
+        inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
+        sizes = np.abs(terms.x[indices])
+        with np.errstate(under="ignore"):
             if sp.issparse(terms.A):
-                columns = abs(sp.diags_array(inverse) @ sp.csr_array(terms.A)[:, indices])
-                largest = columns.max(axis=0).toarray().ravel()
+                columns = abs(sp.csr_array(terms.A)[:, indices])
+                present = (columns != 0.0).sum(axis=0) > 0
+                largest = (sp.diags_array(inverse) @ (columns @ sp.diags_array(sizes))).max(axis=0).toarray().ravel()
             else:
-                largest = (np.abs(terms.A[:, indices]) * inverse[:, None]).max(axis=0)
-            shares[indices] = np.sign(x[indices]) * np.where(largest > 0.0, largest * np.abs(terms.x[indices]), 1.0)
+                columns = np.abs(terms.A[:, indices])
+                present = (columns > 0.0).any(axis=0)
+                largest = (columns * sizes * inverse[:, None]).max(axis=0)
+        shares[indices] = np.sign(x[indices]) * np.where(present, largest, 1.0)
     return shares
 
 

@@ -14,7 +14,7 @@ from continuation.counts import Counts
 from problems.lcp.data.problem import LCP
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.proof.certificate import DROWNED, ROUND_OFF, Certificate, certify, certify_exactly
+from problems.lcp.proof.certificate import Certificate, certify, certify_exactly
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.reference.enumeration import Exhaustion, exhaust
 from problems.lcp.search.outcome import Outcome, Solution
@@ -22,6 +22,9 @@ from problems.lcp.search.outcome import Outcome, Solution
 LARGEST_DECIDED = 12
 """Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
 solves a problem to the tolerance but not to round-off is called a solution only if exact arithmetic agrees."""
+
+ENTRIES = 4 * float(np.finfo(float).eps)
+"""A relative residual below this is within the rounding of the entries of A and q themselves."""
 
 STATIONARY = 1e-6
 """Relative to their terms: how well the optimality conditions hold at what is called stationary."""
@@ -33,8 +36,8 @@ NEARLY = 1e-5
 def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
     """Whether the point may be called a solution.
 
-    A point whose rows are off by no more than rounding is one; so is, of a large problem, one that passes
-    `Certificate.solves`. Of a small problem, where that is cheap, the doubtful ones are decided in exact arithmetic.
+    One that passes `Certificate.solves`; but of a small problem, where that is cheap, exact arithmetic has to agree
+    unless its rows are off by no more than the rounding of the entries.
 
     Parameters
     ----------
@@ -44,11 +47,11 @@ def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
     tolerance : float
         Of its relative residual.
     """
-    off = certificate.relative_residual
-    in_doubt = off > ROUND_OFF or certificate.drowned > DROWNED
-    if in_doubt and off <= tolerance and problem.n <= LARGEST_DECIDED:
-        return certify_exactly(problem, certificate.x).solves
-    return certificate.solves(tolerance)
+    if not certificate.solves(tolerance):
+        return False
+    if certificate.relative_residual <= ENTRIES or problem.n > LARGEST_DECIDED:
+        return True
+    return certify_exactly(problem, certificate.x).solves
 
 
 def stationary(problem: LCP, y: Array) -> bool:
@@ -136,6 +139,10 @@ def _at(found: Solution, x: Array, tolerance: float) -> Solution:
         certificate is not None and confirmed(found.problem, certificate, tolerance)
     ):
         return evolve(found, certificate=certificate)
+    if not bad.any() and (x > 0.0).any() and float(x[x > 0.0].min()) > np.finfo(float).tiny:
+        off = math.nan if certificate is None else certificate.relative_residual
+        message = f"{Outcome.NOT_FOUND} In the units given the point misses the tolerance, by {off:.1e}."
+        return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")
     i = int(np.argmax(bad)) if bad.any() else int(np.argmin(np.where(x > 0.0, x, np.inf)))
     message = f"{Outcome.NOT_FOUND} There is a solution, but no float holds it: x[{i}] is {_size(x[i])}."
     return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")

@@ -99,7 +99,7 @@ class Search:
     @property
     def solved(self) -> bool:
         """Whether the last end is a solution."""
-        return bool(self.ends) and self._confirmed(self.ends[-1])
+        return bool(self.ends) and self._confirmed(self.ends[-1].certificate)
 
     def accept(self, certificate: Certificate) -> None:
         """Take a point that no path led to into account."""
@@ -145,13 +145,16 @@ class Search:
             light(path)
         self.paths.append(path)
 
-    def _confirmed(self, end: Candidate) -> bool:
-        return confirmed(self.problem, end.certificate, self.tolerance)
+    def _confirmed(self, certificate: Certificate) -> bool:
+        return confirmed(self.problem, certificate, self.tolerance)
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
         """The certificate of a path's end, which the finish brings to round-off where it can."""
         x = np.maximum(path.endpoint.y[: self.problem.n], 0.0)
         end = certify(self.problem, x)
+        if arrived and not self._confirmed(end):
+            zeros = certify(self.problem, x, self.tolerance)
+            end = zeros if zeros.relative_residual < end.relative_residual else end
         if self.attempt is None or not arrived or end.relative_residual <= ROUND_OFF:
             return end
         before = self.attempt.counts.factorizations
@@ -233,5 +236,5 @@ class Search:
         """The solution, else the best stationary point, else the end of least residual."""
         if not self.ends:
             return None
-        return min(self.ends, key=lambda end: (not self._confirmed(end), not end.stationary,
+        return min(self.ends, key=lambda end: (not self._confirmed(end.certificate), not end.stationary,
                                                end.certificate.residual))

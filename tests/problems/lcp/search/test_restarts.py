@@ -180,13 +180,17 @@ def test_an_executor_stops_at_the_count():
 def test_every_attempt_is_in_the_archive(tmp_path):
     from continuation.archive import open_archive
 
-    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
+    # Feasible, without a solution, and too large for all faces to be tried: one block and a row of ones.
+    n = 13
+    A = np.eye(n)
+    A[:2, :2] = [[0.0, 1.0], [0.0, 0.0]]
+    problem = lcp.LCP(A, np.append([-1.0, 1.0], -np.ones(n - 2)))
     file = tmp_path / "all.h5"
     solution = lcp.solve(problem, restarts=3, archive=file)
     with open_archive(file) as archive:
         assert len(archive) == len(solution.paths) == 5
         # Wang's path has 2n unknowns, the others 3n: the shorter one is filled up.
-        assert sorted({int(np.isfinite(path.y[0]).sum()) for path in archive}) == [4, 6]
+        assert sorted({int(np.isfinite(path.y[0]).sum()) for path in archive}) == [2 * n, 3 * n]
 
 
 def test_light_paths_keep_their_ends():
