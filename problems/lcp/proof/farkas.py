@@ -48,6 +48,8 @@ LARGEST_REFINED = 1500
 """for at most so many multipliers: a least squares solution of that order takes seconds."""
 LARGEST_VERTEX = 300
 """The largest order at which a multiplier is made exact by solving its tight equations in rationals."""
+AFFORDABLE_VERTEX = 100
+"""The same for a proof that nobody asked for: a tenth of a second, where order 300 takes six."""
 
 
 @frozen(eq=False)
@@ -125,8 +127,7 @@ def farkas(problem: LCP) -> Farkas | None:
     ----------
     Farkas 1902; Cottle, Pang and Stone, Theorem 2.7.9.
     """
-    found = infeasibility(problem)
-    return found if isinstance(found, Farkas) else None
+    return _multiplier(problem, strict=True)
 
 
 def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFarkas | None:
@@ -136,7 +137,7 @@ def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFark
     ----------
     problem : LCP
         Dense or sparse, of any scaling and any order. Tight conditions are solved in rationals up to order
-        `LARGEST_VERTEX`; beyond, only multipliers of few digits become exact.
+        `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
     seconds : float
         For the linear program.
     """
@@ -146,7 +147,7 @@ def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFark
     guess = _linear_program(matrix, vector, seconds)
     if guess is None or not float(vector @ guess) < 0.0:
         return None
-    proof = _exact(problem, matrix, guess, rows, strict=True)
+    proof = _exact(problem, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
     return proof if proof is not None else _nearly(LCP(matrix, vector), guess, rows)
 
 
@@ -194,14 +195,16 @@ def _multiplier(problem: LCP, strict: bool) -> Farkas | None:
     guess = _linear_program(matrix, vector, math.inf)
     if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
         return None
-    return _exact(problem, matrix, guess, rows, strict)
+    return _exact(problem, matrix, guess, rows, strict, LARGEST_VERTEX)
 
 
-def _exact(problem: LCP, matrix: Matrix, guess: Array, rows: Array, strict: bool) -> Farkas | None:
+def _exact(
+    problem: LCP, matrix: Matrix, guess: Array, rows: Array, strict: bool, largest: int
+) -> Farkas | None:
     """The first candidate near the guess that passes the check in integers."""
     # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
     conditions = _integers_of(problem)
-    for candidate in _candidates(conditions, matrix, guess, rows):
+    for candidate in _candidates(conditions, matrix, guess, rows, largest):
         if conditions.hold(candidate, strict):
             return _farkas(conditions.gap, candidate)
     return None
@@ -273,7 +276,9 @@ def _integers_of(problem: LCP) -> _Conditions:
     return _Conditions(columns, integer_rows(problem.q[None, :], np.zeros(1))[0])
 
 
-def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array) -> Iterator[list[int]]:
+def _candidates(
+    conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array, order: int
+) -> Iterator[list[int]]:
     """Integer multipliers near the scaled guess: small denominators, its own floats, the vertex it approximates."""
     weights = integers(rows.max() / rows)[0]  # y of the data as given is the scaled one over the row scales
     largest = float(guess.max())
@@ -287,15 +292,15 @@ def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Arr
     for tolerance in _TIGHT:
         tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -tolerance)]
         for equations in (tight, [*tight, conditions.gap]):
-            found = _vertex(equations, guess, rows)
+            found = _vertex(equations, guess, rows, order)
             if found is not None:
                 yield found
 
 
-def _vertex(equations: list[IntegerRow], guess: Array, rows: Array) -> list[int] | None:
-    """The exact y with the support of the guess, on which the equations vanish; normalised by its scaled sum."""
+def _vertex(equations: list[IntegerRow], guess: Array, rows: Array, order: int) -> list[int] | None:
+    """The exact y with the support of the guess, of at most that order, on which the equations vanish."""
     support = np.flatnonzero(guess > _SUPPORT)
-    if support.size > LARGEST_VERTEX or len(equations) > 4 * LARGEST_VERTEX:
+    if support.size > order or len(equations) > 4 * order:
         return None
     system: Integers = np.zeros((len(equations) + 1, support.size), dtype=object)
     place = np.full(guess.size, -1)
