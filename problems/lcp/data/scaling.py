@@ -31,18 +31,14 @@ missing is smooth, a common unit of neighbours, and changes no entry of the scal
 ACCURACY = 1e-6
 """Of the logarithms: far below the 1/2 at which rounding decides."""
 
-LARGEST = 300
-"""Base-2 logarithm of the largest entry, about 1e90: products of three larger ones overflow."""
-
 SMALLEST = -1021
 """Base-2 logarithm below which a float has fewer digits, so that scaling may round it."""
 
+HALVES = 1e-3
+"""Further above the noise of the logarithms than any fraction that matters: what is this near to 1/2 is rounded up."""
+
 LEAST_WEIGHT = 1e-4
 """Entries of less weight do not count at all."""
-
-
-class OutOfRange(ValueError):
-    """No units bring the entries of A and q within the range in which floats can be worked with."""
 
 
 @frozen(eq=False)
@@ -75,11 +71,6 @@ class Scaled:
 def balanced(problem: LCP) -> Scaled | None:
     """The problem in units of its own, or None where these are the units in which it is given.
 
-    Raises
-    ------
-    OutOfRange
-        If neither in these units nor in the given ones all entries are below 1e90.
-
     References
     ----------
     Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
@@ -88,16 +79,8 @@ def balanced(problem: LCP) -> Scaled | None:
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
         return None
-    least, largest = _range(problem, rows, columns)
-    if largest > LARGEST:
-        if _range(problem, np.zeros_like(rows), np.zeros_like(columns))[1] <= LARGEST:
-            return None
-        raise OutOfRange(
-            "A, q: expected entries that some units of rows and columns bring below 1e90, found none: their sizes are "
-            "too far apart"
-        )
     scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows))
-    return Scaled(scaled, rows, columns, exact=least > SMALLEST)
+    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
 def units(problem: LCP) -> tuple[Exponents, Exponents]:
@@ -110,22 +93,22 @@ def units(problem: LCP) -> tuple[Exponents, Exponents]:
     r, c = _equilibrated(problem.A, *_least_squares(weights, row_sums, column_sums))
     part_of_row, part_of_column = _parts(weights)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1
-    pairs = np.unique(parts * part_of_row + part_of_column, return_inverse=True)[1]
-    difference = _rounded(r - c, pairs)
-    rows = _rounded(0.5 * (r + c + difference), pairs)
+    about_r, about_c = r - _fractions(r, part_of_row, parts), c - _fractions(c, part_of_column, parts)
+    difference = _rounded(about_r - about_c)
+    rows = _rounded(0.5 * (about_r + about_c + difference))
     columns = rows - difference
     # What rounding has added to all entries of a connected part of A is taken off again.
     in_row, in_column = weights @ np.ones(problem.n), weights.T @ np.ones(problem.n)
     added = np.bincount(part_of_row, in_row * (rows - r), parts)
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
     mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), LEAST_WEIGHT)
-    rows = rows - np.round(mean).astype(np.int64)[part_of_row]
+    rows = rows - _rounded(mean)[part_of_row]
     # Each part leaves a factor between its rows and columns free: the largest entry of q there becomes about 1.
     largest = np.full(parts, -np.inf)
     known = problem.q != 0.0
     np.maximum.at(largest, part_of_row[known], np.log2(np.abs(problem.q[known])) + rows[known])
-    shift = np.round(np.where(np.isfinite(largest), largest, 0.0)).astype(np.int64)
-    return rows - shift[part_of_row], columns + shift[part_of_column]
+    shift = _rounded(np.where(np.isfinite(largest), largest, 0.0))
+    return (rows - shift[part_of_row]).astype(np.int64), (columns + shift[part_of_column]).astype(np.int64)
 
 
 def _logarithms(A: Matrix) -> tuple[Any, Array, Array]:
@@ -219,12 +202,18 @@ def _parts(weights: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     return labels[:n], labels[n:]
 
 
-def _rounded(values: Array, groups: NDArray[Any]) -> Exponents:
-    """The values rounded to integers, in each group about the mean of their fractions: what is alike stays so."""
+def _rounded(values: Array) -> Array:
+    """To the nearest integers; halves, which small integers in A make common, always upwards whatever their noise."""
+    rounded: Array = np.floor(values + (0.5 + HALVES))
+    return rounded
+
+
+def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:
+    """For each value the mean of the fractions in its part, about which it is rounded: what is alike stays so."""
     turns = np.exp(2j * np.pi * values)
-    fraction = np.angle(np.bincount(groups, turns.real) + 1j * np.bincount(groups, turns.imag)) / (2.0 * np.pi)
-    exponents: Exponents = np.round(values - fraction[groups]).astype(np.int64)
-    return exponents
+    sums = np.bincount(parts, turns.real, number) + 1j * np.bincount(parts, turns.imag, number)
+    fractions: Array = np.angle(sums)[parts] / (2.0 * np.pi)
+    return fractions
 
 
 def _times(values: Array, exponents: Exponents) -> Array:
@@ -241,14 +230,12 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
     return sp.csr_array((_times(stored.data, exponents), stored.indices, stored.indptr), shape=A.shape)
 
 
-def _range(problem: LCP, rows: Exponents, columns: Exponents) -> tuple[int, int]:
-    """The base-2 logarithms of the smallest and the largest entry that is not zero, once scaled; zeros without any."""
+def _smallest(problem: LCP, rows: Exponents, columns: Exponents) -> int:
+    """The base-2 logarithm of the smallest entry that is not zero, once scaled; at most zero."""
     if sp.issparse(problem.A):
         entries = sp.coo_array(problem.A)
         values, exponents = entries.data, rows[entries.row] + columns[entries.col]
     else:
         values, exponents = problem.A, rows[:, None] + columns
-    logs = np.concatenate([
-        (np.frexp(part)[1] + powers)[part != 0.0] for part, powers in ((values, exponents), (problem.q, rows))
-    ])  # fmt: skip
-    return int(logs.min(initial=0)), int(logs.max(initial=0))
+    parts = ((values, exponents), (problem.q, rows))
+    return min(int((np.frexp(part)[1] + powers)[part != 0.0].min(initial=0)) for part, powers in parts)

@@ -78,6 +78,8 @@ def judged(
 ) -> Outcome:
     """The outcome, what is certain first.
 
+    Where all faces were tried and one holds a solution, but its rounding to floats is not `confirmed`, none is found.
+
     Parameters
     ----------
     solved : bool
@@ -93,6 +95,8 @@ def judged(
         return Outcome.UNSOLVABLE
     if proof is not None:
         return Outcome.INFEASIBLE_TO_PRECISION
+    if exhaustion is not None:
+        return Outcome.NOT_FOUND
     return Outcome.STATIONARY if at_stationary else Outcome.NOT_FOUND
 
 

@@ -44,6 +44,7 @@ _SENTENCES = {
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
     "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried in exact arithmetic.",
+    "unrepresented": "In exact arithmetic there is one (`exhaustion.x`), which rounded to floats is none: q drowns.",
 }
 
 
@@ -89,7 +90,9 @@ class Solution:
 
     @property
     def proof(self) -> str:
-        """What proves UNSOLVABLE, as a sentence; empty for any other outcome."""
+        """What proves UNSOLVABLE, or that the solution which was not found exists, as a sentence; else empty."""
+        if self.outcome is Outcome.NOT_FOUND and self.exhaustion is not None and self.exhaustion.solvable:
+            return _PROOFS["unrepresented"]
         if self.outcome is not Outcome.UNSOLVABLE:
             return ""
         return _PROOFS["farkas" if self.farkas is not None else "exhaustion"]

@@ -23,7 +23,7 @@ from problems.lcp.active_set.finish import PATIENCE, Finish
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import LCP
-from problems.lcp.data.scaling import OutOfRange, Scaled, balanced
+from problems.lcp.data.scaling import Scaled, balanced
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.starts import positive_vector
 from problems.lcp.proof.certificate import certify
@@ -119,12 +119,7 @@ def solve(
     if archive is not None and executor is not None:
         raise ValueError("executor: expected None with an archive, which one process writes")
     start = None if x0 is None else positive_vector("x0", x0, problem.n)
-    try:
-        scaled = balanced(problem) if homotopy == "auto" else None
-    except OutOfRange:
-        if problem.n > LARGEST_DECIDED:
-            raise
-        return beyond_floats(problem, tolerance)
+    scaled = balanced(problem) if homotopy == "auto" else None
     if scaled is not None and not scaled.exact and problem.n <= LARGEST_DECIDED:
         return beyond_floats(problem, tolerance)
     structure = Structure(problem if scaled is None else scaled.problem)
