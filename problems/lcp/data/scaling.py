@@ -37,8 +37,12 @@ SMALLEST = -1021
 HALVES = 1e-3
 """Further above the noise of the logarithms than any fraction that matters: what is this near to 1/2 is rounded up."""
 
-LEAST_WEIGHT = 1e-4
-"""Entries of less weight do not count at all."""
+NEGLIGIBLE = -27.0
+"""An a_ij with |a_ij a_ji| below 2^-27 (1e-8) of |a_ii a_jj|, which knows no units, says nothing about units: such are
+the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
+
+LEVEL = 0.02
+"""Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
 
 
 @frozen(eq=False)
@@ -89,19 +93,19 @@ def units(problem: LCP) -> tuple[Exponents, Exponents]:
     Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
     they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
     """
-    weights, row_sums, column_sums = _logarithms(problem.A)
-    r, c = _equilibrated(problem.A, *_least_squares(weights, row_sums, column_sums))
-    part_of_row, part_of_column = _parts(weights)
+    logs, pattern = _logarithms(problem.A)
+    r, c = _equilibrated(logs, *_least_squares(logs, pattern))
+    part_of_row, part_of_column = _parts(pattern)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1
     about_r, about_c = r - _fractions(r, part_of_row, parts), c - _fractions(c, part_of_column, parts)
     difference = _rounded(about_r - about_c)
     rows = _rounded(0.5 * (about_r + about_c + difference))
     columns = rows - difference
     # What rounding has added to all entries of a connected part of A is taken off again.
-    in_row, in_column = weights @ np.ones(problem.n), weights.T @ np.ones(problem.n)
+    in_row, in_column = pattern @ np.ones(problem.n), pattern.T @ np.ones(problem.n)
     added = np.bincount(part_of_row, in_row * (rows - r), parts)
     added += np.bincount(part_of_column, in_column * (columns - c), parts)
-    mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), LEAST_WEIGHT)
+    mean = added / np.maximum(np.bincount(part_of_row, in_row, parts), 1.0)
     rows = rows - _rounded(mean)[part_of_row]
     # Each part leaves a factor between its rows and columns free: the largest entry of q there becomes about 1.
     largest = np.full(parts, -np.inf)
@@ -111,38 +115,38 @@ def units(problem: LCP) -> tuple[Exponents, Exponents]:
     return (rows - shift[part_of_row]).astype(np.int64), (columns + shift[part_of_column]).astype(np.int64)
 
 
-def _logarithms(A: Matrix) -> tuple[Any, Array, Array]:
-    """How much each entry of A counts, and the sums over rows and columns of their logarithms, so weighted.
+def _logarithms(A: Matrix) -> tuple[Any, Any]:
+    """The base-2 logarithms of the entries of A, -inf for zeros of a dense A, and ones where an entry counts.
 
-    Of a dense matrix an entry a_ij counts by the root of |a_ij a_ji / (a_ii a_jj)| where that is below 1, which does
-    not depend on units: entries of 1e-300 in a matrix of a kernel exp(-d^2) say nothing about units. Those of a sparse
-    matrix all count alike; it has zeros for such entries.
+    Of a sparse matrix all entries count: it has zeros in place of negligible ones.
     """
     if sp.issparse(A):
         stored = sp.csr_array((A.data, A.indices, A.indptr), shape=A.shape, copy=True)
         stored.eliminate_zeros()
         logs = sp.csr_array((np.log2(np.abs(stored.data)), stored.indices, stored.indptr), shape=A.shape)
-        pattern = sp.csr_array((np.ones(stored.nnz), stored.indices, stored.indptr), shape=A.shape)
-        return pattern, np.asarray(logs.sum(axis=1)).ravel(), np.asarray(logs.sum(axis=0)).ravel()
-    present = A != 0.0
-    logs = np.log2(np.abs(A), where=present, out=np.zeros_like(A))
-    weights = present.astype(float)
-    compared = present & present.T & present.diagonal()[:, None] & present.diagonal()
-    excess = logs + logs.T - logs.diagonal()[:, None] - logs.diagonal()
-    np.exp2(0.5 * np.minimum(excess, 0.0), where=compared, out=weights)
-    weights[weights < LEAST_WEIGHT] = 0.0
-    logs *= weights
-    return weights, logs.sum(axis=1), logs.sum(axis=0)
+        return logs, sp.csr_array((np.ones(stored.nnz), stored.indices, stored.indptr), shape=A.shape)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logs = np.log2(np.abs(A))
+        diagonal = logs.diagonal()
+        counts = logs > -np.inf
+        # Where a_ji, a_ii or a_jj is zero there is nothing to compare with: inf or NaN, and the entry counts.
+        excess = logs + logs.T
+        excess -= diagonal[:, None] + diagonal
+    return logs, (counts & ~((excess < NEGLIGIBLE) & (excess > -np.inf))).astype(float)
 
 
-def _least_squares(weights: Any, row_sums: Array, column_sums: Array) -> tuple[Array, Array]:
-    """The r and c of least weighted sum of (log |a_ij| + r_i + c_j)^2; zero for empty rows and columns.
+def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
+    """The r and c of least sum of (log |a_ij| + r_i + c_j)^2 over what counts; zero for empty rows and columns.
 
     Conjugate gradients for c, after elimination of r.
     """
+    if sp.issparse(logs):
+        row_sums, column_sums = np.asarray(logs.sum(axis=1)).ravel(), np.asarray(logs.sum(axis=0)).ravel()
+    else:
+        counted = logs if weights.all() else np.where(weights > 0.0, logs, 0.0)
+        row_sums, column_sums = counted.sum(axis=1), counted.sum(axis=0)
     ones = np.ones(row_sums.size)
-    in_row, in_column = weights @ ones, weights.T @ ones
-    in_row, in_column = np.where(in_row > 0.0, in_row, 1.0), np.where(in_column > 0.0, in_column, 1.0)
+    in_row, in_column = np.maximum(weights @ ones, 1.0), np.maximum(weights.T @ ones, 1.0)
     c = np.zeros(ones.size)
     residual = weights.T @ (row_sums / in_row) - column_sums
     direction, last = c, 1.0
@@ -162,41 +166,35 @@ def _least_squares(weights: Any, row_sums: Array, column_sums: Array) -> tuple[A
     return -(row_sums + weights @ c) / in_row, c
 
 
-def _equilibrated(A: Matrix, r: Array, c: Array) -> tuple[Array, Array]:
+def _equilibrated(logs: Any, r: Array, c: Array) -> tuple[Array, Array]:
     """Ruiz's iteration from r and c towards largest entries 1 in all rows and columns."""
-    n = r.size
-    if sp.issparse(A):
-        stored = sp.csr_array(A)
-        row, column, values = np.repeat(np.arange(n), np.diff(stored.indptr)), stored.indices, stored.data
-        row, column, values = row[values != 0.0], column[values != 0.0], values[values != 0.0]
-        logs = np.log2(np.abs(values)) + r[row] + c[column]
-    else:
-        with np.errstate(divide="ignore"):
-            logs = np.log2(np.abs(A))
-        logs += r[:, None]
-        logs += c
-    moved_r, moved_c = np.zeros(n), np.zeros(n)
+    row = None
+    if sp.issparse(logs):
+        row, column, logs = np.repeat(np.arange(r.size), np.diff(logs.indptr)), logs.indices, logs.data
     for _ in range(RUIZ):
-        if sp.issparse(A):
-            of_rows, of_columns = np.full(n, -np.inf), np.full(n, -np.inf)
-            now = logs + moved_r[row] + moved_c[column]
+        if row is None:
+            now = logs + r[:, None]
+            now += c
+            of_rows, of_columns = now.max(axis=1), now.max(axis=0)
+        else:
+            of_rows, of_columns = np.full(r.size, -np.inf), np.full(c.size, -np.inf)
+            now = logs + r[row] + c[column]
             np.maximum.at(of_rows, row, now)
             np.maximum.at(of_columns, column, now)
-        else:
-            now = logs + moved_r[:, None]
-            now += moved_c
-            of_rows, of_columns = now.max(axis=1), now.max(axis=0)
-        moved_r = moved_r - 0.5 * np.where(np.isfinite(of_rows), of_rows, 0.0)
-        moved_c = moved_c - 0.5 * np.where(np.isfinite(of_columns), of_columns, 0.0)
-    return r + moved_r, c + moved_c
+        of_rows = np.where(of_rows > -np.inf, of_rows, 0.0)
+        of_columns = np.where(of_columns > -np.inf, of_columns, 0.0)
+        if max(np.abs(of_rows).max(), np.abs(of_columns).max()) <= LEVEL:
+            break
+        r, c = r - 0.5 * of_rows, c - 0.5 * of_columns
+    return r, c
 
 
-def _parts(weights: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     """Which connected part each row and each column is of."""
-    n = weights.shape[0]
-    if not sp.issparse(weights) and (weights > 0.0).all():
+    n = pattern.shape[0]
+    if not sp.issparse(pattern) and pattern.all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
-    entries = sp.coo_array(weights)
+    entries = sp.coo_array(pattern)
     graph = sp.coo_array((entries.data, (entries.row, n + entries.col)), shape=(2 * n, 2 * n))
     labels = connected_components(graph, directed=False)[1]
     return labels[:n], labels[n:]
