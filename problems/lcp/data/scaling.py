@@ -210,6 +210,10 @@ def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:
     """For each value the mean of the fractions in its part, about which it is rounded: what is alike stays so."""
     turns = np.exp(2j * np.pi * values)
     sums = np.bincount(parts, turns.real, number) + 1j * np.bincount(parts, turns.imag, number)
+    # Where fractions cancel around the circle, only noise has a mean: the fraction of the first takes its place.
+    present, first = np.unique(parts, return_index=True)
+    cancelled = np.abs(sums[present]) <= HALVES * np.bincount(parts, minlength=number)[present]
+    sums[present[cancelled]] = turns[first[cancelled]]
     fractions: Array = np.angle(sums)[parts] / (2.0 * np.pi)
     return fractions
 
