@@ -93,8 +93,10 @@ def units(problem: LCP) -> tuple[Exponents, Exponents]:
     Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
     they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
     """
-    logs, pattern = _logarithms(problem.A)
-    r, c = _equilibrated(logs, *_least_squares(logs, pattern))
+    logs, counts = _logarithms(problem.A)
+    r, c = _equilibrated(logs, *_least_squares(logs, counts))
+    # Negligible or not, an entry ties its row to its column: what is free is free of all of them.
+    pattern = counts if sp.issparse(logs) else (logs > -np.inf).astype(float)
     part_of_row, part_of_column = _parts(pattern)
     parts = int(max(part_of_row.max(), part_of_column.max())) + 1
     about_r, about_c = r - _fractions(r, part_of_row, parts), c - _fractions(c, part_of_column, parts)
