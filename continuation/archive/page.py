@@ -24,7 +24,16 @@ _UNBROKEN = "\N{NO-BREAK SPACE}"
 
 
 def describe(archive: Archive) -> str:
-    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many."""
+    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many.
+
+    Parameters
+    ----------
+    archive : Archive
+
+    Returns
+    -------
+    str
+    """
     parts = [_head(archive)]
     if not len(archive):
         parts.append("No path was begun.")

@@ -100,6 +100,15 @@ class Archive(Sequence[Path]):
 
         Tangents are NaN where the file holds none; then `Path.__call__` interpolates linearly between points.
 
+        Parameters
+        ----------
+        index : int
+            0 is the first; from the end where it is negative.
+
+        Returns
+        -------
+        Path
+
         Raises
         ------
         IndexError
@@ -137,7 +146,17 @@ class Archive(Sequence[Path]):
         return f"<Archive {self.file}: {size}{state}>"
 
     def rows(self, index: int) -> slice:
-        """Where the path's rows are in the point table."""
+        """Where the path's rows are in the point table.
+
+        Parameters
+        ----------
+        index : int
+            Of the path, at least 0.
+
+        Returns
+        -------
+        slice
+        """
         return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
 
     # -- views ------------------------------------------------------------------------------------------------
@@ -309,6 +328,14 @@ def _layout(file: Any) -> Layout:
 
 def open_archive(file: str | PathLike[str]) -> Archive:
     """Open an archive for reading; also one that is still growing, or was left by a kill.
+
+    Parameters
+    ----------
+    file : path
+
+    Returns
+    -------
+    Archive
 
     Raises
     ------

@@ -47,7 +47,17 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         return f"<Table of {self.size} rows: {', '.join(self.columns)}>"
 
     def block(self, rows: slice) -> dict[str, np.ndarray[Any, Any]]:
-        """All columns of some rows: from memory where they are remembered, and not remembered where they are not."""
+        """All columns of some rows: from memory where they are remembered, and not remembered where they are not.
+
+        Parameters
+        ----------
+        rows : slice
+            Of the whole table, also where this one is a choice of its rows.
+
+        Returns
+        -------
+        dict of str to ndarray
+        """
         return {n: self._read[n][rows] if n in self._read else self._fetch(n, rows) for n in self.columns}
 
     def load(self) -> None:
@@ -56,5 +66,14 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
             self[name]
 
     def choose(self, rows: Any) -> Table:
-        """The table of these rows only (numbers of all rows, in order)."""
+        """The table of these rows only (numbers of all rows, in order).
+
+        Parameters
+        ----------
+        rows : array_like of int
+
+        Returns
+        -------
+        Table
+        """
         return Table(tuple(self.columns.values()), self._rows, self._fetch, rows)

@@ -127,7 +127,25 @@ class PathLog:
 
     @classmethod
     def continued(cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer) -> PathLog:
-        """A log that goes on with a path of which the file holds the beginning; for `resume`."""
+        """A log that goes on with a path of which the file holds the beginning; for `resume`.
+
+        Parameters
+        ----------
+        store : Store
+            The file, open for writing.
+        points : int
+            Rows that it holds, of all paths.
+        paths : int
+            Paths that have ended in it.
+        checkpoint : Checkpoint
+            Where the path goes on.
+        tracer : Tracer
+            What goes on with it.
+
+        Returns
+        -------
+        PathLog
+        """
         log = cls.__new__(cls)
         log._begin(store.file, store.durable, store.layout.tangents, "", Limits())
         log._store, log._buffer, log._paths, log._sequence = store, _Buffer(points), paths, checkpoint.sequence
@@ -173,7 +191,13 @@ class PathLog:
             self.close()
 
     def failure(self, homotopy: Any, error: BaseException) -> None:
-        """A path that could not even begin, as a row with the exception's text."""
+        """A path that could not even begin, as a row with the exception's text.
+
+        Parameters
+        ----------
+        homotopy : Homotopy
+        error : BaseException
+        """
         self._check_open()
         self._finish(record.of_failure(homotopy, error), self._paths, 0)
 

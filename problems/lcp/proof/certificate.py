@@ -65,6 +65,14 @@ class Certificate:
         The residual must be at most tolerance (1 + |q|_inf), but for what rounding x costs. Relative to |x| alone
         a point that runs off to infinity along a solution of LCP(0, A) would pass on a problem without solution. For
         the same reason the allowance for rounding, which grows with |x|, never exceeds ROUNDING (1 + |q|_inf).
+
+        Parameters
+        ----------
+        tolerance : float, default 1e-10
+
+        Returns
+        -------
+        bool
         """
         allowance = tolerance * self.data_scale + min(self.attainable, ROUNDING * self.data_scale)
         return self.relative_residual <= tolerance and self.residual <= allowance

@@ -81,6 +81,11 @@ def farkas(problem: LCP) -> Farkas | None:
 def empty_interior(problem: LCP) -> Farkas | None:
     """An exact proof that F = {x > 0, A x + q > 0} is empty, or None.
 
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse.
+
     Returns
     -------
     Farkas or None
