@@ -152,10 +152,6 @@ class Archive(Sequence[Path]):
         ----------
         index : int
             Of the path, at least 0.
-
-        Returns
-        -------
-        slice
         """
         return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
 
