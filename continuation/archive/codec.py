@@ -31,7 +31,13 @@ class SupportsArchive(Protocol):
 
     @classmethod
     def from_archive(cls, data: Mapping[str, Any]) -> Any:
-        """The homotopy again."""
+        """The homotopy again.
+
+        Parameters
+        ----------
+        data : mapping of str to object
+            What `archive_data` returned, as the file gives it back.
+        """
         ...
 
 

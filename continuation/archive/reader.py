@@ -97,6 +97,15 @@ class Archive(Sequence[Path]):
 
         Tangents are NaN where the file holds none; then `Path.__call__` interpolates linearly between points.
 
+        Parameters
+        ----------
+        index : int
+            0 is the first; from the end where it is negative.
+
+        Returns
+        -------
+        Path
+
         Raises
         ------
         IndexError
@@ -148,7 +157,13 @@ class Archive(Sequence[Path]):
         return f"<Archive {self.file}: {size}{state}>"
 
     def rows(self, index: int) -> slice:
-        """Where the path's rows are in the point table."""
+        """Where the path's rows are in the point table.
+
+        Parameters
+        ----------
+        index : int
+            Of the path, at least 0.
+        """
         return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
 
     # -- views ------------------------------------------------------------------------------------------------

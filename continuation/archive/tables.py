@@ -60,5 +60,14 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
             self[name]
 
     def choose(self, rows: Any) -> Table:
-        """The table of these rows only (numbers of all rows, in order)."""
+        """The table of these rows only (numbers of all rows, in order).
+
+        Parameters
+        ----------
+        rows : array_like of int
+
+        Returns
+        -------
+        Table
+        """
         return Table(tuple(self.columns.values()), self._rows, self._fetch, rows)

@@ -190,7 +190,13 @@ class PathLog:
             self.close()
 
     def failure(self, homotopy: Any, error: BaseException) -> None:
-        """A path that could not even begin, as a row with the exception's text."""
+        """A path that could not even begin, as a row with the exception's text.
+
+        Parameters
+        ----------
+        homotopy : Homotopy
+        error : BaseException
+        """
         self._check_open()
         self._finish(record.of_failure(homotopy, error), self._paths, 0)
 

@@ -70,16 +70,43 @@ class LCP:
         return bool(sp.issparse(self.A))
 
     def w(self, x: Array) -> Array:
-        """A x + q, shape (n,)."""
+        """A x + q, shape (n,).
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         product: Array = self.A @ x + self.q
         return product
 
     def natural_residual(self, x: Array) -> float:
-        """max_i |min(x_i, w_i)|, absolute."""
+        """max_i |min(x_i, w_i)|, absolute.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        float
+        """
         return float(np.abs(np.minimum(x, self.w(x))).max())
 
     def scale(self, x: Array) -> float:
-        """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative."""
+        """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        float
+        """
         return 1.0 + max(float(np.abs(self.q).max()), self._norm * float(np.abs(x).max()))
 
     @cached_property
@@ -88,5 +115,14 @@ class LCP:
         return float(np.max(abs(self.A).sum(axis=1)))
 
     def relative_residual(self, x: Array) -> float:
-        """The natural residual divided by `scale`."""
+        """The natural residual divided by `scale`.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        float
+        """
         return self.natural_residual(x) / self.scale(x)

@@ -154,6 +154,11 @@ def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFark
 def empty_interior(problem: LCP) -> Farkas | None:
     """An exact proof that F = {x > 0, A x + q > 0} is empty, or None.
 
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse.
+
     Returns
     -------
     Farkas or None
