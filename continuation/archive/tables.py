@@ -47,18 +47,12 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         return f"<Table of {self.size} rows: {', '.join(self.columns)}>"
 
     def block(self, rows: slice) -> dict[str, np.ndarray[Any, Any]]:
-        """All columns of some rows: from memory where they are remembered, and not remembered where they are not.
+        """All columns of some rows: from memory where they are remembered, and not remembered where they are not."""
+        return {name: self.some(name, rows) for name in self.columns}
 
-        Parameters
-        ----------
-        rows : slice
-            Of the whole table, also where this one is a choice of its rows.
-
-        Returns
-        -------
-        dict of str to ndarray
-        """
-        return {n: self._read[n][rows] if n in self._read else self._fetch(n, rows) for n in self.columns}
+    def some(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
+        """Some rows of one column, not remembered."""
+        return self._read[name][rows] if name in self._read else self._fetch(name, rows)
 
     def load(self) -> None:
         """Read everything."""

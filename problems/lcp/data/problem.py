@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from problems.options import finite_vector
+from problems.options import finite_vector, real_array, sound_sparse
 
 
 def _q(value: Any) -> Array:
@@ -20,20 +20,10 @@ def _q(value: Any) -> Array:
 def _matrix(value: Any) -> Matrix:
     """A finite square float matrix, dense or CSR."""
     if sp.issparse(value):
-        matrix = sp.csr_array(value)
-        if matrix.dtype.kind not in "fiub":
-            raise ValueError(f"A: expected real numbers, found dtype {matrix.dtype}")
-        matrix = matrix.astype(float)
-        matrix.sum_duplicates()
+        matrix = sound_sparse("A", value)
         entries: Array = matrix.data
     else:
-        if np.iscomplexobj(value):
-            raise ValueError("A: expected real numbers, found complex ones")
-        try:
-            matrix = np.array(value, dtype=float)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"A: expected real numbers, found {type(value).__name__} ({error})") from None
-        entries = matrix
+        matrix = entries = real_array("A", value)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
         raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
     if not np.isfinite(entries).all():
