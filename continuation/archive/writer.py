@@ -148,7 +148,6 @@ class PathLog:
         points, paths : int
             Rows and ended paths that it holds.
         checkpoint : Checkpoint
-            Where the path goes on.
         tracer : Tracer
         every : int
             Which steps stay in memory.
