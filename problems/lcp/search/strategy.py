@@ -23,7 +23,7 @@ from problems.lcp.active_set.finish import PATIENCE, Finish
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import LCP
-from problems.lcp.data.scaling import Scaled, balanced
+from problems.lcp.data.scaling import Scaled, balanced, extreme
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.starts import positive_vector
 from problems.lcp.proof.certificate import certify
@@ -119,7 +119,8 @@ def solve(
     if archive is not None and executor is not None:
         raise ValueError("executor: expected None with an archive, which one process writes")
     start = None if x0 is None else positive_vector("x0", x0, problem.n)
-    scaled = balanced(problem) if homotopy == "auto" else None
+    # A homotopy by name is traced in the units given, while floats can hold what it is made of.
+    scaled = balanced(problem) if homotopy == "auto" or extreme(problem) else None
     if scaled is not None and not scaled.exact and problem.n <= LARGEST_DECIDED:
         return beyond_floats(problem, tolerance)
     structure = Structure(problem if scaled is None else scaled.problem)
@@ -134,12 +135,12 @@ def solve(
     )
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
     with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
-        if homotopy != "auto":
-            return _named(search, homotopy, start, restarts, seed, executor)
-        if scaled is None:
-            return _automatic(search, start, restarts, seed, executor)
-        start = None if start is None else scaled.u(start)
-        return _unscaled(problem, scaled, _automatic(search, start, restarts, seed, executor), tolerance)
+        start = start if start is None or scaled is None else scaled.u(start)
+        if homotopy == "auto":
+            answer = _automatic(search, start, restarts, seed, executor)
+        else:
+            answer = _named(search, homotopy, start, restarts, seed, executor)
+        return answer if scaled is None else _unscaled(problem, scaled, answer, tolerance)
 
 
 def _check_options(tolerance: Any, restarts: Any, options: dict[str, Any]) -> None:

@@ -210,6 +210,16 @@ def test_entries_too_far_apart_for_floats_are_decided_exactly_or_judged_as_given
     assert not large.solved or large.certificate.solves()
 
 
+@pytest.mark.parametrize("name", ["kkt", "wang", "yu", "xu", "zhao"])
+@pytest.mark.parametrize("factor", [1e-300, 1e300])
+def test_homotopies_by_name_survive_extreme_data(name, factor):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        solution = lcp.solve(lcp.LCP(factor * np.array([[2.0, 1.0], [-1.0, 2.0]]), factor * np.array([-1.0, -3.0])), name)
+    assert solution.outcome is Outcome.SOLVED
+    np.testing.assert_allclose(solution.x, [0.0, 1.5], atol=1e-12)
+
+
 def test_exhaustion_agrees_with_enumeration_and_can_be_cut_off():
     rng = np.random.default_rng(4)
     for _ in range(40):
