@@ -37,6 +37,9 @@ SMALLEST = -1021
 HALVES = 1e-3
 """Further above the noise of the logarithms than any fraction that matters: what is this near to 1/2 is rounded up."""
 
+EXTREME = 1e90
+"""Products of three entries below this, and above its inverse, are floats."""
+
 NEGLIGIBLE = -27.0
 """An a_ij with |a_ij a_ji| below 2^-27 (1e-8) of |a_ii a_jj|, which knows no units, says nothing about units: such are
 the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
@@ -85,6 +88,14 @@ def balanced(problem: LCP) -> Scaled | None:
         return None
     scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows))
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
+
+
+def extreme(problem: LCP) -> bool:
+    """Whether entries are so large, or so small, that products of three of them may overflow or vanish."""
+    values = problem.A.data if sp.issparse(problem.A) else problem.A
+    size = np.append(np.abs(values).ravel(), np.abs(problem.q))
+    size = size[size > 0.0]
+    return bool(size.size and (size.max() > EXTREME or size.min() < 1.0 / EXTREME))
 
 
 def units(problem: LCP) -> tuple[Exponents, Exponents]:

@@ -239,7 +239,10 @@ def _nearly(scaled: LCP, guess: Array, rows: Array) -> FloatFarkas | None:
         terms = row_terms(conditions, y)
         relative = np.where(terms.size > 0.0, terms.w / np.where(terms.size > 0.0, terms.size, 1.0), 0.0)
         error = max(float(relative.max()), 0.0)
-        gap = float(scaled.q @ y) / float(np.abs(scaled.q) @ y)
+        size = float(np.abs(scaled.q) @ y)
+        if size == 0.0:
+            return None
+        gap = float(scaled.q @ y) / size
         if error <= PRECISION and gap <= -CLEAR:
             given = y / rows
             return FloatFarkas(given / given.max(), error, -gap)

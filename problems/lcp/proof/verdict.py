@@ -13,8 +13,9 @@ LARGEST_DECIDED = 12
 """Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
 solves a problem to the tolerance but not to round-off is called a solution only if exact arithmetic agrees."""
 
-ENTRIES = 4 * float(np.finfo(float).eps)
-"""A relative residual below this is within the rounding of the entries of A and q themselves."""
+ENTRIES = 2 * float(np.finfo(float).eps)
+"""A relative residual below this is within rounding: half an eps for x, and half for each factor that gave the entries
+their units, of a row and of a column; the last half is for their products."""
 
 STATIONARY = 1e-6
 """Relative to their terms: how well the optimality conditions hold at what is called stationary.

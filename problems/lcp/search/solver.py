@@ -23,7 +23,7 @@ from continuation.step.options import PART_OPTIONS, PartOptions, check_names, ch
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.problem import LCP
-from problems.lcp.data.scaling import balanced
+from problems.lcp.data.scaling import balanced, extreme
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import positive_vector
@@ -61,8 +61,9 @@ def solve(
     ----------
     problem : LCP
     homotopy : str
-        "auto": what is cheap and cannot mislead first, then Wang's path, then the KKT path, then restarts
-        (`search.strategy` has the order). Or one of "kkt", "wang", "yu", "xu", "zhao", "kmm".
+        "auto": what is cheap and cannot mislead first, then Wang's path, then the KKT path, then all complementary
+        faces up to order 12, then restarts (`search.strategy` has the order). Or one of "kkt", "wang", "yu", "xu",
+        "zhao", "kmm".
     x0 : array_like, shape (n,), optional
         A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start.
     finish : bool
@@ -113,7 +114,8 @@ def solve(
     if restarts is None:
         restarts = min(10 * problem.n, 1000) if automatic else 0
     start = None if x0 is None else positive_vector("x0", x0, problem.n)
-    scaled = balanced(problem) if automatic else None
+    # A homotopy by name is traced in the units given, while floats can hold what it is made of.
+    scaled = balanced(problem) if automatic or extreme(problem) else None
     beyond = scaled is not None and not scaled.exact and problem.n <= LARGEST_DECIDED
     if beyond:
         scaled = None

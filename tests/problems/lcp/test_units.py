@@ -210,6 +210,17 @@ def test_entries_too_far_apart_for_floats_are_decided_exactly_or_judged_as_given
     assert not large.solved or large.certificate.solves()
 
 
+@pytest.mark.parametrize("name", ["kkt", "wang", "yu", "xu", "zhao"])
+@pytest.mark.parametrize("factor", [1e-300, 1e300])
+def test_homotopies_by_name_survive_extreme_data(name, factor):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        A, q = np.array([[2.0, 1.0], [-1.0, 2.0]]), np.array([-1.0, -3.0])
+        solution = lcp.solve(lcp.LCP(factor * A, factor * q), name)
+    assert solution.outcome is Outcome.SOLVED
+    np.testing.assert_allclose(solution.x, [0.0, 1.5], atol=1e-12)
+
+
 def test_exhaustion_agrees_with_enumeration_and_can_be_cut_off():
     rng = np.random.default_rng(4)
     for _ in range(40):
@@ -242,6 +253,14 @@ def test_infeasible_to_precision_at_any_order(n, sparse):
     np.testing.assert_allclose(found.y, y / y.max(), rtol=1e-9)
     assert found.error <= 1e-14
     assert found.gap > 0.0
+
+
+def test_a_multiplier_that_refining_brings_to_zero_proves_nothing():
+    # The rows are parallel but for 1e-13, and A'y <= 0 holds for y = 0 alone.
+    A = [[0.8695569049613653, -0.27387754482537663], [-1.3411839088997872, 0.42242221760845866]]
+    problem = lcp.LCP(A, [0.6254688951848555, -1.1137001036044356])
+    assert infeasibility(problem) is None
+    assert lcp.solve(problem).outcome in (Outcome.SOLVED, Outcome.NOT_FOUND)
 
 
 def test_a_proof_moves_between_units():

@@ -67,6 +67,15 @@ def test_an_archive_without_a_path_holds_the_solution_as_the_end_of_the_kkt_path
     assert np.abs(homotopy.residual(path.endpoint.y, 0.0)).max() <= 1e-15
 
 
+def test_the_archive_of_a_problem_beyond_floats_holds_the_answer(tmp_path):
+    file = tmp_path / "run.h5"
+    problem = lcp.LCP([[1.0, 1e-320], [2.0, 1.0]], [-1.0, 1.0])
+    solution = lcp.solve(problem, archive=file)
+    assert "too far apart for floats" in solution.message
+    with open_archive(file) as archive:
+        np.testing.assert_array_equal(archive.path(0).endpoint.y[:2], solution.x)
+
+
 def test_an_archive_without_a_point_holds_the_reason(tmp_path):
     file = tmp_path / "run.h5"
     solution = lcp.solve(lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0]), archive=file)
