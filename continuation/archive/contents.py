@@ -25,7 +25,7 @@ from continuation.archive.checks import (
     of_attributes,
     width,
 )
-from continuation.archive.datasets import LIMIT, check_size, dataset, names, subgroup
+from continuation.archive.datasets import LIMIT, StructureError, check_size, dataset, names, subgroup
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import FAULTS, PATIENCE, open_for_reading
 from continuation.archive.locks import is_held
@@ -129,7 +129,7 @@ class Contents:
     def _read_structure(self) -> None:
         file = self._h5
         self.checked = GROUP in file
-        self.layout = _layout(file)
+        self.layout = _layout(file, max(self._limit, self.size))
         self._columns = {
             "point": {column.name: column for column in self.layout.point_columns},
             "path": {column.name: column for column in self.layout.path_columns},
@@ -278,7 +278,7 @@ def _rows(found: Any, count: int, limit: int = LIMIT, stored: Any = None) -> Arr
     return values
 
 
-def _layout(file: Any) -> Layout:
+def _layout(file: Any, limit: int) -> Layout:
     present = names(file)
 
     def named(prefix: str) -> tuple[str, ...]:
@@ -287,6 +287,8 @@ def _layout(file: Any) -> Layout:
     y, state = dataset(file, "y", np.dtype("f8"), (None, None)), dataset(
         file, "controller_state", np.dtype("f8"), (None, None)
     )
+    if 8 * (y.shape[1] + state.shape[1]) > limit:
+        raise StructureError(f"it claims {y.shape[1]} unknowns, and is too small for one point of them")
     return Layout(
         unknowns=int(y.shape[1]),
         controller=int(state.shape[1]),

@@ -168,6 +168,20 @@ class Archive(Sequence[Path]):
         """
         return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
 
+    def status(self, index: int) -> Status:
+        """How a path ended.
+
+        Raises
+        ------
+        ArchiveError
+            If the file says something that is no status.
+        """
+        value = int(self.paths["status"][index])
+        try:
+            return Status(value)
+        except ValueError as error:
+            raise self.contents.damaged(error) from error
+
     # -- views ------------------------------------------------------------------------------------------------
 
     def select(

@@ -86,6 +86,10 @@ def resume(
     target = File(os.path.realpath(name)) if archive is None else File(archive)
     if archive is not None:
         check_new(target)
+    every = kept_every(keep)
+    for option in ("start", "state"):
+        if option in options:
+            raise ValueError(f"{option}: a resumed path begins where the archive ends")
     known = registry(trust)
     with ExitStack() as stack:
         source = stack.enter_context(open_archive(name))
@@ -98,7 +102,6 @@ def resume(
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         residual = source.points.some("residual_norm", slice(rows - 1, rows))
         _check_homotopy(tracer.homotopy, checkpoint, float(residual[0]))
-        every = kept_every(keep)
         before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
         store = _beginning(source, checkpoint, rows, target, archive is None)
     if every == 1:
@@ -128,7 +131,11 @@ def _tracer(
     homotopy = stored_homotopy(source, checkpoint, known) if given is None else given
     settings = _options(source, checkpoint, known, options)
     try:
-        return Tracer(homotopy, state=checkpoint.state, **settings)
+        tracer = Tracer(homotopy, state=checkpoint.state, **settings)
+        known_events, watched = len(checkpoint.state.monitors), len(tracer.settings.events)
+        if known_events != watched:
+            raise ValueError(f"events: expected {known_events}, as in the archive, found {watched}")
+        return tracer
     except (TypeError, ValueError, AttributeError, RecursionError) as error:
         fault = str(error).partition(":")[0]
         if fault in options or (given is not None and fault not in settings):
@@ -150,7 +157,7 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     if not len(source):
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
-    status = Status(int(source.paths["status"][last]))
+    status = source.status(last)
     if status not in RESUMABLE:
         raise ArchiveError(f"{source.file}: path {last} has ended ({status.name}), there is nothing to resume")
     if status is Status.BUDGET_EXHAUSTED and "budget" not in options:

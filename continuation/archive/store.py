@@ -7,6 +7,7 @@ readable at every moment, the records (`continuation.archive.checks`) say how mu
 from __future__ import annotations
 
 import os
+import resource
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path as File
@@ -100,6 +101,7 @@ class Store:
         self.events: list[str] = []
         self._committed = Committed(sequence=1)
         self._lock: Lock | None = None
+        self._abandoned = False
         self._sink: Sink | None = Sink(part)
         # Without a cache HDF5 writes what it is given; 1 MiB for each column, kept for nothing, would be 25 MiB.
         self._cache = {} if compression else {"rdcc_nbytes": 0}
@@ -306,6 +308,10 @@ class Store:
         """Close the file."""
         try:
             self._h5.close()
+        except (OSError, RuntimeError):
+            # Of what was given up nothing more is expected.
+            if not self._abandoned:
+                raise
         finally:
             for held in (self._sink, self._lock):
                 if held is not None:
@@ -324,9 +330,15 @@ class Store:
             stated = stated_length(head.read(HEAD_BYTES))
             if stated > os.fstat(descriptor).st_size:
                 os.truncate(self.file, stated)
-        nowhere = os.open(os.devnull, os.O_RDWR)
+        # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
+        limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+        if limited or not hasattr(os, "memfd_create"):
+            nowhere = os.open(os.devnull, os.O_RDWR)
+        else:
+            nowhere = os.memfd_create("abandoned")
         os.dup2(nowhere, descriptor)
         os.close(nowhere)
+        self._abandoned = True
 
 
 def _rows(block: Block | None) -> int:

@@ -3,7 +3,6 @@
 import os
 import signal
 import sys
-import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
@@ -61,7 +60,7 @@ MESSAGES = {
     Exits: "SystemExit: enough",
     ExitsAtOnce: "BrokenProcessPool: ",
     Dies: "BrokenProcessPool: ",
-    Hangs: "TimeoutError: took longer than 1.5 s",
+    Hangs: "TimeoutError: took longer than 6 s",
     Unsendable: "TypeError: it holds a socket",
 }
 
@@ -71,7 +70,7 @@ MESSAGES = {
 def test_it_costs_its_own_path(tmp_path, expected, bad, archived):
     tasks, file = [*GOOD[:2], bad(1.0), *GOOD[2:]], tmp_path / "run.h5"
     with ProcessPoolExecutor(2) as executor:
-        timeout = 1.5 if bad is Hangs else None
+        timeout = 6.0 if bad is Hangs else None
         paths = trace_many(tasks, executor, file if archived else None, timeout=timeout)
     assert len(paths) == 6
     assert paths[2].status is Status.INTERRUPTED
@@ -88,14 +87,18 @@ def test_it_costs_its_own_path(tmp_path, expected, bad, archived):
 def test_ctrl_c_ends_a_sweep_that_hangs(tmp_path):
     """Within a second or so; the limit here is generous, and far from the thousand seconds that are asked for."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    threading.Timer(2.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+    def stop(done, total):
+        if done == 3:
+            signal.raise_signal(signal.SIGINT)
+
     begin = time.monotonic()
     try:
         with ProcessPoolExecutor(2) as executor, pytest.raises(KeyboardInterrupt):
-            trace_many([*GOOD[:3], Hangs(1.0), Hangs(1.0)], executor, tmp_path / "run.h5")
+            trace_many([*GOOD[:3], Hangs(1.0), Hangs(1.0)], executor, tmp_path / "run.h5", progress=stop)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert time.monotonic() - begin < 60.0
+    assert time.monotonic() - begin < 300.0
     with open_archive(tmp_path / "run.h5") as archive:
         assert archive.paths["member"].tolist() == [0, 1, 2]
 

@@ -1,0 +1,216 @@
+"""Archives made to harm: doors to other files, sizes that are not there, numbers that mean nothing. One line, soon."""
+
+import shutil
+
+import attrs
+import h5py
+import numpy as np
+import pytest
+
+from continuation import Budget, TargetValue, trace
+from continuation.archive import (
+    ArchiveError,
+    Limits,
+    PathLog,
+    describe,
+    export,
+    merge,
+    open_archive,
+    recover,
+    resume,
+)  # fmt: skip
+from continuation.archive.checks import Committed
+from problems.bifurcation import ExponentialCosine
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory):
+    file = tmp_path_factory.mktemp("base") / "base.h5"
+    trace(ExponentialCosine(3), archive=PathLog(file, limits=Limits(rows=5), tangents=True), budget=Budget(steps=12))
+    return file
+
+
+def unchecked(file):
+    """An archive of the first version: without checksums, nothing but its structure stands in the way of harm."""
+    del file["checks"]
+    file.attrs["schema"] = "continuation-path-1"
+
+
+def claimed(file, points):
+    """A commit of so many points, with a checksum of its own."""
+    records = file["checks"]["commits"]
+    numbers = max(np.frombuffer(record.tobytes()[:-4], "<u8").tolist() for record in records[:])
+    records[:] = [attrs.evolve(Committed(*numbers), points=points).pack()] * 4
+
+
+def enlarged(file, name, rows):
+    file[name].resize(rows, axis=0)
+
+
+def replaced(file, name, value):
+    del file[name]
+    file[name] = value
+
+
+def external(file, secret):
+    del file["parameter"]
+    file.create_dataset("parameter", (13,), "f8", external=[(str(secret), 0, h5py.h5f.UNLIMITED)])
+
+
+def virtual(file, secret):
+    del file["parameter"]
+    layout = h5py.VirtualLayout((13,), "f8")
+    layout[:] = h5py.VirtualSource(str(secret), "parameter", (13,))[:13]
+    file.create_virtual_dataset("parameter", layout)
+
+
+def in_large_chunks(file, secret):
+    del file["parameter"]
+    file.create_dataset("parameter", (13,), "f8", maxshape=(None,), chunks=(2**26,), compression="gzip")
+
+
+HARM = {
+    "an external link": lambda f, s: replaced(f, "y", h5py.ExternalLink(str(s), "/y")),
+    "a soft link": lambda f, s: replaced(f, "y", h5py.SoftLink("/tangent_y")),
+    "a soft link to itself": lambda f, s: replaced(f, "y", h5py.SoftLink("/y")),
+    "external storage": external,
+    "a virtual dataset": virtual,
+    "a group for a column": lambda f, s: (f.pop("y"), f.create_group("y")),
+    "a number for a column": lambda f, s: replaced(f, "y", 5.0),
+    "text for a column": lambda f, s: replaced(f, "parameter", np.array([b"a"] * 13)),
+    "objects for a column": lambda f, s: replaced(f, "parameter", np.array(["a"] * 13, object)),
+    "integers for a column": lambda f, s: replaced(f, "parameter", np.arange(13)),
+    "another shape": lambda f, s: replaced(f, "parameter", np.zeros((13, 2))),
+    "rows that are not there": lambda f, s: [enlarged(f, n, 10**9) for n in ("y", "parameter", "path_index")],
+    "unknowns that are not there": lambda f, s: (f.pop("y"), f.create_dataset("y", (13, 2**40), "f8", chunks=(1, 99))),
+    "large chunks": in_large_chunks,
+    "an end that is none": lambda f, s: f["status"].__setitem__(0, 77),
+    "a kind that is none": lambda f, s: f["kind"].__setitem__(slice(None), 99),
+    "another path's points": lambda f, s: f["path_index"].__setitem__(slice(None), 55),
+    "a long path": lambda f, s: f["n_points"].__setitem__(0, 10**12),
+    "a path of less than nothing": lambda f, s: f["n_points"].__setitem__(0, -3),
+    "an event without a name": lambda f, s: f["event_index"].__setitem__(slice(None), 30000),
+    "names without end": lambda f, s: enlarged(f, "event_name", 10**8),
+    "settings without end": lambda f, s: f.attrs.__setitem__("settings", '{"a":' * 5000),
+    "settings of another kind": lambda f, s: f.attrs.__setitem__("settings", 5),
+    "parameters of another kind": lambda f, s: f.attrs.__setitem__("parameters", "[1, 2]"),
+    "a schema of another kind": lambda f, s: f.attrs.__setitem__("schema", np.arange(5)),
+    "a schema without end": lambda f, s: f.attrs.__setitem__("schema", "continuation-path-" + "9" * 5000),
+    "a problem that is not there": lambda f, s: f["problem"].create_dataset("A", (10**5,) * 2, "f8", chunks=(99, 99)),
+    "a checkpoint that is not there": lambda f, s: f["resume"]["slots"].resize((2, 4 * 10**9)),
+    "no checkpoints": lambda f, s: replaced(f, "resume", 5),
+}
+
+OPERATIONS = {
+    "open": lambda file: repr(open_archive(file)),
+    "read": lambda file: [path.u for path in open_archive(file)],
+    "columns": lambda file: open_archive(file).points.load(),
+    "problem": lambda file: open_archive(file).problem(),
+    "describe": lambda file: describe(open_archive(file)),
+    "export": lambda file: export(file, file.with_suffix(".csv")),
+    "merge": lambda file: merge([file, file], file.with_suffix(".nc")),
+    "recover": recover,
+    "resume": lambda file: resume(file, archive=file.with_suffix(".more.h5"), budget=Budget(steps=14)),
+}
+
+
+@pytest.mark.parametrize("checked", [True, False], ids=["checked", "unchecked"])
+@pytest.mark.parametrize("harm", HARM)
+def test_one_line_or_nothing_amiss(tmp_path, base, harm, checked):
+    secret = tmp_path / "secret.h5"
+    shutil.copy(base, secret)
+    with open_archive(base) as archive:
+        right = archive.path(0).u
+    refused = 0
+    for name, operation in OPERATIONS.items():
+        file = tmp_path / f"{name}.h5"
+        shutil.copy(base, file)
+        with h5py.File(file, "r+", libver="latest") as opened:
+            HARM[harm](opened, secret)
+            if not checked and "schema" not in harm:
+                unchecked(opened)
+        complaint, found = outcome(operation, file)
+        refused += bool(complaint)
+        assert "\n" not in complaint
+        if checked and name == "read" and not complaint:
+            assert np.array_equal(found[0], right)
+    harmless = ("rows that are not there", "names without end", "a checkpoint that is not there")
+    assert refused or not checked or harm in harmless
+
+
+def outcome(operation, file):
+    try:
+        return "", operation(file)
+    except ArchiveError as error:
+        return str(error), None
+
+
+def test_points_that_are_claimed_with_a_checksum(tmp_path, base):
+    shutil.copy(base, tmp_path / "run.h5")
+    with h5py.File(tmp_path / "run.h5", "r+", libver="latest") as opened:
+        claimed(opened, 10**12)
+    with pytest.raises(ArchiveError, match="the checksums are damaged"):
+        open_archive(tmp_path / "run.h5")
+
+
+def test_an_archive_of_the_first_version_is_read_and_resumed(tmp_path, base):
+    shutil.copy(base, tmp_path / "run.h5")
+    with h5py.File(tmp_path / "run.h5", "r+", libver="latest") as opened:
+        unchecked(opened)
+    path = trace(ExponentialCosine(3))
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert not archive.contents.checked
+        assert np.array_equal(archive.path(0).u, path.u[:13])
+    assert np.array_equal(resume(tmp_path / "run.h5", budget=Budget()).u, path.u)
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert archive.contents.checked
+
+
+def test_what_is_compressed_has_a_limit(tmp_path, base):
+    export(base, tmp_path / "run.nc", compression=9)
+    with (
+        open_archive(tmp_path / "run.nc", limit=100) as archive,
+        pytest.raises(ArchiveError, match="more than the limit of 100; say limit="),
+    ):
+        archive.path(0)
+    with open_archive(tmp_path / "run.nc", limit=10**6) as archive:
+        assert len(archive.path(0)) == 13
+
+
+def test_a_damaged_row_is_named_and_the_sound_ones_are_kept(tmp_path, base):
+    file = tmp_path / "run.h5"
+    shutil.copy(base, file)
+    with h5py.File(file, "r+", libver="latest") as opened:
+        opened["y"][7, 1] += 1e-12
+    with open_archive(file) as archive:
+        with pytest.raises(ArchiveError, match=r"rows 5 to 9 of y are not what was written; .* 9 rows read are sound"):
+            _ = archive.points["y"]
+        assert len(archive.points["arclength"]) == 14
+    damaged = file.read_bytes()
+    recover(file)
+    with open_archive(file) as archive, open_archive(base) as whole:
+        path = archive.path(0)
+        assert np.array_equal(path.u, whole.path(0).u[:5])
+        assert path.message.endswith("The rest of it was damaged.")
+    assert (tmp_path / "run.h5.damaged").read_bytes() == damaged
+    assert recover(file) == file
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        ({"events": [TargetValue(0.3), TargetValue(0.4)]}, "events: expected 2, as in the archive, found 4"),
+        ({"start": (np.zeros(4), np.ones(4))}, "start: a resumed path begins where the archive ends"),
+        ({"state": None}, "state: a resumed path begins where the archive ends"),
+        ({"keep": "some"}, "keep: expected"),
+    ],
+)
+def test_options_that_do_not_fit_the_archive(base, tmp_path, options, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        resume(base, archive=tmp_path / "more.h5", budget=Budget(), **options)
+
+
+@pytest.mark.parametrize("name", ["rows", "nbytes", "seconds"])
+def test_limits_below_zero(name):
+    with pytest.raises(ValueError, match=name):
+        Limits(**{name: -5})
