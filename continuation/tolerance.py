@@ -23,7 +23,13 @@ class Tolerance:
     residual: float = field(default=float("inf"), validator=POSITIVE)
 
     def measure(self, increment: Array, u: Array) -> float:
-        """The largest increment in units of the tolerance: small is <= 1."""
+        """The largest increment in units of the tolerance: small is <= 1.
+
+        Parameters
+        ----------
+        increment, u : ndarray, shape (N + 1,)
+            A correction, and the point that it is added to.
+        """
         scale = self.absolute + self.relative * np.maximum(np.abs(u), 1e-3 * largest(u))
         return largest(increment / scale)
 

@@ -107,7 +107,10 @@ def sound_sparse(name: str, value: Any) -> Any:
 
 def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
     """A copy of `value` as a vector of finite floats, of the given size if there is one, or ValueError naming it."""
-    vector = real_array(name, value)
+    try:
+        vector = real_array(name, value)
+    except ValueError as error:
+        raise ValueError(str(error).replace("expected real numbers", "expected a vector of real numbers", 1)) from None
     if np.asarray(value).dtype.kind == "b" or vector.ndim != 1 or vector.size == 0:
         kind = np.asarray(value).dtype
         raise ValueError(f"{name}: expected a vector of real numbers, found shape {vector.shape}, dtype {kind}")

@@ -62,18 +62,19 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
 
 @lru_cache
 def _registered(path: str) -> type | None:
-    """The homotopy class of that path, if an installed package registers it; only such packages are imported."""
+    """The class of that path, if it is a homotopy's that an installed package registers, or of its metric."""
     points = metadata.entry_points(group=ENTRY_POINTS)
     for point in sorted(points, key=lambda point: point.value != path):
         try:
             thing = point.load()
         except Exception:
             continue
-        if not isinstance(thing, type):
-            thing = _hints(thing).get("return")
-            thing = typing.get_origin(thing) or thing
-        if isinstance(thing, type) and f"{thing.__module__}:{thing.__qualname__}" == path:
-            return thing
+        hint = thing if isinstance(thing, type) else _hints(thing).get("return")
+        for cls in typing.get_args(hint) if isinstance(hint, types.UnionType) else (typing.get_origin(hint) or hint,):
+            # A homotopy's own metric is as much a part of its package as the homotopy.
+            for found in (cls, type(getattr(cls, "metric", None))):
+                if isinstance(found, type) and f"{found.__module__}:{found.__qualname__}" == path:
+                    return found
     return None
 
 

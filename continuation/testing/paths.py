@@ -143,7 +143,7 @@ def _named(tree: Any) -> list[Any]:
     if not isinstance(tree, dict):
         return []
     found = _named(list(tree.values()))
-    for path in (tree[kind] for kind in ("class", "function") if kind in tree):
+    for path in (tree[kind] for kind in ("class", "function") if isinstance(tree.get(kind), str)):
         module, _, name = path.partition(":")
         found.append(attrgetter(name)(sys.modules[module]))
     return found

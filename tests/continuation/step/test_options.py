@@ -27,13 +27,13 @@ TAKERS = {
 
 
 def test_names_and_defaults_agree():
-    assert (*PART_OPTIONS, "tolerance", "budget", "target", "direction", "start") == OPTIONS
+    assert (*PART_OPTIONS, "tolerance", "budget", "target", "direction", "start", "finish") == OPTIONS
     assert set(DEFAULTS) == set(OPTIONS)
     assert checked({}) == DEFAULTS
 
 
 def test_settings_are_options_completed_and_what_an_archive_keeps():
-    assert set(attrs.fields_dict(Settings)) == set(OPTIONS) - {"preset", "start", "check_jacobian"}
+    assert set(attrs.fields_dict(Settings)) == set(OPTIONS) - {"preset", "start", "finish", "check_jacobian"}
     assert tuple(attrs.fields_dict(Settings)) == checkpoint.OPTIONS
 
 
