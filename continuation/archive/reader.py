@@ -171,6 +171,11 @@ class Archive(Sequence[Path]):
     def status(self, index: int) -> Status:
         """How a path ended.
 
+        Parameters
+        ----------
+        index : int
+            0 is the first.
+
         Raises
         ------
         ArchiveError
