@@ -194,5 +194,5 @@ class SeriesRange:
         """Accept small corrections; ask for the whole range again."""
         near = attempt.distance <= self.distance * attempt.h and attempt.angle <= self.max_angle
         if attempt.converged and near:
-            return Decision(True, self.bounds.cap(self.bounds.initial), state)
+            return Decision(True, self.bounds.cap(math.inf), state)
         return Decision(False, attempt.h / 2.0, state)

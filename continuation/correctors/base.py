@@ -81,6 +81,22 @@ class Corrector(Protocol):
         ...
 
 
+ROOT_OF_ROUND_OFF = float(np.finfo(float).eps) ** 0.5
+"""A tolerance below this asks for a residual at round-off: Newton's last error is about the square of its increment."""
+
+POLISHING = Contraction(iterations=12)
+"""From the tolerance to round-off chord steps that halve an increment, or better, need no more."""
+
+ROUND_OFF = 32.0
+"""How much larger than what `Evaluator.round_off` sees a residual at round-off may be: it looks once, at something
+random, and H adds up as many terms as it has."""
+
+
+def at_round_off(evaluator: Evaluator, u: Array, r: Array) -> bool:
+    """Whether each component of the residual r = H(u) is round-off of what that equation is made of."""
+    return not r.any() or bool((np.abs(r) <= ROUND_OFF * evaluator.round_off(u, r)).all())
+
+
 Direction = Callable[[int, Array, Array, float], Array]
 """(iteration, u, residual, contraction so far) -> increment."""
 
@@ -111,17 +127,30 @@ def iterate(
         residual_norm = largest(r)
         return size <= 1.0 and residual_norm <= tolerance.residual
 
+    def settled(size: float) -> bool:
+        nonlocal r, residual_norm
+        r = evaluator.residual(iteration.x)
+        residual_norm = largest(r)
+        return at_round_off(evaluator, iteration.x, r)
+
+    def measure(step: Array, _: Array) -> float:
+        return tolerance.measure(step, point.weights)
+
     rejection: Rejection | None = None
-    detail, count = "", 0
+    detail, count, worst = "", 0, 0.0
     try:
         r = evaluator.residual(predicted)
         done = iteration.run(
             lambda: direction(iteration.count, iteration.x, r, iteration.worst),
-            tolerance.measure,
+            measure,
             small,
         )
-        count = iteration.count
-        if iteration.stalled:
+        count, worst = iteration.count, iteration.worst
+        if done and tolerance.relative <= ROOT_OF_ROUND_OFF and not at_round_off(evaluator, iteration.x, r):
+            # Where increments no longer shrink that is round-off too, of terms that do not move with u.
+            iteration = Iteration(iteration.x, POLISHING)
+            iteration.run(lambda: direction(count, iteration.x, r, worst), measure, settled)
+        elif iteration.stalled:
             rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"
         elif not done:
             rejection, detail = Rejection.NOT_CONVERGED, f"{max_iterations} iterations"
@@ -129,4 +158,4 @@ def iterate(
         rejection, detail = error.rejection, str(error)
     u, anchor = iteration.x, anchors[-1] if anchors else None
     distance = norm(point.weights, u - predicted)
-    return Correction(u, count, residual_norm, iteration.worst, distance, rejection, detail, anchor)
+    return Correction(u, count, residual_norm, worst, distance, rejection, detail, anchor)

@@ -9,13 +9,16 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix, finite, largest
+from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
+
+ULPS = 4.0
+"""Units in the last place by which a point is moved to see the size of H's terms."""
 
 
 class EvaluationError(ArithmeticError):
@@ -147,6 +150,15 @@ class Evaluator:
             return largest(self.residual(u))
         except EvaluationError:
             return math.nan
+
+    def round_off(self, u: Array, residual: Array) -> Array:
+        """What round-off in u makes of H there, shape (N,): the size of its terms, in units of their last places.
+
+        Each component of u is moved by ULPS units in its last place, in directions of no pattern; `residual` is H(u).
+        """
+        moved = u + ULPS * np.spacing(u) * np.sign(generic_vector(u.size))
+        shift: Array = np.abs(self.residual(moved) - residual)
+        return shift
 
     @property
     def derivative(self) -> Derivative:

@@ -118,7 +118,7 @@ def _root(
     best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
     scale = max(abs(ga), abs(gb))
     width = first = float(np.dot(arc.border, b.u - a.u))
-    bisect = False
+    bisect, noise = False, None
     for _ in range(PASSES):
         segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
         series = None
@@ -137,7 +137,14 @@ def _root(
         width = float(np.dot(arc.border, b.u - a.u))
         if least <= AT_ROUND_OFF * scale or (bisect and least <= NEARLY_ZERO * scale):
             break
-    return _on_value(solver, event, best) if least <= JUMP * scale else None
+        if bisect or fine:
+            # As near as points are known: farther bisections would locate round-off.
+            noise = solver.noise(arc.a) if noise is None else noise
+            if width <= noise or least <= noise * abs(gb - ga) / width:
+                break
+    if least > JUMP * scale and not (noise is not None and width <= noise):
+        return None
+    return _on_value(solver, event, best)
 
 
 def _on_value(solver: PathSolver, event: Event, point: Linearization) -> Linearization:
