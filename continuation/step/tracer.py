@@ -178,13 +178,13 @@ class Tracer:
             point, h = first_point(self._solver, u0, settings.metric, settings.direction, settings.target)
         else:
             point, h = point_from_tangent(self._evaluator, self._start, u0.size, settings.metric, settings.target)
-        here = Knot(0.0, point.u, point.tangent)
+        here, bounds = Knot(0.0, point.u, point.tangent), settings.controller.bounds
         state = State(
             history=(here,),
             weights=point.weights,
             anchor=(point.anchor.u, point.anchor.border),
             orientation=point.orientation,
-            h=settings.controller.bounds.cap(h if settings.controller.bounds.initial == 0.1 else settings.controller.bounds.initial),
+            h=bounds.cap(h if bounds.initial is None else bounds.initial),
             controller=settings.controller.init(),
             monitors=tuple(monitored(event, point) for event in settings.events),
             occurrences=(0,) * len(settings.events),
