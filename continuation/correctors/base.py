@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -84,6 +85,9 @@ class Corrector(Protocol):
 ROOT_OF_ROUND_OFF = float(np.finfo(float).eps) ** 0.5
 """A tolerance below this asks for a residual at round-off: Newton's last error is about the square of its increment."""
 
+TINY = 1e-300
+"""Stands for terms that do not move: no residual beside them is round-off."""
+
 POLISHING = Contraction(iterations=12)
 """From the tolerance to round-off chord steps that halve an increment, or better, need no more."""
 
@@ -92,9 +96,21 @@ ROUND_OFF = 32.0
 random, and H adds up as many terms as it has."""
 
 
-def at_round_off(evaluator: Evaluator, u: Array, r: Array) -> bool:
-    """Whether each component of the residual r = H(u) is round-off of what that equation is made of."""
-    return not r.any() or bool((np.abs(r) <= ROUND_OFF * evaluator.round_off(u, r)).all())
+FAR_FROM_ROUND_OFF = 1e6 * ROUND_OFF
+"""A residual this large after polishing is worth a factorisation of its own."""
+
+
+def level(r: Array, terms: Array) -> float:
+    """The largest component of a residual beside the round-off of its terms, as `Evaluator.round_off` sees it."""
+    size = np.abs(r)
+    live = size > 0.0
+    return float((size[live] / np.maximum(terms[live], TINY)).max()) if live.any() else 0.0
+
+
+def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
+    """Whether a component of the residual at u is far above the round-off of what that equation is made of."""
+    r = evaluator.residual(u)
+    return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
 
 
 Direction = Callable[[int, Array, Array, float], Array]
@@ -127,17 +143,23 @@ def iterate(
         residual_norm = largest(r)
         return size <= 1.0 and residual_norm <= tolerance.residual
 
-    def settled(size: float) -> bool:
+    def polished(k: int, ratio: float) -> Array:
+        return direction(k, iteration.x, r, ratio)
+
+    def leftover(*_: Array) -> float:
+        return level(r, terms)
+
+    def settled(_: float) -> bool:
         nonlocal r, residual_norm
         r = evaluator.residual(iteration.x)
         residual_norm = largest(r)
-        return at_round_off(evaluator, iteration.x, r)
+        return level(r, terms) <= ROUND_OFF
 
     def measure(step: Array, _: Array) -> float:
         return tolerance.measure(step, point.weights)
 
     rejection: Rejection | None = None
-    detail, count, worst = "", 0, 0.0
+    detail, count, worst, terms = "", 0, 0.0, r
     try:
         r = evaluator.residual(predicted)
         done = iteration.run(
@@ -146,10 +168,17 @@ def iterate(
             small,
         )
         count, worst = iteration.count, iteration.worst
-        if done and tolerance.relative <= ROOT_OF_ROUND_OFF and not at_round_off(evaluator, iteration.x, r):
-            # Where increments no longer shrink that is round-off too, of terms that do not move with u.
-            iteration = Iteration(iteration.x, POLISHING)
-            iteration.run(lambda: direction(count, iteration.x, r, worst), measure, settled)
+        if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
+            # Judged by the residual itself: an increment may be small beside the path and large beside what is left of
+            # a component. Where it no longer shrinks that is round-off too, of terms that do not move with u. A second
+            # round has a factorisation of its own: the one at hand may be of a point where that component was another.
+            for fresh in (False, True):
+                terms = evaluator.round_off(iteration.x, r)
+                if level(r, terms) <= (FAR_FROM_ROUND_OFF if fresh else ROUND_OFF):
+                    break
+                k, ratio = (count + 2, 1.0) if fresh else (count, worst)
+                iteration = Iteration(iteration.x, POLISHING)
+                iteration.run(partial(polished, k, ratio), leftover, settled)
         elif iteration.stalled:
             rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"
         elif not done:

@@ -10,6 +10,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import largest
+from continuation.correctors.base import far_from_round_off
 from continuation.ends.closed_curve import passes_start
 from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
 from continuation.ends.landing import SINGULAR_SHARE, crossing, regular
@@ -152,6 +153,8 @@ class Target:
             if point is not None:
                 limit = self._limit(arc, point, value) if at is EndsAt.TARGET else None
                 u = np.append(point.u[:-1], value) if limit is None else limit.u
+                if limit is None and at is EndsAt.TARGET and far_from_round_off(self.solver.evaluator, u):
+                    raise EvaluationError("the equations do not hold where the path would take the target's value")
                 return ArcEnd(cut(arc, evolve(point, u=u)), at, kind, False, limit)
         origin = state.origin
         if passes_start(self.solver, origin, state.origin_weights, arc):
