@@ -57,7 +57,7 @@ class Fixed:
 class Geometric:
     """The backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, and l starts at 0 at every point.
 
-    `bounds.initial` is the longest step (1, as in the paper). Whatever the corrector accepts is accepted, however far the
+    `bounds.initial` is the longest step (1, as in the paper). It accepts whatever the corrector does, however far the
     tangent turned, so it can jump between paths: here to be compared with, not to be used.
     """
 
