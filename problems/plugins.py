@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from continuation.arrays import Array
 from problems.lcp.data.files import read_problem
 from problems.lcp.data.problem import LCP
-from problems.lcp.homotopies import (
-    KKTHomotopy,
-    KojimaMegiddoMizunoHomotopy,
-    TwoVectorHomotopy,
-    WangHomotopy,
-    XuHomotopy,
-    YuHomotopy,
-    ZhaoHomotopy,
-)
+from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy, Registered
 from problems.nonlinear import Differentiable, FixedPointHomotopy, brown
 
 
@@ -31,43 +25,32 @@ def brown_fixed_point(n: int = 5) -> Differentiable[FixedPointHomotopy]:
     return Differentiable(FixedPointHomotopy(F, np.zeros(n)), F.jacobian)
 
 
-def kkt(example: int = 2, file: str = "", q: str = "") -> KKTHomotopy:
-    """The KKT homotopy of Dutta, Das and Jana for an LCP: from the paper's start, or a default start for a file.
+def _plugin(homotopy: Registered) -> Callable[..., LCPHomotopy]:
+    """The homotopy as an object of an entry point, with options that can be typed."""
+
+    def make(example: int = homotopy.example, file: str = "", q: str = "") -> LCPHomotopy:
+        problem, x0 = _problem(example, file, q)
+        return homotopy.make(problem, x0)
+
+    make.__name__ = make.__qualname__ = homotopy.name
+    make.__doc__ = f"""{homotopy.sentence}
 
     Parameters
     ----------
     example : int
-        1 to 10, of the paper; not used where a file is given.
+        1 to 10, of the paper, from the paper's start; not used where a file is given.
     file, q : str
         As for ``continuation solve``.
     """
-    problem, x0 = _problem(example, file, q)
-    return KKTHomotopy(problem, x0)
+    return make
 
 
-def wang(example: int = 2, file: str = "", q: str = "") -> TwoVectorHomotopy:
-    """Wang's homotopy for an LCP, from x = e; options as for kkt."""
-    return WangHomotopy(_problem(example, file, q)[0])
-
-
-def yu(example: int = 2, file: str = "", q: str = "") -> TwoVectorHomotopy:
-    """Yu's homotopy for an LCP; options as for kkt."""
-    return YuHomotopy(*_problem(example, file, q))
-
-
-def zhao(example: int = 6, file: str = "", q: str = "") -> TwoVectorHomotopy:
-    """Zhao's homotopy for an LCP, from a strictly feasible start; options as for kkt."""
-    return ZhaoHomotopy(*_problem(example, file, q))
-
-
-def xu(example: int = 2, file: str = "", q: str = "") -> TwoVectorHomotopy:
-    """Xu's homotopy for an LCP, from a strictly feasible start; options as for kkt."""
-    return XuHomotopy(*_problem(example, file, q))
-
-
-def kmm(example: int = 2, file: str = "", q: str = "") -> TwoVectorHomotopy:
-    """The homotopy of Kojima, Megiddo and Mizuno for an LCP, from x = e; options as for kkt."""
-    return KojimaMegiddoMizunoHomotopy(_problem(example, file, q)[0])
+kkt = _plugin(HOMOTOPIES["kkt"])
+wang = _plugin(HOMOTOPIES["wang"])
+yu = _plugin(HOMOTOPIES["yu"])
+xu = _plugin(HOMOTOPIES["xu"])
+zhao = _plugin(HOMOTOPIES["zhao"])
+kmm = _plugin(HOMOTOPIES["kmm"])
 
 
 def _problem(number: int, file: str, q: str) -> tuple[LCP, Array | None]:

@@ -12,6 +12,7 @@ from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import dia_array
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.dense import lu_sign
 from continuation.linear.entries import real
 from continuation.linear.refine import BorderedMatrix, eliminate
 from continuation.linear.sparse import factor_whole
@@ -81,10 +82,8 @@ class BandedLU:
 
     @property
     def sign(self) -> int:
-        """Sign of det A: row exchanges and negative pivots, counted."""
-        swaps = np.count_nonzero(self.pivots != np.arange(len(self.pivots)))
-        negative = np.count_nonzero(self.lu[self.lower + self.upper] < 0)
-        return -1 if (swaps + negative) % 2 else 1
+        """Sign of det A."""
+        return lu_sign(self.pivots, self.lu[self.lower + self.upper])
 
     def solve(self, rhs: Array) -> Array:
         """The solution of A x = rhs, shape (N,)."""
@@ -107,7 +106,20 @@ def factor_banded(matrix: Banded, column: Array, row: Array) -> BorderedSystem:
     def whole() -> BorderedSystem:
         return factor_whole(matrix.tosparse(), column, row)
 
-    room = np.zeros((2 * lower + upper + 1, n), order="F")
+    factor = factor_band(matrix)
+    return whole() if factor is None else eliminate(bordered, factor, whole)
+
+
+def factor_band(matrix: Banded) -> BandedLU | None:
+    """LU factors of a banded matrix by itself; None where a pivot is exactly zero.
+
+    Parameters
+    ----------
+    matrix : Banded
+    """
+    lower, upper = matrix.lower, matrix.upper
+    # Row exchanges fill as many diagonals more as there are below the main one.
+    room = np.zeros((2 * lower + upper + 1, matrix.shape[0]), order="F")
     room[lower:] = matrix.ab
     lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
-    return whole() if info > 0 else eliminate(bordered, BandedLU(lu, pivots, lower, upper), whole)
+    return BandedLU(lu, pivots, lower, upper) if info == 0 else None

@@ -14,6 +14,38 @@ EQUILIBRATED = 0.1
 """Ratio of the smallest to the largest row above which scaling changes nothing (as in LAPACK's expert drivers)."""
 
 
+def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
+    """Sign of the determinant of LAPACK's LU factors: row exchanges and negative pivots, counted.
+
+    Parameters
+    ----------
+    exchanges : Array
+        With which row each one was exchanged.
+    pivots : Array
+        The diagonal of U.
+    """
+    odd = np.count_nonzero(exchanges != np.arange(len(exchanges))) + np.count_nonzero(pivots < 0)
+    return -1 if odd % 2 else 1
+
+
+@frozen(eq=False)
+class LU:
+    """LU factors of a dense matrix, with partial pivoting."""
+
+    lu: Array
+    pivots: NDArray[np.int32]
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return lu_sign(self.pivots, self.lu.diagonal())
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution of A x = rhs, shape (N,)."""
+        x: Array = dgetrs(self.lu, self.pivots, rhs)[0].ravel()
+        return x
+
+
 @frozen(eq=False)
 class Dense:
     """LU factors of the bordered matrix, its rows scaled to comparable size.
@@ -22,17 +54,14 @@ class Dense:
     to be measured.
     """
 
-    lu: Array
-    pivots: NDArray[np.int32]
+    factor: LU
     scale: Array | None
     """Powers of two, (N + 1,), by which the rows were multiplied; None for ones."""
 
     @property
     def sign(self) -> int:
-        """Sign of the determinant: row exchanges and negative pivots, counted."""
-        swaps = np.count_nonzero(self.pivots != np.arange(len(self.pivots)))
-        negative = np.count_nonzero(self.lu.diagonal() < 0)
-        return -1 if (swaps + negative) % 2 else 1
+        """Sign of the determinant."""
+        return self.factor.sign
 
     def solve(self, r: Array, rho: float) -> Array:
         """The solution z, shape (N + 1,).
@@ -42,13 +71,13 @@ class Dense:
         SingularError
             If z overflows, or the right-hand side is not finite.
         """
-        z = np.empty(len(self.pivots))
+        z = np.empty(len(self.factor.pivots))
         z[:-1] = r
         z[-1] = rho
         if self.scale is not None:
             with np.errstate(over="ignore"):
                 z *= self.scale
-        dgetrs(self.lu, self.pivots, z, overwrite_b=1)
+        dgetrs(self.factor.lu, self.factor.pivots, z, overwrite_b=1)
         if not finite(z):
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z
@@ -79,4 +108,15 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     lu, pivots, info = dgetrf(whole, overwrite_a=1)
     if info > 0:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: pivot {info - 1} is zero.")
-    return Dense(lu, pivots, scale)
+    return Dense(LU(lu, pivots), scale)
+
+
+def factor_lu(matrix: Array) -> LU | None:
+    """LU factors of a square matrix by itself; None where a pivot is exactly zero.
+
+    Parameters
+    ----------
+    matrix : Array of shape (N, N)
+    """
+    lu, pivots, info = dgetrf(matrix)
+    return LU(lu, pivots) if info == 0 else None

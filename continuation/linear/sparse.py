@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
@@ -127,8 +129,20 @@ def _factor(matrix: Matrix) -> SuperLU | None:
     """Factor by SuperLU; None where a pivot is exactly zero."""
     # On a symmetric pattern, diagonal pivots keep the ordering's fill; a weak one is left to refinement.
     symmetric = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 1e-3, "options": {"SymmetricMode": True}}
+    return factor_superlu(matrix, **(symmetric if _structurally_symmetric(matrix) else {"permc_spec": "COLAMD"}))
+
+
+def factor_superlu(matrix: Matrix, **how: Any) -> SuperLU | None:
+    """Factors of a sparse (CSC) matrix by itself, with SuperLU's options; None where a pivot is exactly zero.
+
+    Parameters
+    ----------
+    matrix : csc_array of shape (N, N)
+    **how
+        As for `scipy.sparse.linalg.splu`.
+    """
     try:
-        return SuperLU(splu(matrix, **(symmetric if _structurally_symmetric(matrix) else {"permc_spec": "COLAMD"})))
+        return SuperLU(splu(matrix, **how))
     except RuntimeError as error:
         if "singular" not in str(error):
             raise

@@ -114,10 +114,20 @@ def factor_symmetric(matrix: Symmetric, column: Array, row: Array) -> BorderedSy
 def _factor(symmetric: Symmetric) -> Factored | None:
     matrix = symmetric.matrix
     positive = symmetric.definite is not False and bool((matrix.diagonal() > 0).all())
-    if positive:
-        lower, info = dpotrf(matrix.T, lower=1, clean=0)
-        if info == 0:
-            return Cholesky(lower)
+    if positive and (factor := factor_cholesky(matrix.T)) is not None:
+        return factor
     work, _ = dsytrf_lwork(len(matrix), lower=1)
     ldu, pivots, info = dsytrf(matrix.T, lower=1, lwork=int(work))
     return LDL(ldu, pivots) if info == 0 else None
+
+
+def factor_cholesky(matrix: Array) -> Cholesky | None:
+    """The Cholesky factor of a symmetric matrix by itself; None where a pivot is not positive.
+
+    Parameters
+    ----------
+    matrix : Array of shape (N, N)
+        Only the lower triangle is read.
+    """
+    lower, info = dpotrf(matrix, lower=1, clean=0)
+    return Cholesky(lower) if info == 0 else None

@@ -42,16 +42,19 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
     return room
 
 
-def finish_of(homotopy: Any) -> Callable[[Array, float], Array | None] | None:
-    """The homotopy's `finish`; None where it has none of its own.
+def finish_of(
+    homotopy: Any, given: Callable[[Array, float], Array | None] | None
+) -> Callable[[Array, float], Array | None] | None:
+    """The finish that was given, else the homotopy's own; None where there is neither.
 
-    The function returned raises ValueError if the homotopy's gives neither None nor as many finite numbers as there
+    The function returned raises ValueError if that one gives neither None nor as many finite numbers as there
     are unknowns. That H is small there is not asked for: an end is certified by the problem, whose certificate may be
     about some of the unknowns alone, as the x of a complementarity problem; the path's message says what H is.
     """
-    if not isinstance(homotopy, SupportsFinish):
+    own = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
+    finish = own if given is None else given
+    if finish is None:
         return None
-    finish = homotopy.finish
 
     def end(y: Array, lam: float) -> Array | None:
         found: Any = finish(y, lam)

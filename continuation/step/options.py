@@ -26,6 +26,9 @@ from continuation.presets import DEFAULT, Preset
 from continuation.step.start import point_and_direction
 from continuation.tolerance import Tolerance, as_tolerance
 
+Finish = Callable[[Array, float], Array | None]
+"""A way to end: (y, lam) to the end y, or None to go on."""
+
 
 class PartOptions(TypedDict, total=False):
     """How a path is traced: its parts, and what is looked for on it.
@@ -76,6 +79,8 @@ class Options(PartOptions, total=False):
         Sign of the parameter's first movement; 0 means towards the target.
     start : tuple of (u, v), default None
         Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector, and the direction to leave in.
+    finish : callable, default None
+        ``(y, lam)`` to the end y or None, tried after each step in place of the homotopy's own; no archive holds it.
     """
 
     tolerance: float | Tolerance
@@ -83,6 +88,7 @@ class Options(PartOptions, total=False):
     target: float | str | None
     direction: int
     start: tuple[Array, Array] | None
+    finish: Finish | None
 
 
 DEFAULTS: Options = {
@@ -99,6 +105,7 @@ DEFAULTS: Options = {
     "target": "homotopy",
     "direction": 0,
     "start": None,
+    "finish": None,
 }
 """What is taken where nothing is said."""
 
@@ -177,6 +184,8 @@ def checked(options: Mapping[str, Any]) -> Options:
     if not names_homotopy(asked["target"]):
         checked_target(asked["target"])
     check_sign("direction", asked["direction"])
+    if asked["finish"] is not None and not callable(asked["finish"]):
+        raise complain(TypeError, "finish", "a function of (y, lam)", asked["finish"])
     if asked["start"] is not None:
         point_and_direction(asked["start"])
     return asked

@@ -95,7 +95,7 @@ class Tracer:
         self.settings = complete_settings(homotopy, asked)
         self.observers = tuple(observers)
         self.state: State | None = state
-        self._finish = finish_of(homotopy)
+        self._finish = finish_of(homotopy, asked["finish"])
         self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy))
         observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._recorder = StepRecorder(self._evaluator, observe)

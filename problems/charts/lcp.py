@@ -18,6 +18,7 @@ from problems.charts import rivals
 from problems.charts.families import planted
 from problems.charts.rivals import Solved, Solver
 from problems.lcp import LCP
+from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.reference import ReferenceResult, lemke, min_newton, modulus
 from problems.paper import EXAMPLES
 
@@ -33,14 +34,6 @@ WHOLE_BUDGET = continuation.Budget(steps=400)
 """Of `lcp.solve`, all paths together."""
 
 WORK = ("factorizations", "solves", "seconds")
-MAKERS: dict[str, Callable[..., Any]] = {
-    "KKT": lcp.KKTHomotopy,
-    "Wang": lcp.WangHomotopy,
-    "Yu": lcp.YuHomotopy,
-    "Xu": lcp.XuHomotopy,
-    "Zhao": lcp.ZhaoHomotopy,
-    "Kojima": lcp.KojimaMegiddoMizunoHomotopy,
-}
 
 
 def path(name: str, make: Callable[..., Any], **options: Any) -> Method:
@@ -131,8 +124,9 @@ def _unfinished(path: continuation.Path | None) -> bool:
 def studies(size: Size, compare: bool) -> Sequence[Study]:
     """The ten examples, and generated families over sizes."""
     rungs = {"smoke": (1e-6,), "moderate": (1e-4, 1e-8), "full": (1e-3, 1e-5, 1e-7, 1e-9)}[size]
-    homotopies = [path(f"{name}", make) for name, make in MAKERS.items()]
-    series = [path(f"{name}, series", MAKERS[name], preset=continuation.SERIES) for name in ("KKT", "Wang")]
+    homotopies = [path(one.title, one.make) for one in HOMOTOPIES.values()]
+    quick = (HOMOTOPIES["kkt"], HOMOTOPIES["wang"])
+    series = [path(f"{one.title}, series", one.make, preset=continuation.SERIES) for one in quick]
     whole = [solver("KKT, finish", homotopy="kkt"), solver("solve, auto")]
     common: dict[str, Any] = {
         "methods": [*homotopies, *series, *whole, *references(), *outside(compare)],

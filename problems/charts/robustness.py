@@ -9,7 +9,8 @@ from continuation.chart import Profile, Study, tolerances
 from continuation.chart.catalogue import Size
 from problems.charts import rivals
 from problems.charts.families import FAMILIES
-from problems.charts.lcp import MAKERS, RESIDUAL, WORK, outside, path, problem, references, solver
+from problems.charts.lcp import RESIDUAL, WORK, outside, path, problem, references, solver
+from problems.lcp.homotopies.registry import HOMOTOPIES
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
@@ -17,9 +18,9 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     orders, seeds = {"smoke": ((5,), 1), "moderate": ((6, 12), 4), "full": ((5, 10, 20, 50), 25)}[size]
     families = ("semidefinite", "N") if size == "smoke" else [name for name in FAMILIES if name != "obstacle"]
     methods = [
-        *(path(name, make) for name, make in MAKERS.items()),
+        *(path(one.title, one.make) for one in HOMOTOPIES.values()),
         # The same path, several times as dear in time: for reports.
-        *((path("KKT, series", MAKERS["KKT"], preset=continuation.SERIES),) if size == "full" else ()),
+        *((path("KKT, series", HOMOTOPIES["kkt"].make, preset=continuation.SERIES),) if size == "full" else ()),
         solver("KKT, finish", homotopy="kkt"),
         solver("solve, auto", restarts=5),
         *references(),

@@ -14,8 +14,7 @@ from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from problems.commands.arguments import PROBLEM_FORMATS, named
 from problems.lcp.data.problem import LCP
-
-HOMOTOPIES = ("auto", "kkt", "yu", "zhao", "xu", "wang")
+from problems.lcp.homotopies.registry import HOMOTOPIES
 
 MOST_ROWS = 60
 """Components printed; --json prints all."""
@@ -35,11 +34,12 @@ def register(subparsers: Subparsers) -> None:
     )
     parser.add_argument("file", metavar="FILE", help=f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group")
     parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
-    parser.add_argument("--homotopy", choices=HOMOTOPIES, default="auto", help="default: auto")
+    parser.add_argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto")
     parser.add_argument("--x0", metavar="FILE", help="the start: x0 > 0 with A x0 + q > 0, as in the paper")
     parser.add_argument("--relaxed", action="store_true", help="take any x0 > 0; what A x0 + q lacks is relaxed away")
-    parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
-    parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); needs matplotlib")
+    parser.add_argument("--path", action="store_true", help="trace a path even where none is needed")
+    parser.add_argument("--archive", metavar="FILE", help="write the paths to this HDF5 file, which must not exist")
+    parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); implies --path")
     parser.add_argument(
         "--budget-seconds", metavar="S", type=float, help="wall-clock time; default: work that takes about a minute"
     )
@@ -65,15 +65,14 @@ def run(arguments: argparse.Namespace) -> int:
             problem,
             homotopy=arguments.homotopy,
             x0=x0,
+            path=arguments.path or arguments.plot is not None,
             archive=arguments.archive,
             budget=budget,
             progress=arguments.progress,
         )
     print(json.dumps(_as_json(arguments, solution)) if arguments.json else _as_text(arguments, problem, solution))
     if arguments.plot is not None:
-        # Where no path was needed there is nothing to draw yet.
-        drawn = solution if solution.paths else lcp.solve(problem, arguments.homotopy, x0=x0, finish=False)
-        _draw(drawn, problem.n, arguments.plot)
+        _draw(solution, problem.n, arguments.plot)
     return SUCCESS if solution.success else FAILURE
 
 

@@ -21,7 +21,7 @@ from problems.lcp.proof.farkas import Farkas, empty_interior, farkas
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.reference.enumeration import solve_by_enumeration
 from problems.lcp.search.outcome import Outcome, Solution
-from problems.lcp.search.strategy import solve
+from problems.lcp.search.solver import solve
 
 __all__ = [
     "LCP",

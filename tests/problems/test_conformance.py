@@ -54,6 +54,7 @@ OTHERS = {
     "newton": lambda: newton(brown(3), np.full(3, 0.8), brown(3).jacobian),
     "newton without a derivative": lambda: newton(brown(3), np.full(3, 0.8)),
     "kkt, off the feasible set": lambda: lcp.KKTHomotopy(lcp.LCP(chain(6).toarray(), Q), x0=np.full(6, 0.1)),
+    "kkt, not refined": lambda: lcp.KKTHomotopy(lcp.LCP(chain(6).toarray(), Q), refine=False),
     "kkt, banded": lambda: lcp.KKTHomotopy(lcp.LCP(chain(6), Q)),
     "kkt, sparse": lambda: lcp.KKTHomotopy(lcp.LCP(scattered(24), np.resize(Q, 24))),
     "kkt, a degenerate end": lambda: make("kkt", {"example": 7}),

@@ -8,35 +8,39 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgbtrf, dgbtrs, dgecon, dgetrf, dgetrs, dpotrf, dpotrs
-from scipy.sparse.linalg import splu
+from scipy.linalg.lapack import dgecon
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.banded import factor_band
+from continuation.linear.dense import factor_lu
+from continuation.linear.refine import Factored
+from continuation.linear.sparse import factor_superlu
+from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP
 from problems.lcp.proof.compensated import accurate_w
 
 Mask = NDArray[np.bool_]
-Solver = Callable[[Array], Array]
 
-SINGULAR = 1e-14
-"""Reciprocal condition below which a face counts as singular."""
+SINGULAR_CONDITION = 1e-14
+"""Reciprocal condition below which a face counts as singular: its solution has about no digit left."""
 
-DOUBTFUL = 1e-6
+DOUBTFUL_PIVOTS = 1e-6
 """Ratio of the smallest to the largest pivot below which the condition is estimated."""
 
-EPS = float(np.finfo(float).eps)
+SINGULAR_SHIFT = 1e-8
+"""Shift of the diagonal, relative to the norm, with which the equations of a singular face are solved.
 
-SHIFT = 1e-8
-"""Shift of the diagonal, relative to the largest entry, with which the equations of a singular face are solved."""
+The root of the machine precision: a smaller shift loses more digits to rounding, a larger one needs more corrections.
+"""
 
-CORRECTIONS = 4
-"""Refinements of the solution by a shifted matrix: each gains the ratio of the shift to the least singular value."""
+SHIFTED_CORRECTIONS = 4
+"""Corrections of the solution by a shifted matrix: each gains the ratio of the shift to the least singular value."""
 
 
 @frozen(eq=False)
 class Face:
-    """One face and the factorisation of its equations.
+    """One face and the factorisation of its equations, ``A x + shift x + q = 0`` on the active set.
 
     Attributes
     ----------
@@ -46,33 +50,45 @@ class Face:
     inverse : callable
         Right-hand side on the active set to the solution there, of the equations or of shifted ones.
     exact : bool
-        Whether the equations themselves were factored, not shifted ones.
+        Whether one solve gives the point: the equations themselves were factored, not shifted ones, or they are those
+        of a proximal problem, of which no more is asked than signs.
+    shift : float
+        Zero for a face of the problem itself.
+    q : Array
+        The problem's own, or in its place that of a proximal problem.
     """
 
     problem: LCP
     active: Mask
-    inverse: Solver
+    inverse: Callable[[Array], Array]
     exact: bool
+    shift: float
+    q: Array
 
     def point(self, near: Array) -> tuple[Array, Array] | None:
-        """(x, A x + q) on the face, w zero on the active set; None where nothing finite comes out.
+        """(x, w) on the face, w zero on the active set; None where nothing finite comes out.
 
         Where the face holds many points this is, about, the one nearest to `near`.
         """
         x = np.zeros_like(near) if self.exact else np.where(self.active, near, 0.0)
         with np.errstate(over="ignore", invalid="ignore"):
             # From zero, where w = q, one solve is all that exact factors need.
-            for _ in range(1 if self.exact else CORRECTIONS):
-                x = self._corrected(x, self.problem.q if self.exact else self.problem.w(x))
-            w = self.problem.w(x)
+            for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
+                x = self._corrected(x, self.q if self.exact else self.w(x))
+            w = self.w(x)
         if not (np.isfinite(x).all() and np.isfinite(w).all()):
             return None
         if self.exact:
             w[self.active] = 0.0
         return x, w
 
+    def w(self, x: Array) -> Array:
+        """``A x + shift x + q``, shape (n,)."""
+        w: Array = self.problem.A @ x + self.q
+        return w + self.shift * x if self.shift else w
+
     def refined(self, x: Array) -> Array:
-        """The point x of the face after a correction with w in twice the working precision."""
+        """The point x of a face of the problem itself, corrected once with w in twice the working precision."""
         with np.errstate(over="ignore", invalid="ignore"):
             return self._corrected(x, accurate_w(self.problem, x)[0])
 
@@ -99,86 +115,88 @@ class Faces:
         """The problem."""
         return self.structure.problem
 
-    def face(self, active: Mask, shift: float = 0.0) -> Face | None:
-        """The face of an active set, factored, with `shift` added to the diagonal; None where that is impossible."""
+    def face(self, active: Mask, shift: float = 0.0, centre: Array | None = None) -> Face | None:
+        """The face of an active set, factored; None where that is impossible.
+
+        Parameters
+        ----------
+        active : Mask
+        shift : float
+            Added to the diagonal of A.
+        centre : Array, optional
+            Of a proximal problem, whose q is ``q - shift centre``.
+        """
+        problem = self.problem
+        q = problem.q if centre is None else problem.q - shift * centre
         inside = np.flatnonzero(active)
         if inside.size == 0:
-            return Face(self.problem, active, lambda r: r, True)
+            return Face(problem, active, lambda right: right, True, shift, q)
         if self.structure.band is not None:
-            solver, exact = self._banded(active, shift), True
-        elif self.problem.sparse:
-            solver, exact = _sparse(self.problem.A[inside][:, inside], shift)
-        else:
-            solver, exact = self._dense(inside, shift)
-        return None if solver is None else Face(self.problem, active, solver, exact)
+            inverse = self._banded(active, shift)
+            return None if inverse is None else Face(problem, active, inverse, True, shift, q)
+        block = problem.A[inside][:, inside]
+        factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
+        return None if factor is None else Face(problem, active, factor.solve, exact or centre is not None, shift, q)
 
-    def _dense(self, inside: NDArray[np.intp], shift: float) -> tuple[Solver | None, bool]:
-        # Rows, then columns: the quickest of numpy's ways, and the block comes out in LAPACK's order.
-        block = np.asfortranarray(self.problem.A[inside][:, inside])
-        block[np.diag_indices(inside.size)] += shift
-        if self.structure.symmetric and (solver := _cholesky(block)) is not None:
-            return solver, True
+    def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
+        # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.
+        block = np.asfortranarray(block)
+        block[np.diag_indices(len(block))] += shift
+        if self.structure.symmetric and (factor := _cholesky(block)) is not None:
+            return factor, True
         # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
         definite = self.structure.symmetric and self.structure.semidefinite
-        if not definite and (solver := _lu(block)) is not None:
-            return solver, True
-        block[np.diag_indices(inside.size)] += SHIFT * max(_norm(block), 1e-300)
+        if not definite and (factor := _lu(block)) is not None:
+            return factor, True
+        block[np.diag_indices(len(block))] += SINGULAR_SHIFT * max(_norm(block), 1e-300)
         return (_cholesky if definite else _lu)(block), False
 
-    def _banded(self, active: Mask, shift: float) -> Solver | None:
+    def _banded(self, active: Mask, shift: float) -> Callable[[Array], Array] | None:
         """In the band of the whole matrix, with unit rows off the face: no index is moved."""
-        band = self.structure.band
-        assert band is not None
-        n, lower, upper = active.size, band.lower, band.upper
-        room = np.zeros((2 * lower + upper + 1, n), order="F")
-        for k in range(-lower, upper + 1):
-            begin, end = max(0, -k), min(n, n - k)
-            room[lower + upper - k, begin + k : end + k] = (active * band.rows[lower + k])[begin:end]
-        room[lower + upper] += shift
-        room[lower + upper, ~active] = 1.0
-        lu, pivots, info = dgbtrf(room, lower, upper, overwrite_ab=1)
+        assert self.structure.band is not None
+        kept = active.astype(float)
+        factor = factor_band(self.structure.band.scaled(kept, kept, np.where(active, shift, 1.0)))
+        if factor is None:
+            return None
 
-        def solve(right: Array) -> Array:
-            whole = np.zeros(n)
+        def inverse(right: Array) -> Array:
+            whole = np.zeros(active.size)
             whole[active] = right
-            solution: Array = dgbtrs(lu, lower, upper, whole, pivots)[0].ravel()
-            return solution[active]
+            return factor.solve(whole)[active]
 
-        return solve if info == 0 else None
-
-
-def _norm(block: Array) -> float:
-    return float(np.abs(block).sum(axis=0).max())
+        return inverse
 
 
-def _cholesky(block: Array) -> Solver | None:
-    factor, info = dpotrf(block, lower=1, clean=0)
-    if info != 0 or factor.diagonal().min() ** 2 < EPS * block.shape[0] * block.diagonal().max():
+def _norm(block: Matrix) -> float:
+    return float(abs(block).sum(axis=0).max())
+
+
+def _cholesky(block: Array) -> Factored | None:
+    """The factor; None where a pivot is no more than the rounding of the diagonal, so that it may as well be zero."""
+    factor = factor_cholesky(block)
+    if factor is None:
         return None
-    return lambda right: np.asarray(dpotrs(factor, right, lower=1)[0]).ravel()
+    rounding = float(np.finfo(float).eps) * len(block) * block.diagonal().max()
+    return factor if factor.lower.diagonal().min() ** 2 >= rounding else None
 
 
-def _lu(block: Array) -> Solver | None:
-    factors, swaps, info = dgetrf(block)
-    if info != 0:
+def _lu(block: Array) -> Factored | None:
+    """The factors; None where the matrix is singular to working precision."""
+    factor = factor_lu(block)
+    if factor is None:
         return None
-    pivots = np.abs(factors.diagonal())
+    pivots = np.abs(factor.lu.diagonal())
     # The condition is estimated only where the pivots make it doubtful: at these orders it costs half a factorisation.
-    if pivots.min() < DOUBTFUL * pivots.max() and dgecon(factors, _norm(block))[0] < SINGULAR:
-        return None
-    return lambda right: np.asarray(dgetrs(factors, swaps, right)[0]).ravel()
+    doubtful = pivots.min() < DOUBTFUL_PIVOTS * pivots.max()
+    return None if doubtful and dgecon(factor.lu, _norm(block))[0] < SINGULAR_CONDITION else factor
 
 
-def _sparse(block: Matrix, shift: float) -> tuple[Solver | None, bool]:
-    block = sp.csc_array(block)
-    if shift:
-        block = sp.csc_array(block + shift * sp.eye_array(block.shape[0]))
-    try:
-        return splu(block, permc_spec="MMD_AT_PLUS_A").solve, True
-    except RuntimeError:  # SuperLU's word for an exact zero pivot
-        pass
-    norm = float(abs(block).sum(axis=0).max())
-    try:
-        return splu(sp.csc_array(block + SHIFT * max(norm, 1e-300) * sp.eye_array(block.shape[0]))).solve, False
-    except RuntimeError:
-        return None, False
+def _sparse(block: Matrix, shift: float) -> tuple[Factored | None, bool]:
+    # On a face of a symmetric pattern this ordering fills half as much as the default one.
+    ordering = {"permc_spec": "MMD_AT_PLUS_A"}
+    eye = sp.eye_array(block.shape[0])
+    block = sp.csc_array(block + shift * eye if shift else block)
+    factor = factor_superlu(block, **ordering)
+    if factor is not None:
+        return factor, True
+    return factor_superlu(sp.csc_array(block + SINGULAR_SHIFT * max(_norm(block), 1e-300) * eye), **ordering), False

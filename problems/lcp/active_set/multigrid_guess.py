@@ -13,21 +13,31 @@ import scipy.sparse as sp
 
 from continuation.arrays import Array, Matrix
 from problems.lcp.active_set.face import Faces, Mask
+from problems.lcp.active_set.iteration import Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP
 
 SMALL = 200
-"""A problem of this order is not made coarser, and gets as many corrections as it needs."""
+"""A problem of this order is not made coarser: its faces cost less than the interpolation."""
+
+COARSEST = Policy(steps=SMALL - 1)
+"""There: for an M-matrix each step from x = 0 enlarges the active set until it is right, so this is enough."""
 
 SLOW = 0.8
-"""Coarsening that keeps more than this share of the unknowns is given up."""
+"""Coarsening that keeps more than this share of the unknowns, where a grid keeps half of them, is given up."""
 
-STEPS = 12
-"""Corrections of the active set on every other level."""
+ELSEWHERE = Policy(steps=11)
+"""On every other level: interpolation puts the boundary within a few lines of its place."""
 
 
 def suitable(structure: Structure) -> bool:
-    """Whether A is large and sparse, with a positive diagonal and nearly all other entries nonpositive."""
+    """Whether A is large and sparse, with a positive diagonal and nearly all other entries nonpositive.
+
+    Parameters
+    ----------
+    structure : Structure
+        Of the problem.
+    """
     problem = structure.problem
     if not problem.sparse or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
         return False
@@ -35,31 +45,25 @@ def suitable(structure: Structure) -> bool:
 
 
 def guess(problem: LCP) -> Array:
-    """An approximate solution, shape (n,), from the coarser problems; its support is the guess of the active set."""
+    """An approximate solution, shape (n,), from the coarser problems; its support is the guess of the active set.
+
+    Parameters
+    ----------
+    problem : LCP
+        One that is `suitable`.
+    """
     if problem.n <= SMALL:
-        return _corrected(problem, problem.q < 0.0, SMALL)
+        return _corrected(problem, problem.q < 0.0, COARSEST)
     P = _interpolation(problem.A)
     if P.shape[1] > SLOW * problem.n:
-        return _corrected(problem, problem.q < 0.0, STEPS)
+        return _corrected(problem, problem.q < 0.0, ELSEWHERE)
     coarse = LCP(sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q)
-    return _corrected(problem, np.asarray(P @ guess(coarse) > 0.0), STEPS)
+    return _corrected(problem, np.asarray(P @ guess(coarse) > 0.0), ELSEWHERE)
 
 
-def _corrected(problem: LCP, active: Mask, steps: int) -> Array:
+def _corrected(problem: LCP, active: Mask, policy: Policy) -> Array:
     """The last point of a few active-set steps, clipped at zero."""
-    faces = Faces(Structure(problem))
-    x = np.zeros(problem.n)
-    for _ in range(steps):
-        face = faces.face(active)
-        point = None if face is None else face.point(x)
-        if point is None:
-            break
-        x = point[0]
-        following = np.where(active, x > 0.0, point[1] < 0.0)
-        if np.array_equal(following, active):
-            break
-        active = following
-    return np.maximum(x, 0.0)
+    return np.maximum(iterate(Faces(Structure(problem)), active, policy).x, 0.0)
 
 
 def _interpolation(A: Matrix) -> Matrix:

@@ -1,12 +1,12 @@
-"""What a cheap look at the matrix proves, and what that decides about the search."""
+"""What is quickly found out about the matrix; `search.strategy` decides by it what is tried."""
 
 from __future__ import annotations
 
 import numpy as np
 from attrs import evolve, frozen
 
+from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP
-from problems.lcp.homotopies import Structure
 
 
 @frozen
@@ -33,13 +33,6 @@ class MatrixFacts:
     negative_diagonal: bool
     nonnegative: bool
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The homotopies to try from their default starts, in order."""
-        if self.negative_diagonal:
-            return ("kkt",)
-        return ("wang", "kkt")
-
     def __str__(self) -> str:
         parts = ["symmetric" if self.symmetric else "not symmetric"]
         if self.semidefinite is not None:
@@ -54,22 +47,34 @@ class MatrixFacts:
 
 
 def entry_facts(structure: Structure) -> MatrixFacts:
-    """MatrixFacts at the entries of A, which costs O(n^2) at most."""
-    A = structure.problem.A
-    diagonal = A.diagonal()
-    off = _off_diagonal(structure.problem)
+    """What the entries of A tell, at a cost of O(n^2) at most.
+
+    Parameters
+    ----------
+    structure : Structure
+    """
+    diagonal = structure.problem.A.diagonal()
+    least, largest = _off_diagonal(structure.problem)
     return MatrixFacts(
         symmetric=structure.symmetric,
         semidefinite=None,
-        z_matrix=off[1] <= 0.0,
+        z_matrix=largest <= 0.0,
         negative_diagonal=bool((diagonal < 0.0).any()),
-        nonnegative=off[0] >= 0.0 and bool((diagonal >= 0.0).all()),
+        nonnegative=least >= 0.0 and bool((diagonal >= 0.0).all()),
     )
 
 
-def matrix_facts(structure: Structure) -> MatrixFacts:
-    """The same, and one Cholesky factorisation if A is dense with a nonnegative diagonal."""
-    return evolve(entry_facts(structure), semidefinite=structure.semidefinite)
+def matrix_facts(structure: Structure, entries: MatrixFacts | None = None) -> MatrixFacts:
+    """The same, and one Cholesky factorisation if A is dense with a nonnegative diagonal.
+
+    Parameters
+    ----------
+    structure : Structure
+    entries : MatrixFacts, optional
+        What `entry_facts` said, where it was asked before.
+    """
+    known = entry_facts(structure) if entries is None else entries
+    return evolve(known, semidefinite=structure.semidefinite)
 
 
 def _off_diagonal(problem: LCP) -> tuple[float, float]:

@@ -25,8 +25,12 @@ FILL = 8.0
 Beyond that (a full row makes A'DA full) the system of order 2n, which is as sparse as A, takes its place.
 """
 
-SHIFT = 100 * float(np.finfo(float).eps)
-"""Relative shift per unknown with which a semidefinite matrix passes for definite."""
+SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
+"""Shift per unknown of the diagonal, scaled to ones, with which a semidefinite matrix passes for definite.
+
+The rounding of a Cholesky factorisation of order n is at most about n eps of the diagonal (Higham, Theorem 10.3); the
+data themselves, as M M' formed in floating point, are off by as much again.
+"""
 
 
 @frozen(eq=False)
@@ -37,15 +41,14 @@ class Band:
     lower: int
     upper: int
 
-    def scaled(self, factor: float, columns: Array, diagonal: Array) -> Banded:
-        """``factor A diag(columns) + diag(diagonal)``."""
+    def scaled(self, factor: float | Array, columns: Array, diagonal: Array) -> Banded:
+        """``factor A diag(columns) + diag(diagonal)``, with a factor for all rows or one for each."""
         n = self.rows.shape[1]
+        rows = factor * self.rows
         ab = np.zeros((self.lower + self.upper + 1, n))
         for k in range(-self.lower, self.upper + 1):
             begin, end = max(0, -k), min(n, n - k)
-            ab[self.upper - k, begin + k : end + k] = (
-                factor * self.rows[self.lower + k, begin:end] * columns[begin + k : end + k]
-            )
+            ab[self.upper - k, begin + k : end + k] = rows[self.lower + k, begin:end] * columns[begin + k : end + k]
         ab[self.upper] += diagonal
         return Banded(ab, self.lower, self.upper)
 
@@ -140,7 +143,7 @@ class Structure:
             return bool((2.0 * diagonal >= np.asarray(abs(self.symmetrized).sum(axis=1))).all())
         scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
         scaled = self.symmetrized * scale * scale[:, None]
-        scaled[np.diag_indices(self.n)] += SHIFT * self.n
+        scaled[np.diag_indices(self.n)] += SEMIDEFINITE_SHIFT * self.n
         return bool(dpotrf(scaled, lower=1, overwrite_a=1)[1] == 0)
 
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:

@@ -15,19 +15,22 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError
 
-REFINEMENTS = 4
-"""Corrections in the full system that a solve may take; one is the rule."""
+CORE_REFINEMENTS = 4
+"""Corrections in the full system that a solve may take; one is the rule, and each gains three digits (`UNRELIABLE`)."""
 
 CONVERGED = 1e-9
-"""Relative size of a correction, component by component, after which the corrected solution is at round-off."""
+"""Relative size of a correction, component by component, after which the next would be below 1e-12 (`UNRELIABLE`)."""
 
 RESOLVED = 1e-6
-"""A component smaller than this, of the largest one in the units of the point, need not have relative accuracy."""
+"""A component smaller than this, of the largest one in the units of the point, need not have relative accuracy.
 
-ROUND_OFF = 1e-13
-"""Relative size of the tangent's correction below which the core's solutions are taken as they are."""
+What it does to the point is a millionth of what the step does.
+"""
 
-SPREAD = 1e3
+FIRM_CORRECTION = 1e-13
+"""Relative size of the tangent's correction, round-off, below which the core's solutions are taken as they are."""
+
+FIRM_SPREAD = 1e3
 """Ratio of the largest to the smallest factor of the pairs up to which the tangent's correction speaks for others."""
 
 UNRELIABLE = 1e-3
@@ -62,7 +65,13 @@ class Pairs:
 
 @_silently
 def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate every p: what is left keeps the symmetry of the core."""
+    """Eliminate every p: what is left keeps the symmetry of the core.
+
+    Parameters
+    ----------
+    s, x, c : Array of shape (n,)
+        Of the pairs ``s v + x p - c l = r``.
+    """
     f = 1.0 / x
     ones, zeros = np.ones_like(x), np.zeros_like(x)
     return Pairs(ones, -s * f, zeros, f, c, _parity(np.count_nonzero(x < 0.0)))
@@ -70,7 +79,13 @@ def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
 
 @_silently
 def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate the unknown with the larger coefficient: no cancellation, and either coefficient may be zero."""
+    """Eliminate the unknown with the larger coefficient: no cancellation, and either coefficient may be zero.
+
+    Parameters
+    ----------
+    s, x, c : Array of shape (n,)
+        Of the pairs ``s v + x p - c l = r``.
+    """
     swapped = np.abs(x) < np.abs(s)
     pivot = np.where(swapped, s, x)
     inverse = 1.0 / pivot
@@ -191,7 +206,7 @@ class CoreSystem:
         return TangentSolve(self.quick, solution[0], self._firm(solution[1]))
 
     def _firm(self, moved: float) -> bool:
-        return moved <= ROUND_OFF and self.full.spread <= SPREAD
+        return moved <= FIRM_CORRECTION and self.full.spread <= FIRM_SPREAD
 
     def _robustly(self, r: Array, rho: float) -> tuple[Array, float]:
         """The solution by the robust core, corrected once whatever that does, and the size of the correction."""
@@ -209,7 +224,7 @@ class CoreSystem:
             with np.errstate(all="ignore"):
                 z = core.solve(r, rho)
                 changes: list[float] = []
-                while len(changes) < REFINEMENTS:
+                while len(changes) < CORE_REFINEMENTS:
                     correction = core.solve(*self.full.residual(z, r, rho))
                     z = z + correction
                     moved, overall = self._moved(correction, z)
@@ -232,3 +247,30 @@ class CoreSystem:
             return 0.0, 0.0
         relative = np.abs(correction) / (np.abs(z) + (RESOLVED * size) * units)
         return float(relative.max()), float(np.abs(correction / units).max()) / size
+
+
+def core_system(
+    full: Full, quick: BorderedSystem | None, make_robust: Callable[[], BorderedSystem], refine: bool
+) -> BorderedSystem:
+    """The system to solve with: the quick core alone, or both, corrected.
+
+    Parameters
+    ----------
+    full : Full
+    quick : BorderedSystem or None
+    make_robust : callable
+        Called only where the quick core fails.
+    refine : bool
+        Whether solutions are corrected in full; without it a quick core is taken as it is.
+
+    Raises
+    ------
+    SingularError
+        If there is no quick core and the robust one has no factorisation: said here, not at the first solve.
+    """
+    if quick is not None and not refine:
+        return quick
+    system = CoreSystem(full, quick, make_robust)
+    if quick is None:
+        _ = system.robust
+    return system

@@ -44,7 +44,12 @@ class RelativeMetric:
 
 
 def longest_step(value: Array, direction: Array) -> float:
-    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components."""
+    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components.
+
+    Parameters
+    ----------
+    value, direction : Array
+    """
     falling = direction < 0.0
     if not falling.any():
         return np.inf
@@ -53,11 +58,24 @@ def longest_step(value: Array, direction: Array) -> float:
 
 
 def observed(problem: LCP, x: Array) -> dict[str, float]:
-    """The natural residual and the gap x'w, with w = A x + q."""
+    """The natural residual and the gap x'w, with w = A x + q.
+
+    Parameters
+    ----------
+    problem : LCP
+    x : Array of shape (n,)
+    """
     w = problem.w(x)
     return {"natural_residual": float(np.abs(np.minimum(x, w)).max()), "gap": float(x @ w)}
 
 
 def convolved(a: Array, b: Array, k: int) -> Array:
-    """``sum_{j=1..k-1} a_j b_{k-j}``, shape (n,): what is known of coefficient k of a product of two series."""
+    """``sum_{j=1..k-1} a_j b_{k-j}``, shape (n,): what is known of coefficient k of a product of two series.
+
+    Parameters
+    ----------
+    a, b : Array
+        Coefficients of the factors, shape (order + 1, n).
+    k : int
+    """
     return np.asarray(np.einsum("jn,jn->n", a[1:k], b[k - 1 : 0 : -1]))

@@ -46,6 +46,9 @@ class KKTHomotopy:
         Positive. Default: A x0 + q where that is positive, which is the paper's start; else max(A x0 + q, 0) + max |q|.
     structure : Structure, optional
         That of the problem, to share between starts what was found out about A.
+    refine : bool
+        Whether bordered solves are corrected to round-off. Without it a path takes a third less time, and its points
+        are good enough for a loose tolerance.
 
     Raises
     ------
@@ -63,6 +66,7 @@ class KKTHomotopy:
     problem: LCP
     origin: Start
     structure: Structure
+    refine: bool = True
     problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (DUTTA_DAS_JANA,)
@@ -77,11 +81,12 @@ class KKTHomotopy:
         w0: Any = None,
         *,
         structure: Structure | None = None,
+        refine: bool = True,
     ) -> None:
         if not isinstance(problem, LCP):
             raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
         origin = _start(problem, x0, z1, z2, w0)
-        self.__attrs_init__(problem, origin, structure if structure is not None else Structure(problem))
+        self.__attrs_init__(problem, origin, structure if structure is not None else Structure(problem), refine)
 
     @property
     def n(self) -> int:
@@ -162,7 +167,7 @@ class KKTHomotopy:
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix of order 3n + 1 by way of one of order n + 1; see `factor_kkt`."""
         # Copied, as what is factored must not follow a caller that goes on to change its y in place.
-        return factor_kkt(self._system(y.copy(), lam), border.copy())
+        return factor_kkt(self._system(y.copy(), lam), border.copy(), self.refine)
 
     @quiet
     def differential(self, y: Array, lam: float, v: Array) -> Array:

@@ -8,7 +8,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.homotopies.cores import CoreSystem, Full, Pairs, larger_eliminated, second_eliminated
+from problems.lcp.homotopies.cores import Full, Pairs, core_system, larger_eliminated, second_eliminated
 
 
 @frozen(eq=False)
@@ -118,8 +118,16 @@ class Augmented:
         return z
 
 
-def factor_kkt(system: KKTSystem, border: Array) -> CoreSystem:
+def factor_kkt(system: KKTSystem, border: Array, refine: bool = True) -> BorderedSystem:
     """The bordered system of order 3n + 1 at a point, from a factorisation of order n + 1 (or 2n + 1).
+
+    Parameters
+    ----------
+    system : KKTSystem
+    border : Array of shape (3n + 1,)
+    refine : bool
+        Whether solutions are corrected in full. Without it they are those of the core of order n + 1, where there is
+        one.
 
     Raises
     ------
@@ -128,11 +136,7 @@ def factor_kkt(system: KKTSystem, border: Array) -> CoreSystem:
     """
     full = Full(system.apply, border, (system.x, system.z1, system.z2), (system.w,))
     quick = _reduced(system, border) if system.structure.squarable else None
-    refined = CoreSystem(full, quick, lambda: _augmented(system, border))
-    if quick is None:
-        # What cannot be factored is to be said here, not at the first solve.
-        _ = refined.robust
-    return refined
+    return core_system(full, quick, lambda: _augmented(system, border), refine)
 
 
 def _reduced(system: KKTSystem, border: Array) -> Reduced | None:

@@ -8,7 +8,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.homotopies.cores import CoreSystem, Full, Pairs, larger_eliminated, second_eliminated
+from problems.lcp.homotopies.cores import Full, Pairs, core_system, larger_eliminated, second_eliminated
 
 
 @frozen(kw_only=True)
@@ -90,11 +90,18 @@ class ReducedPairs:
         return z
 
 
-def factor_pairs(system: PairSystem, border: Array) -> CoreSystem:
+def factor_pairs(system: PairSystem, border: Array, refine: bool = True) -> BorderedSystem:
     """The bordered system of order 2n + 1 at a point, from a factorisation of order n + 1.
 
     With y eliminated the core is alpha A + beta I + gamma diag(y/x): Cholesky if A is symmetric positive semidefinite
     and alpha, beta, gamma >= 0. Else of each pair the unknown with the larger coefficient is eliminated, for LU.
+
+    Parameters
+    ----------
+    system : PairSystem
+    border : Array of shape (2n + 1,)
+    refine : bool
+        Whether solutions are corrected in full. Without it they are those of the definite core, where there is one.
 
     Raises
     ------
@@ -102,12 +109,11 @@ def factor_pairs(system: PairSystem, border: Array) -> CoreSystem:
         If no core has a factorisation.
     """
     full = Full(system.apply, border, (system.x, system.y))
-    quick = _definite(system, border)
-    refined = CoreSystem(full, quick, lambda: _reduced(system, border, larger_eliminated(system.y, system.x, system.c)))
-    if quick is None:
-        # What cannot be factored is to be said here, not at the first solve.
-        _ = refined.robust
-    return refined
+
+    def robust() -> BorderedSystem:
+        return _reduced(system, border, larger_eliminated(system.y, system.x, system.c))
+
+    return core_system(full, _definite(system, border), robust, refine)
 
 
 def _definite(system: PairSystem, border: Array) -> ReducedPairs | None:

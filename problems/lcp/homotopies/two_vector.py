@@ -39,6 +39,8 @@ class TwoVectorHomotopy:
         The start, positive, shape (n,).
     references : tuple of str
     structure : Structure
+    refine : bool
+        Whether bordered solves are corrected to round-off; see `KKTHomotopy`.
     """
 
     name: str
@@ -48,6 +50,7 @@ class TwoVectorHomotopy:
     y0: Array
     references: tuple[str, ...]
     structure: Structure
+    refine: bool = True
     problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
     metric: ClassVar[RelativeMetric] = RelativeMetric()
@@ -98,7 +101,7 @@ class TwoVectorHomotopy:
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix of order 2n + 1 by way of one of order n + 1; see `factor_pairs`."""
         # Copied, as what is factored must not follow a caller that goes on to change its y in place.
-        return factor_pairs(self._system(y.copy(), lam), border.copy())
+        return factor_pairs(self._system(y.copy(), lam), border.copy(), self.refine)
 
     @quiet
     def differential(self, y: Array, lam: float, v: Array) -> Array:

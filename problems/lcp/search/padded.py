@@ -1,12 +1,14 @@
-"""Paths of different numbers of unknowns in one archive: the shorter ones are filled up with NaN."""
+"""Paths of different numbers of unknowns in one archive, and paths that were traced elsewhere, or not at all."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.path import LocatedEvent, Step
+from continuation.path import LocatedEvent, Path, Step
 from continuation.step.tracer import Observer, Tracer
 
 
@@ -42,3 +44,20 @@ class Padded:
         filled = np.full(self.unknowns + 1, np.nan)
         filled[: u.size - 1], filled[-1] = u[:-1], u[-1]
         return filled
+
+
+def show(path: Path, homotopy: Any, observer: Observer) -> None:
+    """Show an observer the steps and the end of a path that it did not see while it was made.
+
+    Parameters
+    ----------
+    path : Path
+    homotopy : Homotopy
+        Of the path.
+    observer : Observer
+    """
+    tracer = Tracer(homotopy)
+    tracer.path, tracer.counts = path, path.counts
+    for step in path.steps:
+        observer.step(tracer, step)
+    observer.end(tracer)

@@ -1,4 +1,4 @@
-"""The search for a solution: which paths are traced, one after another, and what each came to."""
+"""The account of a search: its budget, the finish, every path and finish so far, and what each came to."""
 
 from __future__ import annotations
 
@@ -17,29 +17,35 @@ from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.tracer import Observer
-from continuation.tracing import trace
 from problems.lcp.active_set.face import Mask
-from problems.lcp.active_set.finish import Finish, Finishing
+from problems.lcp.active_set.finish import Finish
+from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.problem import LCP
-from problems.lcp.homotopies import KKTHomotopy, Structure
+from problems.lcp.homotopies import Structure
+from problems.lcp.homotopies.registry import LCPHomotopy
 from problems.lcp.proof.certificate import Certificate, certify
-from problems.lcp.search.padded import Padded
-from problems.lcp.search.restarts import FAR, TWO_VECTOR, Band, Restart, light, reweighted, trace_light
+from problems.lcp.proof.farkas import Farkas
+from problems.lcp.search.padded import Padded, show
+from problems.lcp.search.restarts import FAR_STARTS, Band, Restart, light, reweighted, trace_light
+from problems.lcp.search.route import follow
 
-MAKERS: dict[str, Callable[..., Any]] = {"kkt": KKTHomotopy, **TWO_VECTOR}
-"""By the name that `solve` takes."""
-
-ROUND_OFF = 1e-15
-"""An end of this relative residual needs no polish."""
+POLISHED = 1e-15
+"""An end of this relative residual, a few units in the last place, needs no polish."""
 
 STATIONARY = 1e-6
-"""Relative to the data and the point: how well the optimality conditions hold at what is called stationary."""
+"""Relative to the data and the point: how well the optimality conditions hold at what is called stationary.
+
+A degenerate end is a series in the root of lambda, so that half of the digits of a good end can be asked of it.
+"""
 
 IN_FLIGHT = 64
-"""Restarts handed to an executor before the first of them has come back."""
+"""Restarts handed to an executor before the first of them has come back: more than one machine has workers.
+
+A constant, since restart k goes on from restart k - IN_FLIGHT: the answer must not depend on the number of workers.
+"""
 
 LARGEST_KEPT = 4_000_000
-"""Numbers of path points kept in memory; of further paths only the two ends are."""
+"""Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
 
 
 @frozen(eq=False)
@@ -61,8 +67,8 @@ class Search:
     Attributes
     ----------
     structure : Structure
-    attempt : Finish or None
-        None where the finish is switched off.
+    finish : Finish or None
+        None where it is switched off.
     tolerance : float
         Of the certificate.
     budget : Budget
@@ -71,10 +77,18 @@ class Search:
     progress : bool
     options : dict
         For `continuation.trace`.
+    counts : Counts
+        Of everything so far.
+    paths : list of Path
+    ends : list of Candidate
+        Where the paths, and the finish, led.
+    proof : Farkas or None
+        That there is no solution.
+    began : float
     """
 
     structure: Structure
-    attempt: Finish | None
+    finish: Finish | None
     tolerance: float
     budget: Budget
     log: PathLog | None
@@ -83,6 +97,7 @@ class Search:
     counts: Counts = field(factory=Counts)
     paths: list[Path] = field(factory=list)
     ends: list[Candidate] = field(factory=list)
+    proof: Farkas | None = None
     began: float = field(factory=time.perf_counter)
     _kept: int = field(default=0, init=False)
 
@@ -110,32 +125,28 @@ class Search:
         """Take a point that no path led to into account."""
         self.ends.append(Candidate(certificate, -1, False))
 
-    def finish_from(self, active: Mask, steps: int, patience: int | None = None) -> bool:
-        """The finish alone, from a guess of the active set."""
-        return self._finished(lambda attempt: attempt.settle(active, steps, patience=patience))
+    def settle(self, active: Mask, policy: Policy) -> bool:
+        """Try active sets from a guess; whether that led to a solution."""
+        return self._finished(lambda finish: finish.settle(active, policy))
 
-    def finish_nearby(self, active: Mask | None = None) -> bool:
-        """The finish by the proximal method, from a guess of the active set or from the last one tried."""
-        return self._finished(lambda attempt: attempt.proximal_active_set(active))
+    def settle_proximally(self, active: Mask | None = None) -> bool:
+        """The same by the proximal method, from a guess or from the last active set tried."""
+        return self._finished(lambda finish: finish.proximal_active_set(active))
 
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
-        if self.attempt is None:
+        if self.finish is None:
             return False
-        before = self.attempt.counts.factorizations
-        found = method(self.attempt) is not None
-        self.counts.factorizations += self.attempt.counts.factorizations - before
-        if found and self.attempt.certificate is not None:
-            self.accept(self.attempt.certificate)
+        before = self.finish.counts.factorizations
+        found = method(self.finish) is not None
+        self.counts.factorizations += self.finish.counts.factorizations - before
+        if found and self.finish.certificate is not None:
+            self.accept(self.finish.certificate)
         return found
 
-    def follow(self, homotopy: Any, **options: Any) -> bool:
+    def follow(self, homotopy: LCPHomotopy, **options: Any) -> bool:
         """Trace one path to its end; whether that is a solution."""
-        before = 0 if self.attempt is None else self.attempt.counts.factorizations
-        traced = homotopy if self.attempt is None else Finishing(homotopy, self.attempt)
-        path = trace(traced, observers=self._observers(), budget=self._left(), **{**options, **self.options})
-        if self.attempt is not None:
-            path.counts.factorizations += self.attempt.counts.factorizations - before
-        self.add(path)
+        given = {**options, **self.options}
+        self.add(follow(homotopy, self.finish, self._left(), observers=self._observers(), **given))
         return self.solved
 
     def add(self, path: Path, weighted: bool = False) -> None:
@@ -163,21 +174,30 @@ class Search:
         """The certificate of a path's end, which the finish brings to round-off where it can."""
         x = np.maximum(path.endpoint.y[: self.problem.n], 0.0)
         end = certify(self.problem, x)
-        if self.attempt is None or not arrived or end.relative_residual <= ROUND_OFF:
+        if self.finish is None or not arrived or end.relative_residual <= POLISHED:
             return end
-        before = self.attempt.counts.factorizations
-        polished = self.attempt.settle(x > end.w, 0, x)
-        self.counts.factorizations += self.attempt.counts.factorizations - before
-        return self.attempt.certificate if polished is not None and self.attempt.certificate is not None else end
+        before = self.finish.counts.factorizations
+        polished = self.finish.settle(x > end.w, Policy(steps=0), x)
+        self.counts.factorizations += self.finish.counts.factorizations - before
+        return self.finish.certificate if polished is not None and self.finish.certificate is not None else end
 
     def restart(
-        self, name: str, seed: int, count: int, executor: Executor | None, bands: tuple[Band, ...] = FAR
+        self, name: str, seed: int, count: int, executor: Executor | None, bands: tuple[Band, ...] = FAR_STARTS
     ) -> int:
         """Trace restarts until one solves the problem, or the budget or the count is used up; how many were begun.
 
         Over an executor the first solution in the order of the restarts is taken among those that are there.
+
+        Parameters
+        ----------
+        name : str
+            Of the homotopy.
+        seed, count : int
+        executor : Executor or None
+        bands : tuple of intervals
+            How far out they begin, in turn.
         """
-        tolerance = None if self.attempt is None else self.tolerance
+        tolerance = None if self.finish is None else self.tolerance
 
         def task(k: int, weights: Array | None) -> Restart:
             return Restart(self.structure, name, bands, seed, k, tolerance, self.options, weights)
@@ -214,6 +234,8 @@ class Search:
                 done, _ = wait(waiting, return_when=FIRST_COMPLETED)
                 for future in sorted(done, key=lambda one: waiting[one].k):
                     restart, path = waiting.pop(future), future.result()
+                    if self.log is not None:
+                        self.record(path, restart.homotopy())
                     self.add(path, restart.weights is not None)
                     if self.solved:
                         return begun
@@ -222,6 +244,11 @@ class Search:
         finally:
             for future in waiting:
                 future.cancel()
+
+    def record(self, path: Path, homotopy: LCPHomotopy) -> None:
+        """Put a path into the archive, if there is one, that was not traced here."""
+        if self.log is not None:
+            show(path, homotopy, Padded(self.log, 3 * self.problem.n))
 
     def _observers(self) -> tuple[Observer, ...]:
         archive = () if self.log is None else (Padded(self.log, 3 * self.problem.n),)
@@ -244,5 +271,8 @@ class Search:
         """The solution, else the best stationary point, else the end of least residual."""
         if not self.ends:
             return None
-        return min(self.ends, key=lambda end: (not end.certificate.solves(self.tolerance), not end.stationary,
-                                               end.certificate.residual))
+
+        def rank(end: Candidate) -> tuple[bool, bool, float]:
+            return not end.certificate.solves(self.tolerance), not end.stationary, end.certificate.residual
+
+        return min(self.ends, key=rank)

@@ -1,4 +1,4 @@
-"""Faces, the finish from a guess, the guess from coarser problems, and the wrapped homotopy."""
+"""Faces, the iteration over them, the finish from a guess and along a path, the guess from coarser problems."""
 
 import itertools
 
@@ -7,9 +7,11 @@ import pytest
 import scipy.sparse as sp
 
 import continuation
+from continuation.archive import open_archive, resume
 from problems.lcp import LCP, KKTHomotopy, Structure, WangHomotopy, certify
 from problems.lcp.active_set.face import Faces
-from problems.lcp.active_set.finish import Finish, Finishing
+from problems.lcp.active_set.finish import AlongPath, Finish
+from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.paper import EXAMPLES
 
@@ -55,14 +57,14 @@ def test_a_singular_face_gives_its_point_nearest_to_the_given_one(symmetric):
 
 def test_an_inconsistent_face_is_never_certified():
     finish = Finish(faces([[1.0, 1.0], [1.0, 1.0]], [-1.0, -2.0]), 1e-10)
-    assert finish.settle(np.array([True, True]), 0) is None
+    assert finish.settle(np.array([True, True]), Policy(0)) is None
 
 
 def test_the_finish_needs_one_factorisation_from_the_right_guess():
     for example in EXAMPLES:
         solution = np.array([float(value) for value in example.solutions[0]])
         finish = Finish(Faces(Structure(example.problem)), 1e-12)
-        x = finish.settle(solution > 0.0, 0)
+        x = finish.settle(solution > 0.0, Policy(0))
         assert finish.counts.factorizations == 1
         np.testing.assert_allclose(x, solution, rtol=1e-13)
 
@@ -70,10 +72,10 @@ def test_the_finish_needs_one_factorisation_from_the_right_guess():
 def test_no_active_set_is_tried_twice():
     finish = Finish(faces([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), 1e-10)
     for active in itertools.product([False, True], repeat=2):
-        assert finish.settle(np.array(active), 10) is None
+        assert finish.settle(np.array(active), Policy(10)) is None
     spent = finish.counts.factorizations
     assert spent <= 4
-    assert finish.settle(np.array([True, True]), 10) is None
+    assert finish.settle(np.array([True, True]), Policy(10)) is None
     assert finish.counts.factorizations == spent
 
 
@@ -83,7 +85,7 @@ def test_corrections_solve_a_p_matrix_from_any_guess():
     problem = LCP(M @ M.T / 40 + np.eye(40) + (S - S.T) / 6, rng.standard_normal(40))
     for _ in range(5):
         finish = Finish(Faces(Structure(problem)), 1e-13)
-        x = finish.settle(rng.random(40) < 0.5, 30)
+        x = finish.settle(rng.random(40) < 0.5, Policy(30))
         assert certify(problem, x).solves(1e-13)
 
 
@@ -94,7 +96,7 @@ def test_a_face_whose_signs_depend_on_round_off_is_corrected():
     A = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), dtype=float) * (n + 1.0) ** 2
     problem = LCP(A, A @ np.maximum(0.15 - 16 * (t - 0.35) ** 2, 0.1 - 16 * (t - 0.7) ** 2) + 0.5)
     finish = Finish(Faces(Structure(problem)), 1e-12)
-    x = finish.settle(guess(problem) > 0.0, 10)
+    x = finish.settle(guess(problem) > 0.0, Policy(10))
     assert certify(problem, x).solves(1e-12)
     assert finish.counts.factorizations <= 6
 
@@ -109,9 +111,9 @@ def test_the_cascade_guesses_the_contact_set_of_a_membrane():
     problem = LCP(A, A @ bump + 5.0 / (m + 1) ** 2)
     assert suitable(Structure(problem))
     near = Finish(Faces(Structure(problem)), 1e-12)
-    assert near.settle(guess(problem) > 0.0, 20) is not None
+    assert near.settle(guess(problem) > 0.0, Policy(20)) is not None
     far = Finish(Faces(Structure(problem)), 1e-12)
-    assert far.settle(problem.q < 0.0, 100) is not None
+    assert far.settle(problem.q < 0.0, Policy(100)) is not None
     assert 2 * near.counts.factorizations < far.counts.factorizations
 
 
@@ -124,11 +126,11 @@ def test_the_cascade_refuses_matrices_of_another_kind():
 
 
 @pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
-def test_a_finishing_homotopy_ends_exactly_and_sooner(make):
+def test_a_path_with_the_finish_ends_exactly_and_sooner(make):
     example = EXAMPLES[3]
     homotopy = make(example.problem, example.x0)
     finish = Finish(Faces(homotopy.structure), 1e-14)
-    path = continuation.trace(Finishing(homotopy, finish))
+    path = continuation.trace(homotopy, finish=AlongPath.of(finish, homotopy))
     assert path.status is continuation.Status.REACHED_TARGET
     assert "finish" in path.message
     assert example.problem.natural_residual(path.endpoint.y[:3]) <= 1e-14
@@ -140,12 +142,22 @@ def test_a_finishing_homotopy_ends_exactly_and_sooner(make):
     np.testing.assert_array_equal(path.u[:same], pure.u[:same])
 
 
-def test_a_finishing_homotopy_read_back_has_no_finish_but_the_same_path():
-    example = EXAMPLES[1]
-    wrapped = Finishing(KKTHomotopy(example.problem, example.x0), Finish(Faces(Structure(example.problem)), 1e-12))
-    again = Finishing.from_archive(wrapped.archive_data())
-    assert again.finish(np.zeros(6), 1e-9) is None
-    np.testing.assert_array_equal(again.start()[0], wrapped.start()[0])
+def test_an_archive_holds_the_homotopy_and_nothing_of_what_the_finish_tried(tmp_path):
+    homotopy = KKTHomotopy(EXAMPLES[3].problem, EXAMPLES[3].x0)
+    along = AlongPath.of(Finish(Faces(homotopy.structure), 1e-14), homotopy)
+    file = tmp_path / "run.h5"
+    whole = continuation.trace(homotopy)
+    continuation.trace(homotopy, finish=along, archive=file, budget=continuation.Budget(steps=3))
+    assert along.finish.tried.last is None
+    with open_archive(file) as archive:
+        assert archive.attributes["homotopy"] == "problems.lcp.homotopies.kkt:KKTHomotopy"
+    np.testing.assert_array_equal(resume(file, budget=continuation.Budget()).u, whole.u)
+
+
+def test_a_finish_that_is_none_is_refused_at_the_door():
+    homotopy = KKTHomotopy(EXAMPLES[3].problem, EXAMPLES[3].x0)
+    with pytest.raises(TypeError, match="finish: expected a function of"):
+        continuation.trace(homotopy, finish=True)
 
 
 def test_the_proximal_method_solves_rank_deficient_problems():
@@ -164,11 +176,35 @@ def test_the_proximal_method_solves_rank_deficient_problems():
     assert Finish(Faces(Structure(problem)), 1e-12).proximal_active_set() is None
 
 
-def test_corrections_that_go_in_circles_are_given_up():
+def test_corrections_without_progress_are_given_up():
     # On Murty's matrix the changes do not become fewer for long; patience ends that.
     n = 64
     problem = LCP(np.eye(n) + np.triu(np.full((n, n), 2.0), 1), -np.ones(n))
     patient, impatient = (Finish(Faces(Structure(problem)), 1e-12) for _ in range(2))
-    assert patient.settle(problem.q < 0.0, n) is not None
-    assert impatient.settle(problem.q < 0.0, n, patience=3) is None
+    assert patient.settle(problem.q < 0.0, Policy(n)) is not None
+    assert impatient.settle(problem.q < 0.0, Policy(n, patience=3)) is None
     assert 2 * impatient.counts.factorizations < patient.counts.factorizations
+
+
+def test_the_iteration_says_why_it_ended():
+    skew, zero = faces([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), np.array([False, False])
+    assert iterate(faces(np.eye(2), [-1.0, 1.0]), np.array([True, False]), Policy(0)).ended is Ended.SETTLED
+    assert iterate(faces(np.eye(2), [-1.0, 1.0]), zero, Policy(0)).ended is Ended.STEPS
+    assert iterate(faces([[0.0]], [-1.0]), np.array([True]), Policy(5)).ended is Ended.SINGULAR
+    known = Tried()
+    assert known.add(zero)
+    assert iterate(skew, zero, Policy(5), tried=known).ended is Ended.TRIED
+    # x1 enters, leaves and enters again: one change each.
+    turning = iterate(faces([[-1.0]], [-1.0]), np.array([False]), Policy(50, patience=3))
+    assert turning.ended is Ended.CYCLING
+    judged = iterate(skew, zero, Policy(0), judge=lambda face, x, w: (x + 7.0, w, True))
+    assert judged.ended is Ended.SOLVED
+    assert (judged.x == 7.0).all()
+
+
+def test_a_proximal_face_is_that_of_the_shifted_problem():
+    one = faces([[1.0, 2.0], [0.0, 3.0]], [-1.0, 5.0])
+    face = one.face(np.array([True, False]), 0.5, np.array([2.0, 0.5]))
+    x, w = face.point(np.zeros(2))
+    np.testing.assert_allclose(x, [(1.0 + 0.5 * 2.0) / 1.5, 0.0], rtol=1e-15)
+    np.testing.assert_allclose(w, [0.0, 5.0 - 0.5 * 0.5], rtol=1e-15)

@@ -34,6 +34,7 @@ from problems.lcp.homotopies import (
     random_start,
 )
 from problems.lcp.homotopies.interior import RelativeMetric
+from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint
 from problems.lcp.strategies import lcps, matrices
 from problems.paper import EXAMPLES
@@ -225,6 +226,20 @@ def test_factorisation_outlives_a_change_of_its_point(make: Callable[..., Any]) 
     border += 1.0
     assert np.allclose(system.solve(rhs[:-1], rhs[-1]), np.linalg.solve(M, rhs), rtol=1e-8)
     assert "robust" not in vars(system) or system.quick is None
+
+
+def test_without_refinement_the_quick_core_answers_alone() -> None:
+    rng = np.random.default_rng(1)
+    problem = random_lcp(rng, 5, "symmetric psd")
+    structure, start = Structure(problem), default_start(problem)
+    for name in ("kkt", "yu"):
+        refined, alone = (HOMOTOPIES[name].at(problem, start, structure, refine) for refine in (True, False))
+        y, lam = interior(rng, refined, 0.5)
+        border, rhs = rng.standard_normal((2, y.size + 1))
+        system = refined.bordered(y, lam, border)
+        z = alone.bordered(y, lam, border).solve(rhs[:-1], rhs[-1])
+        np.testing.assert_array_equal(z, system.quick.solve(rhs[:-1], rhs[-1]))
+        np.testing.assert_allclose(z, system.solve(rhs[:-1], rhs[-1]), rtol=1e-8)
 
 
 def test_w_that_is_zero() -> None:

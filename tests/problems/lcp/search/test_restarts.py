@@ -8,18 +8,8 @@ from attrs import evolve
 
 import continuation
 from problems import lcp
-from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.search.restarts import (
-    FAR,
-    NEAR,
-    SPREAD,
-    Restart,
-    light,
-    restart_start,
-    reweighted,
-    search_preset,
-    trace_light,
-)
+from problems.lcp.homotopies.starts import LOG_DEVIATION, natural_units
+from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, Restart, light, reweighted, search_preset, trace_light
 
 PLANTED = 30
 
@@ -34,16 +24,16 @@ def planted(seed, n=PLANTED):
 
 
 def restart(problem, k, **changes):
-    settings = {"name": "kkt", "bands": FAR, "seed": 0, "tolerance": 1e-10, "options": {}} | changes
+    settings = {"name": "kkt", "bands": FAR_STARTS, "seed": 0, "tolerance": 1e-10, "options": {}} | changes
     return Restart(structure=lcp.Structure(problem), k=k, **settings)
 
 
-@pytest.mark.parametrize("bands", [FAR, NEAR])
+@pytest.mark.parametrize("bands", [FAR_STARTS, NEAR_STARTS])
 def test_starts_are_centred_positive_and_at_their_distance(bands):
     problem = planted(1)
     x, w = natural_units(problem)
     for k in range(20):
-        start = restart_start(problem, np.random.default_rng(k), k, bands)
+        start = lcp.random_start(problem, np.random.default_rng(k), bands[k % len(bands)])
         assert min(a.min() for a in (start.x0, start.z1, start.z2, start.w0)) > 0.0
         first, second = start.x0 * start.z1, start.w0 * start.z2
         np.testing.assert_allclose(first, first[0], rtol=1e-12)
@@ -52,7 +42,7 @@ def test_starts_are_centred_positive_and_at_their_distance(bands):
         low, high = bands[k % len(bands)]
         assert 10**low <= scale <= 10**high
         spread = np.log(start.x0 / (scale * x))
-        assert 0.5 * SPREAD <= spread.std() <= 1.5 * SPREAD
+        assert 0.5 * LOG_DEVIATION <= spread.std() <= 1.5 * LOG_DEVIATION
         # Where the two products are equal a central point of the LCP is one of the path.
         assert 0.4 <= second[0] / first[0] <= 2.5
 
@@ -175,18 +165,6 @@ def test_an_executor_stops_at_the_count():
     assert solution.outcome is lcp.Outcome.STATIONARY
     assert len(solution.paths) == 6
     assert "Restarts from random starts: 5" in solution.message
-
-
-def test_every_attempt_is_in_the_archive(tmp_path):
-    from continuation.archive import open_archive
-
-    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
-    file = tmp_path / "all.h5"
-    solution = lcp.solve(problem, restarts=3, archive=file)
-    with open_archive(file) as archive:
-        assert len(archive) == len(solution.paths) == 5
-        # Wang's path has 2n unknowns, the others 3n: the shorter one is filled up.
-        assert sorted({int(np.isfinite(path.y[0]).sum()) for path in archive}) == [4, 6]
 
 
 def test_light_paths_keep_their_ends():

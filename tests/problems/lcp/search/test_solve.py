@@ -85,7 +85,7 @@ def test_a_feasible_problem_without_solution_is_not_called_unsolvable():
     assert solution.outcome in (Outcome.STATIONARY, Outcome.NOT_FOUND)
 
 
-@pytest.mark.parametrize("name", ["auto", "kkt", "wang", "yu", "xu"])
+@pytest.mark.parametrize("name", ["auto", "kkt", "wang", "yu", "xu", "kmm"])
 def test_every_homotopy_by_name(name):
     solution = lcp.solve(PD, name)
     expected = np.array([0.25, 0.0, 1.0]) - [0.125, 0.0, 0.0]
@@ -191,7 +191,7 @@ def contact(k, seed):
     E = np.kron(np.eye(k), np.ones((2, 1)))
     A = np.zeros((4 * k, 4 * k))
     A[: 3 * k, : 3 * k] = B.T @ B
-    A[k : 3 * k, 3 * k :], A[3 * k :, : k] = E, np.diag(rng.uniform(0.2, 0.9, k))
+    A[k : 3 * k, 3 * k :], A[3 * k :, :k] = E, np.diag(rng.uniform(0.2, 0.9, k))
     A[3 * k :, k : 3 * k] = -E.T
     return lcp.LCP(A, np.concatenate([B.T @ [rng.normal(), -1.0, rng.normal(0.0, 0.3)], np.zeros(k)]))
 
@@ -227,12 +227,22 @@ def test_the_look_proves_what_it_says():
     assert (seen.symmetric, seen.semidefinite, seen.z_matrix, seen.nonnegative) == (False, False, False, True)
     seen = matrix_facts(lcp.Structure(lcp.LCP([[-1.0]], [1.0])))
     assert seen.negative_diagonal
-    assert seen.names[0] == "kkt"
 
 
-def test_outcomes_read_as_sentences():
-    for outcome in Outcome:
-        assert str(outcome).endswith(".")
+def test_a_message_begins_with_what_the_outcome_means():
+    sentences = {str(outcome) for outcome in Outcome}
+    assert len(sentences) == len(Outcome)
+    unsolvable = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
+    stopped = {"finish": False, "budget": continuation.Budget(steps=1)}
+    for problem, options, outcome in (
+        (PD, {}, Outcome.SOLVED),
+        (COUNTEREXAMPLES[0].problem, {"homotopy": "kkt"}, Outcome.STATIONARY),
+        (unsolvable, {}, Outcome.UNSOLVABLE),
+        (PD, stopped, Outcome.NOT_FOUND),
+    ):
+        solution = lcp.solve(problem, **options)
+        assert solution.outcome is outcome
+        assert solution.message.startswith(f"{outcome} ")
 
 
 @pytest.mark.parametrize(
@@ -245,7 +255,8 @@ def test_outcomes_read_as_sentences():
         (lambda: lcp.solve(PD, "kkt", colour="red"), TypeError, "colour"),
         (lambda: lcp.solve(PD, tolerance=-1.0), ValueError, "tolerance"),
         (lambda: lcp.solve(PD, restarts=-1), ValueError, "restarts"),
-        (lambda: lcp.solve(PD, archive="x.h5", executor=object()), ValueError, "executor"),
+        (lambda: lcp.solve(PD, executor=object()), TypeError, "executor"),
+        (lambda: lcp.solve(PD, "kkt", target=0.5), TypeError, "target"),
     ],
 )
 def test_bad_input_is_refused_by_name(call, error, name):
@@ -253,13 +264,13 @@ def test_bad_input_is_refused_by_name(call, error, name):
         call()
 
 
-def test_the_archive_holds_the_path(tmp_path):
-    from continuation.archive import open_archive
-
-    file = tmp_path / "run.h5"
-    solution = lcp.solve(PD, "kkt", archive=file, progress=False)
-    with open_archive(file) as archive:
-        np.testing.assert_array_equal(archive[0].y, solution.path.y)
+def test_a_path_is_traced_where_one_is_asked_for():
+    for problem in (PD, lcp.LCP(np.eye(2), [1.0, 2.0]), lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])):
+        plain, wanted = lcp.solve(problem), lcp.solve(problem, path=True)
+        assert not plain.paths
+        assert wanted.paths
+        assert wanted.outcome is plain.outcome
+        assert len(wanted.path) > 1
 
 
 SMOKE = 500

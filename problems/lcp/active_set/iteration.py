@@ -1,0 +1,146 @@
+"""The active-set iteration: the point of a face, the signs that are wrong there, the face with these changed.
+
+It is the primal-dual active-set method, which is Newton's method on min(x, A x + q) = 0.
+
+References
+----------
+Hintermueller, Ito and Kunisch, "The Primal-Dual Active Set Strategy as a Semismooth Newton Method", SIAM J. Optim. 13
+(2003). Kostreva, "Block Pivot Methods for Solving the Complementarity Problem", Linear Algebra Appl. 21 (1978).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum
+
+import numpy as np
+from attrs import define, field, frozen
+
+from continuation.arrays import Array
+from continuation.counts import Counts
+from problems.lcp.active_set.face import Face, Faces, Mask
+
+Judge = Callable[[Face, Array, Array], tuple[Array, Array, bool]]
+"""(face, x, w) -> (x, w, whether that is the solution); the x and w may be better ones."""
+
+
+class Ended(Enum):
+    """Why an iteration ended."""
+
+    SOLVED = "the point was judged to be the solution"
+    SETTLED = "the signs ask for the same set again"
+    TRIED = "the set was tried before"
+    SINGULAR = "the equations of the face have no finite solution"
+    CYCLING = "the number of changes does not fall"
+    STEPS = "all steps are used up"
+
+
+@frozen
+class Policy:
+    """How long the iteration goes on.
+
+    Attributes
+    ----------
+    steps : int
+        Corrections of the guess, so that steps + 1 faces are solved at most.
+    patience : int or None
+        Corrections in a row without a new low of the number of changed indices, after which it is given up.
+    """
+
+    steps: int
+    patience: int | None = None
+
+
+@define(eq=False)
+class Tried:
+    """The active sets that were tried on one problem: none is worth a second factorisation.
+
+    Attributes
+    ----------
+    last : Mask or None
+        The last of them.
+    """
+
+    last: Mask | None = field(default=None, init=False)
+    _known: set[bytes] = field(factory=set, init=False)
+
+    def add(self, active: Mask) -> bool:
+        """Take a set in; whether it is new."""
+        key = np.packbits(active).tobytes()
+        if key in self._known:
+            return False
+        self._known.add(key)
+        self.last = active
+        return True
+
+
+@frozen(eq=False)
+class Iterated:
+    """Where an iteration ended: the reason, the active set that is next, and the last point."""
+
+    ended: Ended
+    active: Mask
+    x: Array
+
+
+def iterate(
+    faces: Faces,
+    active: Mask,
+    policy: Policy,
+    *,
+    near: Array | None = None,
+    shift: float | None = None,
+    judge: Judge | None = None,
+    tried: Tried | None = None,
+    counts: Counts | None = None,
+) -> Iterated:
+    """Correct an active set until it is right, or no longer worth it.
+
+    Parameters
+    ----------
+    faces : Faces
+        Of the problem.
+    active : Mask
+        The guess.
+    policy : Policy
+    near : Array, optional
+        Where a face holds many points, the one nearest to this is taken; zero by default.
+    shift : float, optional
+        Solve the proximal problem LCP(q - shift near, A + shift I) instead.
+    judge : callable, optional
+        Ends the iteration at the solution, and may improve a point whose signs are to decide.
+    tried : Tried, optional
+        Sets that are not tried again; grows.
+    counts : Counts, optional
+        Where factorisations are added up.
+    """
+    x = np.zeros(faces.problem.n) if near is None else near
+    centre = None if shift is None else x
+    changes: list[int] = []
+    for _ in range(policy.steps + 1):
+        if tried is not None and not tried.add(active):
+            return Iterated(Ended.TRIED, active, x)
+        if counts is not None:
+            counts.factorizations += 1
+        face = faces.face(active, shift or 0.0, centre)
+        point = None if face is None else face.point(x)
+        if face is None or point is None:
+            return Iterated(Ended.SINGULAR, active, x)
+        x, w = point
+        if judge is not None:
+            x, w, solved = judge(face, x, w)
+            if solved:
+                return Iterated(Ended.SOLVED, active, x)
+        following = np.where(active, x > 0.0, w < 0.0)
+        changes.append(int(np.count_nonzero(following != active)))
+        if changes[-1] == 0:
+            return Iterated(Ended.SETTLED, active, x)
+        if policy.patience is not None and _cycling(changes, policy.patience):
+            return Iterated(Ended.CYCLING, active, x)
+        active = following
+    return Iterated(Ended.STEPS, active, x)
+
+
+def _cycling(changes: list[int], patience: int) -> bool:
+    """Whether the last `patience` numbers are no lower than the lowest before them."""
+    return len(changes) > patience and min(changes[-patience:]) >= min(changes[:-patience])

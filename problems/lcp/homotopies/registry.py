@@ -1,0 +1,91 @@
+"""The homotopies for the LCP by name: what `solve`, its restarts, the plug-ins, the shell and the charts offer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from attrs import evolve, frozen
+
+from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.data.problem import LCP
+from problems.lcp.homotopies.kkt import KKTHomotopy
+from problems.lcp.homotopies.starts import Start
+from problems.lcp.homotopies.two_vector import (
+    KojimaMegiddoMizunoHomotopy,
+    TwoVectorHomotopy,
+    WangHomotopy,
+    XuHomotopy,
+    YuHomotopy,
+    ZhaoHomotopy,
+)
+
+LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
+
+
+@frozen
+class Registered:
+    """One homotopy.
+
+    Attributes
+    ----------
+    name : str
+        For arguments and the command line.
+    title : str
+        For tables.
+    sentence : str
+        What it is and where it starts; a first line of help.
+    make : callable
+        (problem, x0 or None, structure=...) to the homotopy.
+    feasible : bool
+        Whether its own start must be strictly feasible, so that it has to be found by a linear program.
+    example : int
+        One of the paper's examples that it solves.
+    """
+
+    name: str
+    title: str
+    sentence: str
+    make: Callable[..., LCPHomotopy]
+    feasible: bool = False
+    example: int = 2
+
+    def at(self, problem: LCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:
+        """The homotopy at a start of all four vectors, feasible or not.
+
+        Parameters
+        ----------
+        problem : LCP
+        start : Start
+            A homotopy in (x, y) takes x0 and w0 of it.
+        structure : Structure
+            Of the problem.
+        refine : bool
+            Whether its bordered solves are corrected to round-off.
+        """
+        if self.make is KKTHomotopy:
+            return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=structure, refine=refine)
+        return evolve(self.make(problem, start.x0, start.w0, structure=structure), refine=refine)
+
+
+HOMOTOPIES: Mapping[str, Registered] = {
+    one.name: one
+    for one in (
+        Registered(
+            "kkt", "KKT", "The KKT homotopy of Dutta, Das and Jana, for any A, from any positive start.", KKTHomotopy
+        ),
+        Registered("wang", "Wang", "Wang's homotopy, for P*-matrices, from any positive start.", WangHomotopy),
+        Registered("yu", "Yu", "Yu's homotopy, for positive semidefinite A, from any positive start.", YuHomotopy),
+        Registered(
+            "xu", "Xu", "Xu's homotopy, for P-matrices, from a strictly feasible start.", XuHomotopy, feasible=True
+        ),
+        Registered(
+            "zhao", "Zhao", "Zhao's homotopy, for N-matrices, from a strictly feasible start.", ZhaoHomotopy,
+            feasible=True, example=6,
+        ),
+        Registered(
+            "kmm", "Kojima", "The central path of Kojima, Megiddo and Mizuno, from any positive start.",
+            KojimaMegiddoMizunoHomotopy,
+        ),
+    )
+}  # fmt: skip
+"""By name. One that is added here needs an entry point in pyproject.toml as well; a test compares the two."""

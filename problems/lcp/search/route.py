@@ -1,0 +1,52 @@
+"""The one place where `solve` traces a path, whatever homotopy it is of and whoever asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from continuation.budget import Budget
+from continuation.path import Path, Step
+from continuation.step.tracer import Observer, Tracer
+from problems.lcp.active_set.finish import AlongPath, Finish
+from problems.lcp.homotopies.registry import LCPHomotopy
+
+Patience = Callable[[Step], str]
+"""A step to the reason for which its path is given up, or to nothing."""
+
+
+def follow(
+    homotopy: LCPHomotopy,
+    finish: Finish | None,
+    budget: Budget,
+    *,
+    observers: tuple[Observer, ...] = (),
+    patience: Patience | None = None,
+    **options: Any,
+) -> Path:
+    """Trace a path, with the finish along it; its counts hold the factorisations of the finish too.
+
+    Parameters
+    ----------
+    homotopy : KKTHomotopy or TwoVectorHomotopy
+    finish : Finish or None
+        None for the pure path.
+    budget : Budget
+    observers : tuple of Observer
+    patience : callable, optional
+        When the path is given up; the path's message then has the reason.
+    **options
+        As for `continuation.Tracer`.
+    """
+    before = 0 if finish is None else finish.counts.factorizations
+    along = None if finish is None else AlongPath.of(finish, homotopy)
+    tracer = Tracer(homotopy, finish=along, budget=budget, observers=observers, **options)
+    reason = ""
+    for step in tracer:
+        if patience is not None and (reason := patience(step)):
+            break
+    if reason:
+        tracer.path.message = f"Given up: {reason}."
+    if finish is not None:
+        tracer.path.counts.factorizations += finish.counts.factorizations - before
+    return tracer.path

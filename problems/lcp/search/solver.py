@@ -1,0 +1,189 @@
+"""`solve`: a solution with its certificate, or an honest account of what was found instead.
+
+What is tried, and in what order, is in `strategy`; what may be claimed is decided in `judging`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from numbers import Integral, Real
+from os import PathLike
+from typing import Any, Unpack
+
+import numpy as np
+
+from continuation.archive import PathLog
+from continuation.arrays import largest
+from continuation.budget import Budget
+from continuation.path import Path, Step
+from continuation.status import Kind, Status
+from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
+from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.finish import Finish
+from problems.lcp.data.problem import LCP
+from problems.lcp.data.scaling import balanced
+from problems.lcp.homotopies import KKTHomotopy, Structure
+from problems.lcp.homotopies.registry import HOMOTOPIES
+from problems.lcp.homotopies.starts import positive_vector
+from problems.lcp.search.judging import answer, unscaled
+from problems.lcp.search.outcome import Solution
+from problems.lcp.search.search import Search
+from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
+from problems.lcp.search.work import default_budget
+
+OWNED = ("target", "direction", "start", "state", "observers")
+"""What may be said of a path, but not of those that `solve` traces."""
+
+
+@documented
+def solve(
+    problem: LCP,
+    homotopy: str = "auto",
+    *,
+    x0: Any = None,
+    finish: bool = True,
+    path: bool = False,
+    restarts: int | None = None,
+    seed: int = 0,
+    budget: Budget | None = None,
+    tolerance: float = 1e-10,
+    archive: str | PathLike[str] | None = None,
+    progress: bool = False,
+    executor: Executor | None = None,
+    **options: Unpack[PartOptions],
+) -> Solution:
+    """Solve LCP(q, A).
+
+    Parameters
+    ----------
+    problem : LCP
+    homotopy : str
+        "auto": what is cheap and cannot mislead first, then Wang's path, then the KKT path, then restarts
+        (`search.strategy` has the order). Or one of "kkt", "wang", "yu", "xu", "zhao", "kmm".
+    x0 : array_like, shape (n,), optional
+        A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start.
+    finish : bool
+        Whether active sets are tried, before the path and along it. Without it `path` is the pure homotopy.
+    path : bool
+        Trace a path even where "auto" needs none, to look at it.
+    restarts : int, optional
+        Paths from random starts after the first has failed. Default: 0 for a named homotopy, min(10 n, 1000) for
+        "auto".
+    seed : int
+        Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
+        restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
+    budget : continuation.Budget, optional
+        Of everything together. By default as many factorisations as take about a minute, which depends on n alone
+        (`default_budget`), so that the same call gives the same answer on every machine; ``Budget(seconds=60)`` ends
+        by the clock.
+    tolerance : float
+        What `Certificate.solves` is asked before anything is called a solution.
+    archive : path, optional
+        A new HDF5 file for every path traced, of restarts over an executor only the ends. Where no path is traced it
+        holds the message, and the solution as one point (x, w, x), the end of the KKT path. It changes nothing of what
+        is done.
+    progress : bool
+        A progress bar a path (needs tqdm).
+    executor : concurrent.futures.Executor, optional
+        For the restarts.
+    {parts}
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument.
+
+    References
+    ----------
+    Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
+    """
+    if not isinstance(problem, LCP):
+        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    automatic = homotopy == "auto"
+    if not automatic and homotopy not in HOMOTOPIES:
+        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {homotopy!r}")
+    _check_arguments(tolerance, restarts, seed, finish, budget, executor, options)
+    if restarts is None:
+        restarts = min(10 * problem.n, 1000) if automatic else 0
+    start = None if x0 is None else positive_vector("x0", x0, problem.n)
+    scaled = balanced(problem) if automatic else None
+    if scaled is not None and start is not None:
+        start = scaled.u(start)
+    structure = Structure(problem if scaled is None else scaled.problem)
+    search = Search(
+        structure,
+        Finish(Faces(structure), tolerance) if finish else None,
+        tolerance,
+        budget if budget is not None else default_budget(problem),
+        None if archive is None else PathLog(archive),
+        progress,
+        dict(options),
+    )
+    case = Case(search, problem, start, "kkt" if automatic else homotopy, restarts, seed, executor)
+    strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
+    with search.log if search.log is not None else nullcontext():
+        settled = settled_by(case, strategy)
+        found = answer(search, _account(case, settled))
+        if not search.paths and search.log is not None:
+            _archive_without_path(search, found)
+    return found if scaled is None else unscaled(problem, scaled, found, tolerance)
+
+
+def _check_arguments(
+    tolerance: Any, restarts: Any, seed: Any, finish: Any, budget: Any, executor: Any, options: Mapping[str, Any]
+) -> None:
+    """Refuse what would otherwise show late, or, where no path is traced, never."""
+    if not isinstance(tolerance, Real) or not 0.0 < float(tolerance) < 1.0:
+        raise ValueError(f"tolerance: expected a number between 0 and 1, found {tolerance!r}")
+    if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
+        raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
+    if executor is not None and not hasattr(executor, "submit"):
+        raise TypeError(f"executor: expected a concurrent.futures.Executor, found {executor!r}")
+    if not isinstance(seed, Integral) or seed < 0:
+        raise ValueError(f"seed: expected an integer, at least 0, found {seed!r}")
+    if not isinstance(finish, bool):
+        raise TypeError(f"finish: expected True or False, found {finish!r}")
+    if budget is not None and not isinstance(budget, Budget):
+        raise TypeError(f"budget: expected a Budget, found {budget!r}")
+    known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
+    check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
+    checked(options)
+
+
+def _account(case: Case, settled: Attempt | None) -> str:
+    """What was done: what settled the problem, or what the paths came to and how many there were."""
+    parts = [f"A is {case.facts}."] if case.facts is not None else []
+    if settled is not None:
+        return " ".join([*parts, settled.said.format(case=case)])
+    search = case.search
+    if search.paths:
+        parts.append(f"The first path: {search.paths[0].message}")
+    tried = f"Restarts from random starts: {case.tried} (seed {case.seed})."
+    parts.append(tried if case.tried else "No restarts were tried.")
+    if search.exhausted:
+        parts.append(f"The budget is used up: {search.exhausted}.")
+    return " ".join(parts)
+
+
+def _archive_without_path(search: Search, found: Solution) -> None:
+    """Where no path was needed the archive holds the message, and the solution as the end of the KKT path.
+
+    With z1 = w and z2 = x a solution satisfies the equations of that homotopy at lambda = 0.
+    """
+    homotopy = KKTHomotopy(search.problem, structure=search.structure)
+    path = Path(status=Status.INTERRUPTED, message=f"No path was traced. {found.message}")
+    end = search.best()
+    if end is not None:
+        x, w = end.certificate.x, np.maximum(end.certificate.w, 0.0)
+        y = np.concatenate([x, w, x])
+        u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
+        observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
+        path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))
+        path.status = Status.REACHED_TARGET
+    search.record(path, homotopy)

@@ -1,0 +1,71 @@
+"""The archive of `solve`: it holds every path, the answer where there is none, and changes nothing of what is done."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import continuation
+from continuation.archive import open_archive
+from problems import lcp
+from problems.paper import COUNTEREXAMPLES
+
+PD = lcp.LCP([[4.0, -1.0, 0.5], [1.0, 3.0, -1.0], [0.0, 1.0, 2.0]], [-1.0, 1.0, -2.0])
+
+
+def test_the_archive_holds_the_path(tmp_path):
+    file = tmp_path / "run.h5"
+    solution = lcp.solve(PD, "kkt", archive=file, progress=False)
+    with open_archive(file) as archive:
+        np.testing.assert_array_equal(archive[0].y, solution.path.y)
+        assert archive.attributes["homotopy"] == "problems.lcp.homotopies.kkt:KKTHomotopy"
+
+
+BIMATRIX = lcp.LCP([[0, 0, 1, 2], [0, 0, 3, 1], [1, 3, 0, 0], [2, 1, 0, 0]], [-1.0, -1.0, -1.0, -1.0])
+
+
+@pytest.mark.parametrize("problem", [PD, BIMATRIX, COUNTEREXAMPLES[0].problem], ids=["no path", "a path", "restarts"])
+@pytest.mark.parametrize("workers", [0, 1])
+def test_an_archive_changes_nothing_of_what_is_done(problem, workers, tmp_path):
+    def solved(file):
+        if not workers:
+            return lcp.solve(problem, restarts=3, archive=file)
+        with ThreadPoolExecutor(workers) as executor:
+            return lcp.solve(problem, restarts=3, archive=file, executor=executor)
+
+    without, with_archive = solved(None), solved(tmp_path / "run.h5")
+    assert with_archive.message == without.message
+    assert with_archive.counts == without.counts
+    np.testing.assert_array_equal(with_archive.x, without.x)
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive) == max(len(without.paths), 1)
+        # Wang's path has 2n unknowns, the others 3n: the shorter one is filled up with NaN.
+        ends = [path.endpoint.u for path in archive]
+    for end, path in zip(ends, without.paths):
+        np.testing.assert_array_equal(end[np.isfinite(end)], path.endpoint.u)
+
+
+def test_an_archive_without_a_path_holds_the_solution_as_the_end_of_the_kkt_path(tmp_path):
+    file = tmp_path / "run.h5"
+    solution = lcp.solve(PD, archive=file)
+    assert not solution.paths
+    with open_archive(file) as archive:
+        path = archive.path(0)
+        homotopy = lcp.KKTHomotopy(PD)
+        assert archive.attributes["homotopy"] == "problems.lcp.homotopies.kkt:KKTHomotopy"
+    assert path.status is continuation.Status.REACHED_TARGET
+    assert solution.message in path.message
+    assert len(path) == 1
+    np.testing.assert_array_equal(path.endpoint.y, np.concatenate([solution.x, solution.w, solution.x]))
+    assert path.endpoint.lam == 0.0
+    assert np.abs(homotopy.residual(path.endpoint.y, 0.0)).max() <= 1e-15
+
+
+def test_an_archive_without_a_point_holds_the_reason(tmp_path):
+    file = tmp_path / "run.h5"
+    solution = lcp.solve(lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0]), archive=file)
+    assert solution.outcome is lcp.Outcome.UNSOLVABLE
+    with open_archive(file) as archive:
+        assert len(archive) == 1
+        assert archive.paths["n_points"][0] == 0
+        assert solution.message[:60] in archive.path(0).message

@@ -1,0 +1,101 @@
+"""The order of attempts: what is tried for which problem, and that an attempt is an entry like any other."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from attrs import evolve
+
+import continuation
+from problems import lcp
+from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.finish import Finish
+from problems.lcp.search import strategy
+from problems.lcp.search.search import Search
+from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
+
+INFEASIBLE = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
+ZERO = "active sets, from x = 0"
+
+
+def case(problem, **changes):
+    structure = lcp.Structure(problem)
+    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, continuation.Budget(), None, False, {})
+    asked = {"x0": None, "asked": "kkt", "restarts": 2, "seed": 0, "executor": None} | changes
+    return Case(search, problem, **asked)
+
+
+def tried(one, order):
+    """The names of the attempts, if none of them settles anything."""
+    names = []
+
+    def note(name):
+        return lambda _: names.append(name)
+
+    assert settled_by(one, tuple(evolve(attempt, run=note(attempt.name)) for attempt in order)) is None
+    return names
+
+
+def test_the_order_depends_on_the_matrix():
+    skew = np.array([[1.0, 2.0, 0.0], [-2.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    q = [-1.0, 1.0, 0.0]
+    expected = [ZERO, "active sets of A + shift I, from the last", "proof, early"]
+    expected += ["Wang's path", "proof", "KKT path", "restarts"]
+    assert tried(case(lcp.LCP(skew, q)), AUTOMATIC) == expected
+    negative = lcp.LCP(-np.eye(3) + np.ones((3, 3)) * [[0.0], [-3.0], [1.0]], q)
+    assert tried(case(negative), AUTOMATIC) == [ZERO, "proof, early", "KKT path, first", "proof", "restarts"]
+    definite = lcp.LCP(np.full((3, 3), 1.0) + np.eye(3), q)
+    assert tried(case(definite), AUTOMATIC)[:2] == ["active sets of A + shift I, from x = 0", ZERO]
+    assert tried(case(lcp.LCP(skew, np.ones(3))), AUTOMATIC)[0] == "x = 0"
+    assert "active sets, from x0" in tried(case(lcp.LCP(skew, q), x0=np.ones(3)), AUTOMATIC)
+    membrane = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(300, 300), dtype=float)
+    assert tried(case(lcp.LCP(membrane, -np.ones(300))), AUTOMATIC)[0] == "active sets, from coarser problems"
+
+
+def test_a_path_that_is_wanted_comes_first():
+    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", "restarts"]
+
+
+def test_what_is_dear_is_left_out_when_the_budget_is_spent():
+    one = case(lcp.LCP(np.eye(50), -np.ones(50)))
+    one.search.counts.accepted = 10_000
+    assert not {"proof", "KKT path"} & set(tried(one, AUTOMATIC))
+
+
+def test_a_homotopy_by_name_looks_for_the_start_that_it_needs():
+    assert tried(case(INFEASIBLE, asked="zhao"), NAMED) == ["feasible start", "path", "proof", "restarts"]
+    assert tried(case(INFEASIBLE, asked="zhao", x0=np.ones(2)), NAMED)[0] == "path"
+    assert tried(case(INFEASIBLE, asked="wang", restarts=0), NAMED) == ["path", "proof"]
+
+
+def test_another_attempt_is_one_more_entry():
+    guess = Attempt(
+        "a guess", lambda c: True, lambda c: c.search.settle(np.array([True, True]), strategy.FIRST), "Guessed."
+    )
+    one = case(lcp.LCP(np.eye(2), [-1.0, -1.0]))
+    settled = settled_by(one, (guess, *AUTOMATIC))
+    assert settled is guess
+    assert settled.said == "Guessed."
+    np.testing.assert_array_equal(one.search.best().certificate.x, [1.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("problem", "options", "expected"),
+    [
+        (INFEASIBLE, {}, 1),
+        (INFEASIBLE, {"path": True}, 1),
+        (INFEASIBLE, {"homotopy": "kkt"}, 1),
+        # Phase I has the proof already.
+        (INFEASIBLE, {"homotopy": "zhao"}, 0),
+        # Scaled: the proof is of the problem as given from the beginning.
+        (lcp.LCP([[0.0, 1e9], [-1e-9, 0.0]], [-1e9, -1.0]), {}, 1),
+    ],
+)
+def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, options, expected, monkeypatch):
+    calls = []
+    monkeypatch.setattr(strategy, "farkas", lambda p: calls.append(p) or lcp.farkas(p))
+    solution = lcp.solve(problem, **options)
+    assert solution.outcome is lcp.Outcome.UNSOLVABLE
+    y = np.array(solution.farkas.y, dtype=float)
+    assert (problem.A.T @ y <= 0.0).all()
+    assert problem.q @ y < 0.0
+    assert len(calls) == expected
