@@ -18,7 +18,10 @@ from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
 
 ULPS = 4.0
-"""Units in the last place by which a point is moved to see the size of H's terms."""
+"""Units in the last place by which round-off moves a point, about."""
+
+LOOK = 64.0
+"""By so many a point is moved to see it: the change of an equation is then more than a few of its own last places."""
 
 
 class EvaluationError(ArithmeticError):
@@ -154,11 +157,13 @@ class Evaluator:
     def round_off(self, u: Array, residual: Array) -> Array:
         """What round-off in u makes of H there, shape (N,): the size of its terms, in units of their last places.
 
-        Each component of u is moved by ULPS units in its last place, in directions of no pattern; `residual` is H(u).
+        Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
+        an equation may cancel in one of them. `residual` is H(u).
         """
-        moved = u + ULPS * np.spacing(u) * np.sign(generic_vector(u.size))
-        shift: Array = np.abs(self.residual(moved) - residual)
-        return shift
+        signs, step = np.sign(generic_vector(u.size)), LOOK * np.spacing(u)
+        looks = (self.residual(u + step * signs), self.residual(u + step * signs[::-1]))
+        terms: Array = np.maximum(*(np.abs(look - residual) for look in looks)) * (ULPS / LOOK)
+        return terms
 
     @property
     def derivative(self) -> Derivative:
