@@ -26,8 +26,7 @@ from continuation.step.settings import Settings
 from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance
 from continuation.tracing import trace
-
-__version__ = "0.1.0"
+from continuation.version import __version__
 
 __all__ = [
     "CONSERVATIVE",
@@ -60,6 +59,7 @@ __all__ = [
     "Tolerance",
     "Tracer",
     "TurningPoint",
+    "__version__",
     "arclength",
     "audit",
     "branch_directions",

@@ -308,6 +308,8 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     path : Path
     s : float
         Between 0 and the last arclength.
+    tolerance : float or Tolerance, default 1e-8
+        Of the corrector.
 
     Returns
     -------

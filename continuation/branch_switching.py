@@ -71,6 +71,19 @@ def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tup
     Each is a pair (u, v), a corrected point at distance about `step` and the direction away from the branch point;
     pass it to ``trace(homotopy, start=...)``.
 
+    Parameters
+    ----------
+    homotopy : Homotopy
+        The one that was traced.
+    event : LocatedEvent
+        A branch point of its path.
+    step : float, default 1e-2
+        How far from the branch point the starts are.
+
+    Returns
+    -------
+    two pairs (u, v) of ndarray, shape (N + 1,)
+
     Raises
     ------
     ArithmeticError

@@ -19,7 +19,19 @@ class Budget:
     factorizations: float = field(default=math.inf, validator=POSITIVE)
 
     def spent(self, counts: Counts, seconds: float) -> str:
-        """Which limit is reached, as text; empty if none is."""
+        """Which limit is reached, as text; empty if none is.
+
+        Parameters
+        ----------
+        counts : Counts
+            Of the path so far.
+        seconds : float
+            Since its first step was asked for.
+
+        Returns
+        -------
+        str
+        """
         if counts.accepted >= self.steps:
             return f"{self.steps:g} steps"
         if counts.factorizations >= self.factorizations:

@@ -19,7 +19,17 @@ class Homotopy(Protocol):
         ...
 
     def residual(self, y: Array, lam: float) -> Array:
-        """H(y, lam), shape (N,). Must not modify `y`."""
+        """H(y, lam), shape (N,). Must not modify `y`.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        lam : float
+
+        Returns
+        -------
+        ndarray, shape (N,)
+        """
         ...
 
 
@@ -28,7 +38,18 @@ class SupportsJacobian(Protocol):
     """The derivative; without it jets, complex step or differences serve, at a cost shown in the counts."""
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam): an (N, N) matrix (dense, sparse, Banded, LinearOperator) and an (N,) array."""
+        """(H_y, H_lam): an (N, N) matrix (dense, sparse, Banded, LinearOperator) and an (N,) array.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        lam : float
+
+        Returns
+        -------
+        H_y : ndarray, sparse array, Banded or LinearOperator, shape (N, N)
+        H_lam : ndarray, shape (N,)
+        """
         ...
 
 
@@ -44,7 +65,19 @@ class SupportsBordered(Protocol):
     """A factorisation of its own for [[H_y, H_lam], [border]], which replaces the library's."""
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix at (y, lam); `border` has shape (N + 1,)."""
+        """Factor the bordered matrix at (y, lam); `border` has shape (N + 1,).
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        lam : float
+        border : ndarray, shape (N + 1,)
+            The last row: (H_y, H_lam) has one more column than rows.
+
+        Returns
+        -------
+        BorderedSystem
+        """
         ...
 
 
@@ -53,7 +86,19 @@ class SupportsDifferential(Protocol):
     """H' applied to a direction, for a homotopy with `bordered` that never forms its matrix."""
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """H_y v_y + H_lam v_lam, shape (N,)."""
+        """H_y v_y + H_lam v_lam, shape (N,).
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        lam : float
+        v : ndarray, shape (N + 1,)
+            The direction (v_y, v_lam).
+
+        Returns
+        -------
+        ndarray, shape (N,)
+        """
         ...
 
 
@@ -71,7 +116,17 @@ class TangentPoint(Protocol):
         ...
 
     def solve(self, r: Array, rho: float = 0.0) -> Array:
-        """The solution z, shape (N + 1,), of ``H' z = r``, ``border . z = rho``, the border dual to the tangent."""
+        """The solution z, shape (N + 1,), of ``H' z = r``, ``border . z = rho``, the border dual to the tangent.
+
+        Parameters
+        ----------
+        r : ndarray, shape (N,)
+        rho : float
+
+        Returns
+        -------
+        ndarray, shape (N + 1,)
+        """
         ...
 
 
@@ -80,7 +135,19 @@ class SupportsTaylor(Protocol):
     """Path coefficients of its own, usually by convolutions, from the factorisation of the point."""
 
     def taylor(self, point: TangentPoint, order: int) -> Array:
-        """Coefficients c, shape (order + 1, N + 1): u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s."""
+        """Coefficients c, shape (order + 1, N + 1): u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s.
+
+        Parameters
+        ----------
+        point : TangentPoint
+            Where the path is expanded.
+        order : int
+            Of the last coefficient, at least 1.
+
+        Returns
+        -------
+        ndarray, shape (order + 1, N + 1)
+        """
         ...
 
 
@@ -89,7 +156,19 @@ class SupportsMaxStep(Protocol):
     """An interior path: how far one may go along v and stay inside."""
 
     def max_step(self, u: Array, v: Array) -> float:
-        """The largest h >= 0 (or inf) for which u + t v is admissible for every t in [0, h)."""
+        """The largest h >= 0 (or inf) for which u + t v is admissible for every t in [0, h).
+
+        Parameters
+        ----------
+        u : ndarray, shape (N + 1,)
+            A point inside.
+        v : ndarray, shape (N + 1,)
+            A direction, of any length.
+
+        Returns
+        -------
+        float
+        """
         ...
 
 
@@ -105,7 +184,17 @@ class SupportsFinish(Protocol):
     """A problem's own way to end, tried after accepted steps; returns the end y at the target, or None."""
 
     def finish(self, y: Array, lam: float) -> Array | None:
-        """The end point, certified by the problem, or None to go on tracing."""
+        """The end point, certified by the problem, or None to go on tracing.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        lam : float
+
+        Returns
+        -------
+        ndarray, shape (N,), or None
+        """
         ...
 
 
@@ -114,7 +203,17 @@ class SupportsObserve(Protocol):
     """Extra scalars, stored with every point of an archive."""
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Named scalars at a point; the same names at every point."""
+        """Named scalars at a point; the same names at every point.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        lam : float
+
+        Returns
+        -------
+        dict of str to float
+        """
         ...
 
 

@@ -128,8 +128,8 @@ class Path:
 
     Attributes
     ----------
-    steps : list of Step
-        The accepted points, the start first.
+    steps : sequence of Step
+        The accepted points, the start first: a list, or `continuation.archive.stored.StoredSteps`.
     events : list of LocatedEvent
         In order along the path.
     status : Status
@@ -174,7 +174,7 @@ class Path:
     @property
     def u(self) -> Array:
         """All points, shape (m, N + 1)."""
-        return np.array([step.u for step in self.steps])
+        return _column(self.steps, "u")
 
     @property
     def y(self) -> Array:
@@ -189,12 +189,12 @@ class Path:
     @property
     def arclength(self) -> Array:
         """Accumulated arclength in the metric of the trace, shape (m,)."""
-        return np.array([step.arclength for step in self.steps])
+        return _column(self.steps, "arclength")
 
     @property
     def tangents(self) -> Array:
         """Unit tangents, shape (m, N + 1)."""
-        return np.array([step.tangent for step in self.steps])
+        return _column(self.steps, "tangent")
 
     @property
     def endpoint(self) -> Step:
@@ -217,7 +217,7 @@ class Path:
             If s lies outside [0, arclength[-1]].
         """
         wanted = np.asarray(s, dtype=float)
-        knots = [step.arclength for step in self.steps]
+        knots = self.arclength.tolist()
         if wanted.size and (wanted.min() < knots[0] or wanted.max() > knots[-1] * (1 + 1e-15)):
             found = f"{wanted.min():g} .. {wanted.max():g}"
             raise ValueError(f"s: expected values in [{knots[0]:g}, {knots[-1]:g}], found {found}")
@@ -238,3 +238,9 @@ class Path:
     def summary(self) -> dict[str, Any]:
         """The end in numbers, for tables and logs."""
         return {"status": self.status.name, "points": len(self), "events": len(self.events), **self.counts.as_dict()}
+
+
+def _column(steps: Any, name: str) -> Array:
+    """A number or vector of all steps; steps that stay in an archive know a way of their own."""
+    column: Array = steps.column(name) if hasattr(steps, "column") else np.array([getattr(s, name) for s in steps])
+    return column

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
+from numbers import Real
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from attrs import Attribute
 
 from continuation.arrays import Array
@@ -24,16 +27,92 @@ def finite_or_none(instance: Any, attribute: Attribute[Any], value: Any) -> None
         finite(instance, attribute, value)
 
 
+def real_array(name: str, value: Any) -> Array:
+    """A copy of `value` as an array of floats, if it is made of real numbers that a float can hold.
+
+    Parameters
+    ----------
+    name : str
+        The argument, for the message.
+    value : array_like
+        Integers, floats, booleans, or objects that are real numbers, as fractions are.
+
+    Raises
+    ------
+    ValueError
+        For anything else: complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
+    """
+    if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
+        raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
+    try:
+        array = np.array(value)
+        if array.dtype == object:
+            if not all(_is_real(entry) for entry in array.flat):
+                raise TypeError("objects that are no real numbers")
+        elif array.dtype.kind not in "fiub":
+            raise TypeError(f"dtype {array.dtype}")
+        with np.errstate(over="ignore"):
+            numbers: Array = array.astype(float)
+    except (TypeError, ValueError, OverflowError) as error:
+        found = f"found {type(value).__name__} ({' '.join(str(error).split())[:100]})"
+        raise ValueError(f"{name}: expected real numbers, {found}") from None
+    if array.dtype.itemsize > numbers.itemsize and np.any(np.isinf(numbers) & np.isfinite(array)):
+        raise ValueError(f"{name}: expected numbers below 1.8e308 in size, found larger ones")
+    return numbers
+
+
+def _is_real(entry: Any) -> bool:
+    """Whether an object is a real number: one of Python's tower, or a decimal."""
+    return isinstance(entry, (Real, Decimal, np.bool_)) or (isinstance(entry, np.ndarray) and entry.ndim == 0)
+
+
+def sound_sparse(name: str, value: Any) -> Any:
+    """A sparse matrix as CSR of floats, its structure checked: indices outside of the shape would corrupt memory.
+
+    Parameters
+    ----------
+    name : str
+        The argument, for the message.
+    value : scipy sparse array or matrix
+        In any format; entries that occur more than once add up, as floats.
+
+    Raises
+    ------
+    ValueError
+        If it holds anything but real numbers, or its indices do not belong to its shape.
+    """
+    if value.dtype.kind not in "fiub":
+        raise ValueError(f"{name}: expected real numbers, found dtype {value.dtype}")
+    if value.ndim != 2:
+        raise ValueError(f"{name}: expected a matrix, found shape {value.shape}")
+    try:
+        if value.format in ("csr", "csc", "bsr"):
+            # Of a copy of the outer object: scipy narrows the indices of the one that it checks.
+            type(value)((value.data, value.indices, value.indptr), shape=value.shape).check_format(full_check=True)
+        elif value.format == "coo":
+            for indices, length in zip((value.row, value.col), value.shape):
+                if len(indices) != len(value.data):
+                    raise ValueError("there are not as many indices as entries")
+                if len(indices) and not 0 <= indices.min() <= indices.max() < length:
+                    raise ValueError(f"indices {indices.min()} to {indices.max()} where 0 to {length - 1} are possible")
+        # Floats first: duplicates of small integers add up beyond them.
+        matrix = sp.csr_array(value.astype(float))
+        matrix.check_format(full_check=True)
+        matrix.sum_duplicates()
+    except (ValueError, TypeError, IndexError, OverflowError, MemoryError) as error:
+        reason = " ".join(str(error).split())[:160]
+        raise ValueError(f"{name}: expected a sparse matrix whose indices fit its shape, found {reason}") from None
+    return matrix
+
+
 def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
     """A copy of `value` as a vector of finite floats, of the given size if there is one, or ValueError naming it."""
-    try:
-        vector = np.array(value)
-    except ValueError as error:
-        raise ValueError(f"{name}: expected a vector of real numbers, found {type(value).__name__} ({error})") from None
-    if vector.dtype.kind not in "fiu" or vector.ndim != 1 or vector.size == 0:
-        raise ValueError(f"{name}: expected a vector of real numbers, found shape {vector.shape}, dtype {vector.dtype}")
+    vector = real_array(name, value)
+    if np.asarray(value).dtype.kind == "b" or vector.ndim != 1 or vector.size == 0:
+        kind = np.asarray(value).dtype
+        raise ValueError(f"{name}: expected a vector of real numbers, found shape {vector.shape}, dtype {kind}")
     if size is not None and vector.size != size:
         raise ValueError(f"{name}: expected {size} numbers, found {vector.size}")
     if not np.isfinite(vector).all():
         raise ValueError(f"{name}: expected finite numbers, found {vector[~np.isfinite(vector)][0]}")
-    return vector.astype(float)
+    return vector

@@ -4,13 +4,18 @@ Public is what a package of `continuation` or `problems` lists in `__all__`: fun
 method that a protocol asks for (`prepare`, `residual`) may leave the description to the protocol.
 """
 
+from __future__ import annotations
+
 import importlib
 import inspect
 import re
 from functools import cache
 from pathlib import Path
+from typing import Unpack
 
 import pytest
+
+from continuation.step.options import Options
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = sorted(
@@ -30,8 +35,15 @@ def documented(owner):
 
 
 def parameters(function):
-    """What a caller gives."""
-    return {name for name in inspect.signature(function).parameters if name not in ("self", "cls")}
+    """What a caller gives; in place of ``**options: Unpack[Options]``, every option, where it has no entry itself."""
+    names = set()
+    for name, parameter in inspect.signature(function).parameters.items():
+        unpacked = re.fullmatch(r"Unpack\[(\w+)\]", str(parameter.annotation))
+        if unpacked and name not in documented(function):
+            names |= set(function.__globals__[unpacked[1]].__annotations__)
+        else:
+            names.add(name)
+    return names - {"self", "cls"}
 
 
 def public(package):
@@ -98,3 +110,15 @@ def test_a_parameter_without_a_word_is_found(monkeypatch):
 
     monkeypatch.setattr(importlib.import_module("continuation"), "trace", plain)
     assert list(undocumented("continuation", protocols()))[-1] == "continuation.trace: lam"
+
+
+def test_an_option_without_a_word_is_found():
+    def bare(**options: Unpack[Options]):
+        """Parameters
+        ----------
+        preset : Preset
+        """
+
+    found = parameters(bare) - documented(bare)
+    assert "preset" not in found
+    assert {"tolerance", "metric", "budget"} <= found

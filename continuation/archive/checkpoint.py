@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import json
+import math
 import struct
 import zlib
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
 
 import attrs
 import numpy as np
 from attrs import frozen
 
-from continuation.archive.codec import UnknownError, UnstorableError, decode, encode, order
+from continuation.archive.codec import UnstorableError, encode, order
+from continuation.archive.trust import UnknownError, decode
 from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.tracer import Tracer
 
-_HEAD = struct.Struct("<QQI")
+HEAD = struct.Struct("<QQI")
+"""Sequence, length of the body, CRC-32 of the body."""
+
 OPTIONS = tuple(attrs.fields_dict(Settings))
 """What determines a path, and is kept: all of them options of `continuation.Tracer`, completed."""
 
@@ -77,11 +81,25 @@ class _Arrays:
     def fetch(self, place: Any) -> Any:
         # Arrays were numbered in the order in which the description names them first.
         if place["number"] == len(self._made):
-            dtype, count = np.dtype(place["dtype"]), int(np.prod(place["shape"], dtype=int))
-            array = np.frombuffer(self._raw, dtype, count, self._offset).reshape(place["shape"]).copy()
+            array = numbers(self._raw[self._offset :], place["dtype"], place["shape"]).copy()
             self._offset += array.nbytes
             self._made.append(array)
         return self._made[place["number"]]
+
+
+def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> np.ndarray[Any, Any]:
+    """The first bytes as an array of numbers, not copied: never larger than they are.
+
+    Raises
+    ------
+    ValueError
+        If it is to hold something else than numbers, or more than the bytes do.
+    """
+    kind = np.dtype(dtype)
+    count = math.prod(shape)
+    if kind.kind not in "fiubc" or min(shape, default=0) < 0 or count * kind.itemsize > len(raw):
+        raise ValueError(f"no array of {dtype!r:.20} of shape {shape!r:.60} in {len(raw)} bytes")
+    return np.frombuffer(raw, kind, count).reshape(shape, order=order)
 
 
 def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -131,8 +149,7 @@ def _whole(name: str, array: Any) -> Any:
 
 def whole(place: Any) -> Any:
     """The array again."""
-    flat = np.frombuffer(bytes.fromhex(place["hex"]), np.dtype(place["dtype"]))
-    return flat.reshape(place["shape"], order=place["order"]).copy("K")
+    return numbers(bytes.fromhex(place["hex"]), place["dtype"], place["shape"], place["order"]).copy("K")
 
 
 def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
@@ -151,24 +168,35 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
     run = json.dumps(dict(checkpoint.run)).encode() if run is None else run
     parts = [json.dumps(tree).encode(), run, b"".join(np.ascontiguousarray(a).tobytes() for a in block.arrays)]
     body = b"\n".join(parts)
-    return _HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
+    return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
-    """The checkpoint, or None where the bytes are not a whole one (never written, or torn by a kill)."""
-    if len(raw) < _HEAD.size:
+    """The checkpoint, or None where the bytes are not a whole one.
+
+    It was never written, torn by a kill, or its state is that of another version of the library: then the points are as
+    good as ever, only resuming is over. The state is read as numbers; nothing that the bytes name is made.
+    """
+    if len(raw) < HEAD.size:
         return None
-    sequence, length, crc = _HEAD.unpack_from(raw)
-    body = raw[_HEAD.size : _HEAD.size + length]
+    sequence, length, crc = HEAD.unpack_from(raw)
+    body = raw[HEAD.size : HEAD.size + length]
     if not length or len(body) < length or zlib.crc32(body) != crc:
         return None
-    head, run, arrays = body.split(b"\n", 2)
-    tree = json.loads(head)
     try:
-        state = decode(tree["state"], _Arrays(arrays).fetch)
-    except UnknownError:
-        # The state of another version of the library: the points are as good as ever, only resuming is over.
+        head, described, arrays = body.split(b"\n", 2)
+        tree, run = json.loads(head), json.loads(described)
+        state = decode(tree["state"], _Arrays(arrays).fetch, hint=State)
+        counts = {str(name): int(value) for name, value in tree["counts"].items()}
+        path, rows, seconds = int(tree["path"]), int(tree["rows"]), float(tree["seconds"])
+    except (UnknownError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
-    return Checkpoint(
-        sequence, tree["path"], tree["rows"], state, tree["counts"], tree["seconds"], json.loads(run)
-    )
+    sensible = _consistent(state) and path >= 0 and rows > 0 and isinstance(run, dict)
+    return Checkpoint(sequence, path, rows, state, counts, seconds, run) if sensible else None
+
+
+def _consistent(state: State) -> bool:
+    """Whether all vectors of the state are float64 and of one length."""
+    knots = (*state.history, state.origin)
+    vectors = [state.weights, *state.anchor, state.origin_weights, *(v for k in knots for v in (k.u, k.tangent))]
+    return bool(state.history) and all(v.dtype == float and v.shape == (vectors[0].size,) for v in vectors)

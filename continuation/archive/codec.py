@@ -1,8 +1,10 @@
-"""Objects as JSON and back: attrs classes by class path and fields, arrays put where the caller wants them."""
+"""Objects as JSON: attrs classes by class path and fields, arrays put where the caller wants them.
+
+The way back, which makes only what is trusted, is `continuation.archive.trust`.
+"""
 
 from __future__ import annotations
 
-import importlib
 import sys
 from collections.abc import Callable, Mapping
 from types import BuiltinFunctionType, FunctionType
@@ -29,7 +31,13 @@ class SupportsArchive(Protocol):
 
     @classmethod
     def from_archive(cls, data: Mapping[str, Any]) -> Any:
-        """The homotopy again."""
+        """The homotopy again.
+
+        Parameters
+        ----------
+        data : mapping of str to object
+            What `archive_data` returned, as the file gives it back.
+        """
         ...
 
 
@@ -60,24 +68,6 @@ def path_of(thing: Any) -> str:
     if found is not thing:
         raise UnstorableError(f"{module}:{name} is not at the top of a module")
     return f"{module}:{name}"
-
-
-def resolve(path: str) -> Any:
-    """The class or function of ``module:name``; imports the module.
-
-    Raises
-    ------
-    UnknownError
-        If there is none by that name.
-    """
-    module, _, name = path.partition(":")
-    try:
-        found: Any = importlib.import_module(module)
-        for part in name.split("."):
-            found = getattr(found, part)
-    except (ImportError, AttributeError, ValueError) as error:
-        raise UnknownError(f"{path} cannot be imported ({error})") from None
-    return found
 
 
 def encode(value: Any, place: Place, name: str = "value") -> Any:
@@ -131,60 +121,6 @@ def _encode_object(value: Any, place: Place, name: str) -> Any:
     if getattr(value, "__dict__", None) == {} and not any(getattr(c, "__slots__", ()) for c in cls.__mro__):
         return {"class": path, "fields": {}}
     raise UnstorableError(f"{path} has neither archive_data nor attrs fields")
-
-
-def decode(tree: Any, fetch: Callable[[Any], Any]) -> Any:
-    """The value again; `fetch` turns what `place` returned back into an array.
-
-    Only attrs classes, classes with ``from_archive`` and classes without state are made; the module is imported for it.
-
-    Raises
-    ------
-    UnknownError
-        If a class or function is not there any more, or does not take its fields.
-    """
-    if isinstance(tree, list) or tree is None or isinstance(tree, (bool, int, float, str)):
-        return tree
-    if "array" in tree:
-        return fetch(tree["array"])
-    if "tuple" in tree:
-        return tuple(decode(item, fetch) for item in tree["tuple"])
-    if "list" in tree:
-        return [decode(item, fetch) for item in tree["list"]]
-    if "dict" in tree:
-        return {key: decode(item, fetch) for key, item in tree["dict"].items()}
-    if "sparse" in tree:
-        make = sp.csr_array if tree["sparse"] == "csr" else sp.csc_array
-        return make((fetch(tree["data"]), fetch(tree["indices"]), fetch(tree["indptr"])), shape=tuple(tree["shape"]))
-    if "function" in tree:
-        return resolve(tree["function"])
-    if "class" in tree:
-        return _decode_object(tree, fetch)
-    raise UnknownError(f"cannot read the description {str(tree)[:80]}")
-
-
-def _decode_object(tree: Any, fetch: Callable[[Any], Any]) -> Any:
-    path = tree["class"]
-    cls = resolve(path)
-    if not isinstance(cls, type):
-        raise UnknownError(f"{path} is no class")
-    if "data" in tree:
-        make = getattr(cls, "from_archive", None)
-        if make is None:
-            raise UnknownError(f"{path} has no from_archive any more")
-        return make(decode(tree["data"], fetch))
-    fields = {key: decode(item, fetch) for key, item in tree["fields"].items()}
-    if fields and not attrs.has(cls):
-        raise UnknownError(f"{path} is no attrs class any more")
-    try:
-        if hasattr(cls, "__attrs_init__"):
-            # A class with a constructor of its own for people, which completes and checks what is complete here.
-            made: Any = object.__new__(cls)
-            made.__attrs_init__(**fields)
-            return made
-        return cls(**fields)
-    except (TypeError, ValueError) as error:
-        raise UnknownError(f"{path} does not take its stored fields ({error})") from None
 
 
 def order(array: Any) -> str:

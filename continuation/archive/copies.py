@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path as File
 from typing import Any
@@ -10,79 +9,101 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
+from continuation.archive.atomic import beside, like, publish
+from continuation.archive.contents import Contents
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
-from continuation.archive.schema import Layout
+from continuation.archive.schema import TEXT, Layout, text
 from continuation.archive.store import Store
+from continuation.status import Status
 
-_BLOCK_BYTES = 1 << 23
+_BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
+"""Of what is copied at once, and so of the blocks that a reader checks whole."""
 
 
 @frozen(eq=False)
 class Share:
-    """What is copied of one archive: its first paths, and how many rows of the last of them.
+    """What is copied of one archive.
 
-    `amend` changes the path rows on the way.
+    Attributes
+    ----------
+    source : Contents
+    paths : mapping of str to ndarray
+        The rows of the paths, column by column.
+    points : slice
+        The rows of their points; of the last path perhaps the first ones only.
+    first : int
+        The number of the first path in the source.
     """
 
-    archive: Archive
-    paths: int
-    points: int
-    amend: Callable[[dict[str, Any]], dict[str, Any]] = lambda block: block
+    source: Contents
+    paths: Mapping[str, Any]
+    points: slice
+    first: int = 0
+
+
+def leading_paths(archive: Archive, paths: int, points: int) -> Share:
+    """The first paths of an archive, and so many points."""
+    return Share(archive.contents, archive.paths.block(slice(0, paths)), slice(0, points))
 
 
 def everything(archive: Archive) -> Share:
     """All that was committed."""
-    return Share(archive, len(archive), archive.points.size)
+    return leading_paths(archive, len(archive), archive.points.size)
 
 
-def leading(archives: Sequence[Archive]) -> Archive:
+def interrupt(paths: Mapping[str, Any]) -> None:
+    """A path that was being traced when its writer died counts as interrupted."""
+    open_ = paths["status"] == int(Status.TRACING)
+    paths["status"][open_] = int(Status.INTERRUPTED)
+    paths["message"][open_] = text(f"{Status.INTERRUPTED} Its writer was killed.", TEXT)
+
+
+def leading(sources: Sequence[Contents]) -> Contents:
     """The first archive with a point in it: its settings and problem stand for all; one of failures alone has none."""
-    return next((archive for archive in archives if archive.points.size), archives[0])
+    return next((source for source in sources if source.committed.points), sources[0])
 
 
 def write_copy(
     shares: Sequence[Share],
-    target: File,
+    part: File,
     *,
     attributes: Mapping[str, Any],
     checkpoints: Mapping[int, bytes] | None = None,
     compression: int = 0,
 ) -> Store:
-    """Concatenate shares into a new file, on the disk when this returns, and open to be written to.
+    """Concatenate shares into a new file, which is still open.
 
     Raises
     ------
     ArchiveError
         If the archives differ in the number of unknowns, or the file cannot be written.
     """
-    layout = _joint([share.archive for share in shares])
-    problem = leading([share.archive for share in shares]).problem()
-    store = Store(target, layout, attributes, problem, compression=compression, swmr=False)
+    sources = [share.source for share in shares]
+    problem = leading(sources).problem()
+    store = Store(part, _joint(sources), attributes, problem, compression=compression)
     try:
         points = paths = 0
         for share in shares:
-            _copy(share, store, points, paths)
-            points, paths = points + share.points, paths + share.paths
+            points, paths = _copy(share, store, points, paths)
         store.commit(checkpoints=checkpoints)
-        store.sync()
     except BaseException:
         store.close()
         raise
     return store
 
 
-def _joint(archives: Sequence[Archive]) -> Layout:
+def _joint(sources: Sequence[Contents]) -> Layout:
     """One layout that holds them all: a column that only some have is missing elsewhere."""
-    head = leading(archives)
+    head = leading(sources)
     first = head.layout
-    for archive in archives:
-        if archive.layout.unknowns != first.unknowns and archive.points.size:
+    for source in sources:
+        if source.layout.unknowns != first.unknowns and source.committed.points:
             raise ArchiveError(
-                f"{archive.file}: holds paths of {archive.layout.unknowns} unknowns, {head.file} of "
+                f"{source.file}: holds paths of {source.layout.unknowns} unknowns, {head.file} of "
                 f"{first.unknowns}; one file holds one number"
             )
-    layouts = [archive.layout for archive in archives]
+    layouts = [source.layout for source in sources]
     return evolve(
         first,
         controller=max(layout.controller for layout in layouts),
@@ -92,21 +113,26 @@ def _joint(archives: Sequence[Archive]) -> Layout:
     )
 
 
-def _copy(share: Share, store: Store, point: int, path: int) -> None:
-    archive, layout = share.archive, store.layout
-    numbers = np.array([store.name_event(name) for name in archive.event_names] + [-1], dtype="i2")
-    size = max(_BLOCK_BYTES // (8 * (layout.unknowns + 16)), 1)
-    for start in range(0, share.points, size):
-        stop = min(start + size, share.points)
-        block = archive.points.block(slice(start, stop))
-        block["path_index"] = (block["path_index"] + path).astype("i4")
+def _copy(share: Share, store: Store, point: int, path: int) -> tuple[int, int]:
+    """Append a share; the numbers of points and paths then."""
+    source, layout, rows = share.source, store.layout, share.points
+    numbers = np.array([store.name_event(name) for name in source.event_names] + [-1], dtype="i2")
+    size = min(max(_BLOCK_BYTES // (8 * (layout.unknowns + 16)), 1), _BLOCK_ROWS)
+    for start in range(rows.start, rows.stop, size):
+        part = slice(start, min(start + size, rows.stop))
+        block = {column.name: source.read("point", column.name, part) for column in source.layout.point_columns}
+        block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
+        if np.any(block["event_index"] >= len(source.event_names)) or np.any(block["event_index"] < -1):
+            raise source.damaged(ValueError("its points refer to events that it does not name"))
         # The number -1, no event, finds the last entry.
         block["event_index"] = numbers[block["event_index"]]
-        store.commit(_filled(block, layout, layout.point_columns, stop - start), point + start)
-    if share.paths:
-        block = share.amend(archive.paths.block(slice(0, share.paths)))
-        block["path"] = block["path"] + path
-        store.commit(paths=_filled(block, layout, layout.path_columns, share.paths), path=path)
+        store.commit(_filled(block, layout, layout.point_columns, part.stop - start), point)
+        point += part.stop - start
+    count = len(share.paths["path"])
+    if count:
+        columns = {**share.paths, "path": np.arange(path, path + count)}
+        store.commit(paths=_filled(columns, layout, layout.path_columns, count), path=path)
+    return point, path + count
 
 
 def _filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Any], rows: int) -> dict[str, Any]:
@@ -123,18 +149,24 @@ def _filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Any], ro
     return filled
 
 
-def put(target: File, write: Callable[[File], Store]) -> Store:
-    """Write a whole new file beside `target`, then give it that name in one step: a kill leaves the one or the other.
+def put(target: File, write: Callable[[File], Store], *, replace: bool = False) -> None:
+    """Write a whole new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
 
-    The file is still open, and may go on to grow.
+    Parameters
+    ----------
+    target : pathlib.Path
+    write : callable
+        From the name to write to, to the open store.
+    replace : bool
+        Take the place of an old file.
     """
-    part = target.with_name(target.name + ".part")
-    # What a killed attempt left behind was never anything but a copy.
-    part.unlink(missing_ok=True)
-    try:
+    with beside(target) as part:
         store = write(part)
-        os.replace(part, target)
-    finally:
-        part.unlink(missing_ok=True)
-    store.file = target
-    return store
+        try:
+            store.finish()
+        except BaseException:
+            store.close()
+            raise
+        if replace:
+            like(part, target)
+        publish(part, target, replace=replace)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import csv
 import gzip
+import os
 from collections.abc import Iterable, Mapping
-from contextlib import closing
+from io import TextIOWrapper
 from os import PathLike
 from pathlib import Path as File
-from typing import Any, TextIO
+from typing import Any, BinaryIO
 
+from continuation.archive.atomic import beside, check_new, publish
 from continuation.archive.copies import everything, put, write_copy
 from continuation.archive.provenance import history
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.store import check_new
+from continuation.archive.tables import Table
 
 _ROWS = 4096
 
@@ -50,7 +52,7 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
             attributes = {**archive.attributes, **history(archive.attributes, f"exported from {archive.file.name}")}
             check_new(name)
             share = everything(archive)
-            put(name, lambda part: write_copy([share], part, attributes=attributes, compression=compression)).close()
+            put(name, lambda part: write_copy([share], part, attributes=attributes, compression=compression))
             return [name]
         for suffix in (".csv", ".csv.gz"):
             if name.name.endswith(suffix):
@@ -61,21 +63,36 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
 def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
     for target in (points, paths):
         check_new(target)
-    for target, table in ((points, archive.points), (paths, archive.paths)):
-        with closing(_opened(target)) as out:
+    with beside(points) as first, beside(paths) as second:
+        for part, table in ((first, archive.points), (second, archive.paths)):
+            _write_text(part, table, points.suffix == ".gz")
+        # The points last: who sees them sees both.
+        publish(second, paths)
+        publish(first, points)
+    return [points, paths]
+
+
+def _write_text(part: File, table: Table, compressed: bool) -> None:
+    with part.open("xb") as raw:
+        out = _opened(raw, compressed)
+        try:
             writer = csv.writer(out)
             for start in range(0, max(table.size, 1), _ROWS):
                 names, columns = _spread(table.block(slice(start, min(start + _ROWS, table.size))))
                 if not start:
                     writer.writerow(names)
                 writer.writerows(zip(*columns))
-    return [points, paths]
+            out.flush()
+        finally:
+            # Closing gzip's stream ends it, and leaves the file open; closing the other would close the file.
+            (out.close if compressed else out.detach)()
+        raw.flush()
+        os.fsync(raw.fileno())
 
 
-def _opened(target: File) -> TextIO:
-    if target.suffix == ".gz":
-        return gzip.open(target, "xt", encoding="utf-8", newline="")
-    return target.open("x", encoding="utf-8", newline="")
+def _opened(raw: BinaryIO, compressed: bool) -> TextIOWrapper:
+    stream: Any = gzip.GzipFile(fileobj=raw, mode="wb") if compressed else raw
+    return TextIOWrapper(stream, encoding="utf-8", newline="")
 
 
 def _spread(block: Mapping[str, Any]) -> tuple[list[str], list[Iterable[Any]]]:
@@ -85,7 +102,7 @@ def _spread(block: Mapping[str, Any]) -> tuple[list[str], list[Iterable[Any]]]:
     for name, values in block.items():
         if values.dtype.kind == "S":
             names.append(name)
-            columns.append([value.decode() for value in values])
+            columns.append([value.decode(errors="replace") for value in values])
         elif values.ndim == 1:
             names.append(name)
             columns.append(values.tolist())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import struct
 import time
 from os import PathLike
 from pathlib import Path as File
@@ -11,19 +10,32 @@ from typing import Any
 
 import h5py
 
+from continuation.archive.atomic import short
+from continuation.archive.checks import GROUP, RECORDS
 from continuation.archive.errors import ArchiveError
-from continuation.archive.schema import SCHEMA
+from continuation.archive.image import Image
+from continuation.archive.locks import is_held
+from continuation.archive.schema import SCHEMA, UNCHECKED
 
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-# The superblock, version 3: byte 8 is the version, byte 11 says whether and how a writer has the file open, and at
-# byte 28 there is the length that the file is to have.
-_VERSION, _IN_USE, _LENGTH, _HEAD = 8, 11, 28, 36
-_SWMR = 4
-_PATIENCE = 0.2
+PATIENCE = 2.0
+"""Seconds for which a file that is being written may seem to be damaged: its writer is in the middle of something."""
+
+_PAUSE = 0.02
+_CACHE = 1 << 18
+"""Bytes of chunks that HDF5 keeps of each column: tables are read from one end to the other."""
+
+FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError, RecursionError)
+"""What h5py raises for a file that is not what it should be."""
 
 
-def open_for_reading(file: str | PathLike[str]) -> tuple[Any, bool]:
-    """The open HDF5 file, and whether its writer closed it.
+def open_for_reading(file: str | PathLike[str], *, truncated: bool = False) -> tuple[Any, Image]:
+    """The open HDF5 file, and the bytes under it.
+
+    Parameters
+    ----------
+    file : path
+    truncated : bool
+        Whether a file whose end is missing is read all the same, with zeros there.
 
     Raises
     ------
@@ -31,86 +43,80 @@ def open_for_reading(file: str | PathLike[str]) -> tuple[Any, bool]:
         For a file that is missing, unreadable, not HDF5, truncated, foreign, or of a newer schema.
     """
     name = File(file)
-    head = _head(name)
-    closed = head[_VERSION] < 3 or not head[_IN_USE]
-    if not closed:
-        _check_length(name)
+    image = Image(name)
     try:
-        # A file under SWMR, growing or left by a kill, can be read as such only.
-        opened = h5py.File(name, "r") if closed else h5py.File(name, "r", libver="latest", swmr=True)
-    except OSError as error:
-        raise ArchiveError(f"{name}: truncated or damaged, HDF5 cannot open it ({_reason(error)})") from None
-    try:
-        _check_schema(name, opened)
+        return _opened(name, image, truncated), image
     except BaseException:
-        opened.close()
+        image.close()
         raise
-    return opened, closed
 
 
-def _head(name: File) -> bytes:
-    """The first bytes, if they are those of an HDF5 file."""
-    if name.is_dir():
-        raise ArchiveError(f"{name}: is a directory, an archive is a file")
-    try:
-        with name.open("rb") as raw:
-            head = raw.read(_HEAD)
-    except FileNotFoundError:
-        raise ArchiveError(f"{name}: there is no such file") from None
-    except PermissionError:
-        raise ArchiveError(f"{name}: may not be read (permissions)") from None
-    if not head:
-        raise ArchiveError(f"{name}: is empty; its writer ended before anything was written")
-    if not head.startswith(_SIGNATURE):
-        raise ArchiveError(f"{name}: is not an HDF5 file, so not an archive")
-    if len(head) < _HEAD:
-        raise ArchiveError(f"{name}: truncated, only its first {len(head)} bytes are there")
-    return head
-
-
-def _check_length(name: File) -> None:
-    """Whether a file under SWMR is as long as it says: HDF5 would wait for the missing part without end.
-
-    A writer at work may be about to lengthen it, so it gets a moment.
-    """
-    end = time.monotonic() + _PATIENCE
+def _opened(name: File, image: Image, truncated: bool) -> Any:
+    end = time.monotonic() + PATIENCE
     while True:
-        head = _head(name)
-        (length,) = struct.unpack_from("<Q", head, _LENGTH)
-        missing = length - name.stat().st_size
-        if missing <= 0 and head[_IN_USE] & _SWMR:
-            return
-        if time.monotonic() > end and not head[_IN_USE] & _SWMR:
-            raise ArchiveError(f"{name}: truncated, its writer ended before the structure was complete")
-        if time.monotonic() > end:
-            raise ArchiveError(f"{name}: truncated or damaged, its last {missing} bytes are missing")
-        time.sleep(0.02)
+        try:
+            _check_length(image, truncated)
+            opened = _hdf5(name, image)
+            try:
+                _check_schema(name, opened)
+            except BaseException:
+                opened.close()
+                raise
+            return opened
+        except ArchiveError:
+            if image.closed_by_writer or time.monotonic() > end or not is_held(name):
+                raise
+        time.sleep(_PAUSE)
+        image.refresh()
+
+
+def _hdf5(name: File, image: Image) -> Any:
+    try:
+        return h5py.File(image, "r", rdcc_nbytes=_CACHE)
+    except FAULTS as error:
+        raise ArchiveError(f"{name}: truncated or damaged, HDF5 cannot open it ({short(error)})") from None
+
+
+def _check_length(image: Image, truncated: bool) -> None:
+    if image.missing and not truncated:
+        what = f"{image.file}: truncated or damaged, its last {image.missing} bytes are missing"
+        raise ArchiveError(f"{what}; `recover` keeps the rows that are sound")
+    if not image.closed_by_writer and not image.under_swmr:
+        raise ArchiveError(f"{image.file}: truncated, its writer ended before the structure was complete")
 
 
 def _check_schema(name: File, opened: Any) -> None:
     try:
         schema = opened.attrs.get("schema")
-        complete = "committed_points" in opened and "committed_paths" in opened
-    except (OSError, RuntimeError, KeyError) as error:
-        raise ArchiveError(f"{name}: truncated or damaged, its root cannot be read ({_reason(error)})") from None
+        complete = all(part in opened for part in ("committed_points", "committed_paths"))
+        checked = GROUP in opened and RECORDS in opened[GROUP]
+    except FAULTS as error:
+        raise ArchiveError(f"{name}: truncated or damaged, its root cannot be read ({short(error)})") from None
     if schema is None and not complete:
         raise ArchiveError(f"{name}: is an HDF5 file, but not an archive of paths (it has no attribute `schema`)")
     kind, _, version = str(schema).rpartition("-")
     ours, _, newest = SCHEMA.rpartition("-")
-    if kind != ours or not version.isdigit():
+    if kind != ours or not (version.isdecimal() and len(version) < 9):
         raise ArchiveError(f"{name}: has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}")
     if int(version) > int(newest):
-        writer = opened.attrs.get("library_version", "unknown")
+        try:
+            writer = str(opened.attrs.get("library_version", "unknown"))[:20]
+        except FAULTS:
+            writer = "unknown"
         raise ArchiveError(
             f"{name}: has the newer schema {schema}, this library reads up to {SCHEMA}; "
             f"upgrade to continuation {writer} or later, or read it with h5py or xarray"
         )
-    if not complete:
+    if not complete or not (checked or schema == UNCHECKED):
         raise ArchiveError(f"{name}: truncated, its writer ended before the structure was complete")
 
 
 def check_writable(file: File) -> None:
     """Whether a file may be replaced.
+
+    Parameters
+    ----------
+    file : pathlib.Path
 
     Raises
     ------
@@ -122,7 +128,3 @@ def check_writable(file: File) -> None:
         raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")
     if not os.access(file.parent, os.W_OK):
         raise ArchiveError(f"{file}: the directory {file.parent} may not be written; copy the file to another one")
-
-
-def _reason(error: BaseException) -> str:
-    return str(error).splitlines()[0][:160]

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from continuation.archive.schema import COMPONENT, EVENT_NAME
 from continuation.archive.tables import Table
 
-if TYPE_CHECKING:
-    from continuation.archive.reader import Archive
 
-
-def dataset(archive: Archive, points: Table, paths: Table) -> Any:
+def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, attributes: Mapping[str, Any]) -> Any:
     """An `xarray.Dataset` with the names, dimensions, coordinates and attributes of the file."""
     import xarray
 
@@ -21,10 +19,10 @@ def dataset(archive: Archive, points: Table, paths: Table) -> Any:
     for table in (points, paths):
         for name, column in table.columns.items():
             variables[name] = (column.dimensions, _text(table[name]), column.attributes)
-    variables["event_name"] = (EVENT_NAME.dimensions, np.array(archive.event_names), EVENT_NAME.attributes)
-    component = np.arange(archive.layout.unknowns, dtype=COMPONENT.dtype)
+    variables["event_name"] = (EVENT_NAME.dimensions, np.array(events), EVENT_NAME.attributes)
+    component = np.arange(unknowns, dtype=COMPONENT.dtype)
     coordinates = {"path": variables.pop("path"), "component": (COMPONENT.dimensions, component, COMPONENT.attributes)}
-    return xarray.Dataset(variables, coordinates, archive.attributes)
+    return xarray.Dataset(variables, coordinates, attributes)
 
 
 def dataframe(points: Table) -> Any:

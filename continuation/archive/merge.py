@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path as File
 
-from continuation.archive.copies import everything, leading, put, write_copy
+from continuation.archive.atomic import check_new
+from continuation.archive.copies import Share, everything, interrupt, leading, put, write_copy
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import open_archive
-from continuation.archive.store import check_new
+from continuation.status import Status
 
 
 def merge(
@@ -43,11 +44,56 @@ def merge(
     check_new(whole)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
-        first = leading(archives).attributes
+        first = leading([archive.contents for archive in archives]).attributes
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
         attributes = {**first, **process(), **history(first, f"merged from {len(archives)} files: {names}")}
         if title:
             attributes["title"] = title
         shares = [everything(archive) for archive in archives]
-        put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression)).close()
+        put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
     return whole
+
+
+def gather(files: Sequence[File], target: File, *, finished: bool = False) -> None:
+    """Merge the parts of a sweep, in the order of its members: of each the path that was finished, or what there is.
+
+    Parameters
+    ----------
+    files : sequence of pathlib.Path
+        What workers wrote, also those that were killed; later attempts at a member may be in other files.
+    target : pathlib.Path
+        Not made if there is nothing to go into it.
+    finished : bool
+        Leave out the paths that have no end.
+    """
+    with ExitStack() as stack:
+        archives = [stack.enter_context(open_archive(file)) for file in files]
+        chosen: dict[int, tuple[bool, int, int]] = {}
+        for k, archive in enumerate(archives):
+            ends = zip(archive.paths["member"].tolist(), archive.paths["status"].tolist(), strict=True)
+            for index, (member, status) in enumerate(ends):
+                if finished and status == int(Status.TRACING):
+                    continue
+                candidate = (status == int(Status.TRACING), k, index)
+                chosen[member] = min(chosen.get(member, candidate), candidate)
+        shares = []
+        for first, last in _runs([chosen[member][1:] for member in sorted(chosen)]):
+            archive = archives[first[0]]
+            rows = slice(archive.rows(first[1]).start, archive.rows(last[1]).stop)
+            paths = archive.paths.block(slice(first[1], last[1] + 1))
+            interrupt(paths)
+            shares.append(Share(archive.contents, paths, rows, first[1]))
+        if not shares:
+            return
+        head = leading([archive.contents for archive in archives]).attributes
+        attributes = {**head, **process(), **history(head, f"merged from the {len(archives)} files of a sweep")}
+        put(target, lambda part: write_copy(shares, part, attributes=attributes))
+
+
+def _runs(places: Sequence[tuple[int, int]]) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
+    """First and last of the runs of (file, path) that stand one after another in one file."""
+    first = 0
+    for k in range(1, len(places) + 1):
+        if k == len(places) or places[k] != (places[k - 1][0], places[k - 1][1] + 1):
+            yield places[first], places[k - 1]
+            first = k

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
-from continuation.archive.schema import COUNT_NAMES
+from continuation.archive.schema import ACCEPTED, COUNT_NAMES
 from continuation.path import Path
 from continuation.status import Kind, Status
 
@@ -24,7 +25,28 @@ _UNBROKEN = "\N{NO-BREAK SPACE}"
 
 
 def describe(archive: Archive) -> str:
-    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many."""
+    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many.
+
+    Parameters
+    ----------
+    archive : Archive
+
+    Raises
+    ------
+    ArchiveError
+        If what the file says of itself makes no sense.
+    """
+    try:
+        page = _page(archive)
+    except ArchiveError:
+        raise
+    except (ValueError, TypeError, AttributeError, LookupError, RecursionError, ArithmeticError) as error:
+        raise archive.contents.damaged(error) from error
+    # A title of somebody else's is no way to the terminal's control codes.
+    return "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
+
+
+def _page(archive: Archive) -> str:
     parts = [_head(archive)]
     if not len(archive):
         parts.append("No path was begun.")
@@ -49,7 +71,7 @@ def _head(archive: Archive) -> str:
                           ("h5py", "h5py"), ("HDF5", "hdf5"))
     )
     lines = [
-        ("file", f"{archive.file}, {_bytes(archive.file.stat().st_size)}, {about.get('schema', '')}"),
+        ("file", f"{archive.file}, {_bytes(archive.contents.size)}, {about.get('schema', '')}"),
         ("holds", f"{_plural(len(archive), 'path')}, {_plural(archive.points.size, 'point')} of "
                   f"{_plural(archive.layout.unknowns, 'unknown')}"),
         ("when", f"{about.get('created', '')} on {about.get('host', '')}"),
@@ -97,23 +119,27 @@ def _fields(tree: Any) -> str:
 
 
 def _one_path(archive: Archive, number: int) -> str:
-    path = archive.path(number)
+    path = archive.path(number, keep="ends")
     row = {name: column[0] for name, column in archive.paths.block(slice(number, number + 1)).items()}
     head = f"Path {number}: {path.status.name}"
     lines = [head, "-" * len(head), f"  {path.message}"]
     own = ", ".join(f"{name}={row[f'homotopy_{name}']:g}" for name in archive.layout.scalars)
     lines += [f"  with {own}"] if own and len(archive) > 1 else []
     if path.steps:
-        lines += _course(path)
+        lines += _course(archive, number, path)
         lines += _events(path)
     work = _work({name: int(row[name]) for name in COUNT_NAMES.values()})
     lines += ["", _wrapped("  work: ", f"{work}; {row['wall_time']:.3g} s")]
     return "\n".join(lines)
 
 
-def _course(path: Path) -> list[str]:
+def _course(archive: Archive, number: int, path: Path) -> list[str]:
     start, end = path.steps[0], path.steps[-1]
-    lengths = np.array([step.step_length for step in path.steps[1:]])
+    accepted = archive.points.some("role", archive.rows(number)) == ACCEPTED
+    lengths, residuals, angles = (
+        archive.points.some(name, archive.rows(number))[accepted] for name in ("step_length", "residual_norm", "angle")
+    )
+    lengths = lengths[1:]
     lines = [
         "",
         f"  {'':<8}{'lambda':>14}{'arclength':>14}  y",
@@ -122,7 +148,7 @@ def _course(path: Path) -> list[str]:
         "",
     ]
     if lengths.size:
-        residual, angle = max(s.residual_norm for s in path.steps), max(s.angle for s in path.steps)
+        residual, angle = residuals.max(), angles.max()
         lines.append(
             f"  {_plural(lengths.size, 'step')} of length {lengths.min():.3g} to {lengths.max():.3g}, median "
             f"{np.median(lengths):.3g}; largest residual {residual:.1e}; largest angle {angle:.2g} rad"

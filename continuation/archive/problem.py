@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+import zlib
+from collections.abc import Mapping
+from typing import Any, Literal
 
 import numpy as np
 
+from continuation.archive.checks import DamageError, digest
 from continuation.archive.codec import UnstorableError, encode, order
+from continuation.archive.datasets import dataset, names
 
 GROUP = "problem"
 
@@ -34,18 +38,43 @@ def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
     return json.dumps(tree), arrays
 
 
-def write_problem(file: Any, description: str, arrays: dict[str, Any]) -> None:
+def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> None:
     """Put them into a new file."""
     group = file.create_group(GROUP)
     group.attrs["description"] = description
+    group.attrs["checksum"] = np.uint32(zlib.crc32(description.encode()))
     for name, array in arrays.items():
-        group.create_dataset(name, data=array).attrs["order"] = order(array)
+        stored = group.create_dataset(name, data=array)
+        stored.attrs["order"] = order(array)
+        stored.attrs["checksum"] = np.uint32(digest(array))
 
 
-def read_problem(file: Any) -> tuple[str, dict[str, Any]]:
-    """The same two things, from a file; no description where it has none."""
-    if GROUP not in file:
+def read_problem(group: Any, checked: bool, limit: int) -> tuple[str, dict[str, Any]]:
+    """The same two things, from a file; no description where it has none.
+
+    Parameters
+    ----------
+    group : h5py.Group or None
+    checked : bool
+        Whether there are checksums.
+    limit : int
+        Bytes that a compressed array may unfold to.
+
+    Raises
+    ------
+    ValueError
+        If they are not what was written.
+    """
+    if group is None:
         return json.dumps({"unstorable": "the file holds no problem"}), {}
-    group = file[GROUP]
-    arrays = {name: np.asarray(group[name][()], order=group[name].attrs["order"]) for name in group}
-    return str(group.attrs["description"]), arrays
+    description = str(group.attrs["description"])
+    if checked and zlib.crc32(description.encode(errors="replace")) != group.attrs["checksum"]:
+        raise DamageError("the description of its problem is not what was written")
+    arrays = {}
+    for name in names(group):
+        found = dataset(group, name, None, None, limit)
+        lying: Literal["C", "F"] = "F" if found.attrs["order"] == "F" else "C"
+        arrays[name] = np.asarray(found[()], order=lying)
+        if checked and digest(arrays[name]) != found.attrs["checksum"]:
+            raise DamageError(f"the array {name} of its problem is not what was written")
+    return description, arrays

@@ -21,9 +21,10 @@ import scipy
 from continuation.archive.checkpoint import OPTIONS
 from continuation.archive.codec import UnstorableError, encode, inline
 from continuation.archive.schema import SCHEMA
+from continuation.archive.trust import ENTRY_POINTS
 from continuation.step.tracer import Tracer
+from continuation.version import __version__
 
-ENTRY_POINTS = "continuation.homotopies"
 _THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 
@@ -34,22 +35,18 @@ def now() -> str:
 
 def history(attributes: Mapping[str, Any], what: str) -> dict[str, str]:
     """The attribute `history` of CF, one line longer."""
-    import continuation
-
-    line = f"{now()} {what} (continuation {continuation.__version__})"
+    line = f"{now()} {what} (continuation {__version__})"
     return {"history": "\n".join(filter(None, (attributes.get("history", ""), line)))}
 
 
 @lru_cache
 def software() -> dict[str, str]:
     """Versions of everything below us. BLAS decides the last bits, so it is named with its threads."""
-    import continuation
-
     blas = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
     given = [f"{os.environ[name]} ({name})" for name in _THREADS if name in os.environ]
     return {
         "library": "continuation",
-        "library_version": continuation.__version__,
+        "library_version": __version__,
         "python_version": platform.python_version(),
         "numpy_version": np.__version__,
         "scipy_version": scipy.__version__,

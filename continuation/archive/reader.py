@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
@@ -13,12 +13,12 @@ import numpy as np
 
 from continuation.archive import frames, record
 from continuation.archive.checkpoint import Checkpoint, unpack
-from continuation.archive.errors import ArchiveError
-from continuation.archive.files import open_for_reading
-from continuation.archive.problem import read_problem
+from continuation.archive.contents import Contents
+from continuation.archive.datasets import LIMIT
 from continuation.archive.rows import from_columns
-from continuation.archive.schema import COUNT_NAMES, EVENT_NAME, TANGENT_COLUMNS, Layout
-from continuation.archive.store import RESUME
+from continuation.archive.schema import COUNT_NAMES
+from continuation.archive.stored import events as events_of
+from continuation.archive.stored import stored_path
 from continuation.archive.tables import Table
 from continuation.citation import entries
 from continuation.counts import Counts
@@ -48,30 +48,25 @@ class Archive(Sequence[Path]):
         False for a file that is growing, or was left by a kill: `recover` makes it whole.
     """
 
-    def __init__(self, file: str | PathLike[str]) -> None:
+    def __init__(self, file: str | PathLike[str], *, limit: int = LIMIT) -> None:
         self.file = File(file)
-        self._h5, self.closed_by_writer = open_for_reading(self.file)
+        self.contents = contents = Contents(file, limit=limit)
+        self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
+        self.layout, self.event_names = contents.layout, contents.event_names
+        self._last_checkpoint = contents.committed.checkpoint if contents.checked else None
+        self._committed_paths, self._committed_points = contents.committed.paths, contents.committed.points
         try:
-            self._read_structure()
-        except (OSError, RuntimeError, KeyError, ValueError) as error:
-            self._h5.close()
-            raise self._damaged(error) from error
+            self._read_lengths()
+        except BaseException:
+            self.close()
+            raise
 
-    def _read_structure(self) -> None:
-        file = self._h5
-        self.attributes: dict[str, Any] = dict(file.attrs)
-        # Paths first: their rows are counted after the points they need, so this order sees no path without its points.
-        self._committed_paths = int(file["committed_paths"][()])
-        self._committed_points = int(file["committed_points"][()])
-        self.layout = _layout(file)
-        # Raw bytes: h5netcdf, netCDF4 and h5py each decode text in their own way, HDF5 only stores it.
-        names = file["event_name"].astype(EVENT_NAME.storage)[:]
-        self.event_names = tuple(name.decode() for name in names)
-        lengths = self._fetch_path("n_points", slice(0, self._committed_paths))
+    def _read_lengths(self) -> None:
+        lengths = self.contents.read("path", "n_points", slice(0, self._committed_paths))
         self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
         rest = self._committed_points - int(self._first_rows[-1])
-        if rest < 0:
-            raise ValueError(f"{-rest} points of its paths are missing")
+        if rest < 0 or np.any(lengths < 0):
+            raise self.contents.damaged(ValueError("its paths have other lengths than its points"))
         self._unended: record.Record | None = None
         if rest:
             self._first_rows = np.append(self._first_rows, self._committed_points)
@@ -95,21 +90,46 @@ class Archive(Sequence[Path]):
             return [self.path(i) for i in range(*index.indices(len(self)))]
         return self.path(index)
 
-    def path(self, index: int) -> Path:
+    def path(self, index: int, *, keep: str = "all") -> Path:
         """One path, as it was traced: status, message, steps, events, counts.
 
+        With ``keep="ends"`` its steps are read from the file when they are asked for, also after the archive is closed.
+
         Tangents are NaN where the file holds none; then `Path.__call__` interpolates linearly between points.
+
+        Parameters
+        ----------
+        index : int
+            0 is the first; from the end where it is negative.
+
+        Returns
+        -------
+        Path
 
         Raises
         ------
         IndexError
             If there is no such path.
+        ValueError
+            For another `keep` than ``"all"`` or ``"ends"``.
         """
+        if keep not in ("all", "ends"):
+            raise ValueError(f'keep: expected "all" or "ends", found {keep!r}')
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         index %= len(self)
-        block = self.points.block(self.rows(index))
-        steps, events = from_columns(block, self.event_names, self.layout.observed)
+        try:
+            return self._path(index, keep == "all")
+        except (ValueError, IndexError) as error:
+            raise self.contents.damaged(error) from error
+
+    def _path(self, index: int, whole: bool) -> Path:
+        steps: Any
+        if whole:
+            block = self.points.block(self.rows(index))
+            steps, events = from_columns(block, self.event_names, self.layout.observed)
+        else:
+            steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
         row = {name: column[0] for name, column in self.paths.block(slice(index, index + 1)).items()}
         end_error, winding = float(row["end_error"]), int(row["winding_number"])
         return Path(
@@ -137,7 +157,13 @@ class Archive(Sequence[Path]):
         return f"<Archive {self.file}: {size}{state}>"
 
     def rows(self, index: int) -> slice:
-        """Where the path's rows are in the point table."""
+        """Where the path's rows are in the point table.
+
+        Parameters
+        ----------
+        index : int
+            Of the path, at least 0.
+        """
         return slice(int(self._first_rows[index]), int(self._first_rows[index + 1]))
 
     # -- views ------------------------------------------------------------------------------------------------
@@ -189,7 +215,7 @@ class Archive(Sequence[Path]):
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
-        return frames.dataset(self, self.points, self.paths)
+        return frames.dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
 
     def to_dataframe(self) -> Any:
         """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
@@ -199,9 +225,7 @@ class Archive(Sequence[Path]):
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""
-        if RESUME not in self._h5:
-            return None
-        found = [unpack(raw.tobytes()) for raw in self._h5[RESUME]["slots"][:]]
+        found = [unpack(raw) for raw in self.contents.slots()]
         valid = [c for c in found if c is not None and self._covers(c)]
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
 
@@ -212,13 +236,13 @@ class Archive(Sequence[Path]):
         rows = self.rows(checkpoint.path)
         return bool(rows.start + checkpoint.rows <= rows.stop)
 
-    def problem(self) -> tuple[str, dict[str, Any]]:
+    def problem(self) -> tuple[str, Mapping[str, Any]]:
         """The first homotopy's description (JSON), and its arrays."""
-        return read_problem(self._h5)
+        return self.contents.problem()
 
     def close(self) -> None:
         """Close the file."""
-        self._h5.close()
+        self.contents.close()
 
     def __enter__(self) -> Archive:
         return self
@@ -231,21 +255,11 @@ class Archive(Sequence[Path]):
     # -- within -----------------------------------------------------------------------------------------------
 
     def _fetch_point(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        try:
-            values: np.ndarray[Any, Any] = self._h5[name][rows]
-        except (OSError, RuntimeError, KeyError) as error:
-            raise self._damaged(error) from error
-        if len(values) < rows.stop - rows.start:
-            raise self._damaged(ValueError(f"{name} has fewer rows than were committed"))
-        return values
+        return self.contents.read("point", name, rows)
 
     def _fetch_path(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        column = {column.name: column for column in self.layout.path_columns}[name]
-        dataset = self._h5[name].astype(column.storage) if column.length else self._h5[name]
-        try:
-            values: np.ndarray[Any, Any] = dataset[rows.start : min(rows.stop, self._committed_paths)]
-        except (OSError, RuntimeError, KeyError) as error:
-            raise self._damaged(error) from error
+        committed = slice(min(rows.start, self._committed_paths), min(rows.stop, self._committed_paths))
+        values = self.contents.read("path", name, committed)
         if rows.stop > self._committed_paths and self._unended is not None:
             values = np.concatenate((values, record.to_columns(self._unended, self.layout)[name]))
         return values
@@ -257,14 +271,16 @@ class Archive(Sequence[Path]):
         self._unended = row
         checkpoint = self.checkpoint()
         if checkpoint is not None and checkpoint.path == number:
-            row["member"] = number if checkpoint.run["member"] is None else checkpoint.run["member"]
+            told = checkpoint.run.get("member")
+            row["member"] = number if told is None else int(told)
+        mine = checkpoint is not None and checkpoint.path == number
+        if checkpoint is not None and mine and self._last_checkpoint in (None, checkpoint.sequence):
             row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
             row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
+        else:
+            # An older checkpoint is good to resume from, and tells the work of then.
+            row |= {**dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         return row
-
-    def _damaged(self, error: BaseException) -> ArchiveError:
-        reason = str(error).splitlines()[0][:160]
-        return ArchiveError(f"{self.file}: truncated or damaged ({reason})")
 
 
 class Selection:
@@ -287,32 +303,30 @@ class Selection:
 
     def to_xarray(self) -> Any:
         """The selected points and paths as an `xarray.Dataset`; ``path_index`` keeps the numbers of the file."""
-        return frames.dataset(self.archive, self.points, self.paths)
+        archive = self.archive
+        return frames.dataset(
+            self.points, self.paths, archive.event_names, archive.layout.unknowns, archive.attributes
+        )
 
     def to_dataframe(self) -> Any:
         """The selected points as a `pandas.DataFrame`."""
         return frames.dataframe(self.points)
 
 
-def _layout(file: Any) -> Layout:
-    def named(prefix: str) -> tuple[str, ...]:
-        return tuple(sorted(name.removeprefix(prefix) for name in file if name.startswith(prefix)))
-
-    return Layout(
-        unknowns=int(file["y"].shape[1]),
-        controller=int(file["controller_state"].shape[1]),
-        observed=named("observed_"),
-        scalars=named("homotopy_"),
-        tangents=all(column.name in file for column in TANGENT_COLUMNS),
-    )
-
-
-def open_archive(file: str | PathLike[str]) -> Archive:
+def open_archive(file: str | PathLike[str], *, limit: int = LIMIT) -> Archive:
     """Open an archive for reading; also one that is still growing, or was left by a kill.
+
+    Nothing in the file is executed, imported or obeyed. Every block of rows is checked when it is read.
+
+    Parameters
+    ----------
+    file : path
+    limit : int
+        Bytes that one compressed dataset may unfold to. Others are no larger than the file.
 
     Raises
     ------
     ArchiveError
-        One line for a file that is missing, unreadable, not HDF5, foreign, truncated, or of a newer schema.
+        One line for a file that is missing, unreadable, not HDF5, foreign, truncated, damaged, or of a newer schema.
     """
-    return Archive(file)
+    return Archive(file, limit=limit)

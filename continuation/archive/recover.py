@@ -1,28 +1,32 @@
-"""`recover`: what a killed writer left, made into a whole file."""
+"""`recover`: what a killed writer or a damaged disk left, made into a whole file."""
 
 from __future__ import annotations
 
 import os
-import socket
+from collections.abc import Mapping
+from contextlib import closing
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
 from continuation.archive.checkpoint import Checkpoint, pack
-from continuation.archive.copies import Share, put, write_copy
+from continuation.archive.contents import Contents
+from continuation.archive.copies import everything, interrupt, put, write_copy
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import check_writable
+from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
-from continuation.archive.reader import Archive, open_archive
-from continuation.archive.schema import TEXT, text
+from continuation.archive.reader import open_archive
+from continuation.archive.salvage import nothing, salvaged
 from continuation.status import Status
 
 
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     """Make the file of a killed writer whole: its committed rows, copied, in its place.
 
-    A path without an end gets the status INTERRUPTED, and can be resumed. A file that was closed properly stays as
-    it is.
+    A path without an end gets the status INTERRUPTED, and can be resumed. A file that was closed properly and is sound
+    stays as it is. Of a damaged one the sound rows are kept: a path is cut before its first row that is not what was
+    written, and the damaged file is kept beside as ``NAME.damaged``.
 
     Parameters
     ----------
@@ -39,28 +43,66 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     Raises
     ------
     ArchiveError
-        If it is no archive, is damaged beyond its committed rows, is read-only, or is being written.
+        If it is no archive, its structure is damaged, it is read-only, or is being written.
     """
     name = File(file)
-    with open_archive(name) as archive:
-        if archive.closed_by_writer and (not len(archive) or archive.paths["status"][-1] != Status.TRACING):
-            return name
-        if not archive.closed_by_writer and not force:
-            check_dead(archive)
-        attributes = {**archive.attributes, **history(archive.attributes, "recovered after its writer was killed")}
-        share = Share(archive, len(archive), archive.points.size, _ended)
-        slots = kept(archive.checkpoint())
-        check_writable(name)
-        put(name, lambda part: write_copy([share], part, attributes=attributes, checkpoints=slots)).close()
+    with closing(Contents(name, salvage=True)) as contents:
+        lost = {table: contents.unsound(table) for table in ("point", "path")}
+        damaged = any(lost.values())
+        if not damaged and not contents.flaws:
+            return _ended(name, force)
+        real = File(os.path.realpath(name))
+        with closing(own(contents, real, force=force)):
+            shares = salvaged(contents, lost)
+            if not shares and not damaged:
+                shares = [nothing(contents)]
+            if not shares:
+                raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
+            dropped = sum(stop - start for start, stop in lost["point"])
+            what = f"recovered: {'; '.join(contents.flaws) or 'damaged'}; {dropped} points were not what was written"
+            attributes = _legible({**contents.attributes, **history(contents.attributes, what)})
+            # What is dropped may be worth more to somebody else than it is to us.
+            if damaged:
+                _keep_aside(real)
+            put(real, lambda part: write_copy(shares, part, attributes=attributes), replace=True)
     return name
 
 
-def _ended(block: dict[str, Any]) -> dict[str, Any]:
-    """A path that was being traced when its writer died counts as interrupted."""
-    open_ = block["status"] == int(Status.TRACING)
-    block["status"][open_] = int(Status.INTERRUPTED)
-    block["message"][open_] = text(f"{Status.INTERRUPTED} Its writer was killed.", TEXT)
-    return block
+def _ended(name: File, force: bool) -> File:
+    """A sound file, closed, with its last path ended."""
+    with open_archive(name) as archive:
+        if archive.closed_by_writer and (not len(archive) or archive.paths["status"][-1] != Status.TRACING):
+            return name
+        real = File(os.path.realpath(name))
+        with closing(own(archive.contents, real, force=force)):
+            attributes = {**archive.attributes, **history(archive.attributes, "recovered after its writer was killed")}
+            share = everything(archive)
+            interrupt(share.paths)
+            slots = kept(archive.checkpoint())
+            put(
+                real, lambda part: write_copy([share], part, attributes=attributes, checkpoints=slots), replace=True
+            )
+    return name
+
+
+def _keep_aside(file: File) -> None:
+    """The damaged file under a name of its own."""
+    aside = file.with_name(f"{file.name}.damaged")
+    try:
+        os.link(file, aside)
+    except FileExistsError:
+        raise ArchiveError(f"{file}: is damaged, and would be kept as {aside.name}, which exists already") from None
+    except OSError as error:
+        raise ArchiveError(f"{file}: is damaged, and cannot be kept as {aside.name} ({error.strerror})") from None
+
+
+def _legible(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Attributes that can be written again, whatever happened to their text."""
+    return {
+        name.encode(errors="replace").decode(): value.encode(errors="replace").decode()
+        if isinstance(value, str) else value
+        for name, value in attributes.items()
+    }  # fmt: skip
 
 
 def kept(checkpoint: Checkpoint | None) -> dict[int, bytes]:
@@ -68,23 +110,21 @@ def kept(checkpoint: Checkpoint | None) -> dict[int, bytes]:
     return {} if checkpoint is None else {0: pack(checkpoint)}
 
 
-def check_dead(archive: Archive) -> None:
-    """Refuse a file whose writer may still be at work.
+def own(contents: Contents, file: File, *, force: bool = False) -> Lock:
+    """The right to replace a file that was read.
+
+    Parameters
+    ----------
+    contents : Contents
+    file : pathlib.Path
+        The file itself, no link to it.
+    force : bool
+        Also if its writer seems to be at work.
 
     Raises
     ------
     ArchiveError
-        If the process that it names is alive on this host.
+        If it may not be written, is being written, or was replaced since it was opened.
     """
-    process, host = int(archive.attributes.get("process", 0)), archive.attributes.get("host")
-    if host != socket.gethostname() or process <= 0:
-        return
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return
-    except PermissionError:
-        pass
-    raise ArchiveError(
-        f"{archive.file}: process {process}, which writes it, seems to be alive; end it first, or say force=True"
-    )
+    check_writable(file)
+    return locked(file, contents.descriptor, f"process {contents.attributes.get('process', 'unknown')}", force=force)

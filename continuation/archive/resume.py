@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+import os
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack, closing
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
 import numpy as np
 
-from continuation.archive.checkpoint import Checkpoint, whole
-from continuation.archive.codec import UnknownError, decode
-from continuation.archive.copies import Share, put, write_copy
+from continuation.archive.atomic import beside, check_new, short
+from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
+from continuation.archive.copies import leading_paths, write_copy
 from continuation.archive.errors import ArchiveError
-from continuation.archive.files import check_writable
+from continuation.archive.live import publish_live
+from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.recover import check_dead, kept
-from continuation.archive.store import Store, check_new
+from continuation.archive.recover import kept, own
+from continuation.archive.store import Store
+from continuation.archive.stored import kept_every, stored_path
+from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.path import Path
 from continuation.status import Status
@@ -38,6 +43,8 @@ def resume(
     *,
     archive: str | PathLike[str] | None = None,
     observers: tuple[Observer, ...] = (),
+    trust: Sequence[Any] = (),
+    keep: str = "all",
     **options: Unpack[Options],
 ) -> Path:
     """Go on with the last path of an archive; the points that follow are bit for bit those of an uninterrupted trace.
@@ -55,6 +62,11 @@ def resume(
     archive : path, optional
         A new file to write to; else `file` itself goes on.
     observers : tuple of Observer
+    trust : sequence of class or function
+        What may be made besides the parts of the library and the homotopies that installed packages register: a file
+        names classes, and is not obeyed.
+    keep : str
+        Which steps the path keeps in memory, as for `PathLog`.
     {options}
 
     Returns
@@ -71,21 +83,30 @@ def resume(
         If the homotopy given is not the one of the file.
     """
     name = File(file)
-    target = name if archive is None else File(archive)
+    target = File(os.path.realpath(name)) if archive is None else File(archive)
     if archive is not None:
         check_new(target)
-    with open_archive(name) as source:
+    known = registry(trust)
+    with ExitStack() as stack:
+        source = stack.enter_context(open_archive(name))
+        if archive is None:
+            stack.enter_context(closing(own(source.contents, target)))
+        elif not source.closed_by_writer and is_held(name):
+            raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
-        tracer = Tracer(
-            _homotopy(source, checkpoint, homotopy), state=checkpoint.state, **_options(source, checkpoint, options)
-        )
+        tracer = _tracer(source, checkpoint, known, homotopy, options)
         rows = source.rows(checkpoint.path).start + checkpoint.rows
-        _check_homotopy(tracer.homotopy, checkpoint, float(source.points["residual_norm"][rows - 1]))
-        before = source.path(checkpoint.path)
-        store = _beginning(source, checkpoint, rows, target)
-    tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
+        residual = source.points.some("residual_norm", slice(rows - 1, rows))
+        _check_homotopy(tracer.homotopy, checkpoint, float(residual[0]))
+        every = kept_every(keep)
+        before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
+        store = _beginning(source, checkpoint, rows, target, archive is None)
+    if every == 1:
+        tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
+    else:
+        tracer.path.steps = _stored(store.file, checkpoint, every)
     tracer.path.events[:] = [event for event in before.events if event.step <= checkpoint.state.index]
-    log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer)
+    log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer, every)
     tracer.observers = (log, *observers)
     try:
         _run(tracer, checkpoint)
@@ -93,6 +114,26 @@ def resume(
         log.close()
     tracer.path.seconds += checkpoint.seconds
     return tracer.path
+
+
+def _stored(file: File, checkpoint: Checkpoint, every: int) -> Any:
+    """The steps up to the checkpoint, in the new file."""
+    with open_archive(file) as archive:
+        return stored_path(archive, open_archive, file, checkpoint.path, every)
+
+
+def _tracer(
+    source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Any, options: Mapping[str, Any]
+) -> Tracer:
+    homotopy = stored_homotopy(source, checkpoint, known) if given is None else given
+    settings = _options(source, checkpoint, known, options)
+    try:
+        return Tracer(homotopy, state=checkpoint.state, **settings)
+    except (TypeError, ValueError, AttributeError, RecursionError) as error:
+        fault = str(error).partition(":")[0]
+        if fault in options or (given is not None and fault not in settings):
+            raise
+        raise ArchiveError(f"{source.file}: what it stores cannot be used ({short(error)})") from None
 
 
 def _run(tracer: Tracer, checkpoint: Checkpoint) -> None:
@@ -106,8 +147,6 @@ def _run(tracer: Tracer, checkpoint: Checkpoint) -> None:
 
 
 def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
-    if not source.closed_by_writer:
-        check_dead(source)
     if not len(source):
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
@@ -122,34 +161,44 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     return checkpoint
 
 
-def _homotopy(source: Archive, checkpoint: Checkpoint, given: Any) -> Any:
-    if given is not None:
-        return given
-    tree: Any = checkpoint.run["homotopy"]
-    fetch: Callable[[Any], Any] = whole
-    if tree.get("problem"):
-        text, arrays = source.problem()
-        tree, fetch = json.loads(text), arrays.__getitem__
+def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
+    """The homotopy, made of what the file says of it; `known` is the `registry`.
+
+    Raises
+    ------
+    ArchiveError
+        If it was not stored, or is not among what is trusted.
+    """
     try:
+        tree: Any = checkpoint.run["homotopy"]
+        fetch: Callable[[Any], Any] = whole
+        if tree.get("problem"):
+            text, arrays = source.problem()
+            tree, fetch = json.loads(text), arrays.__getitem__
         if "unstorable" in tree:
             raise UnknownError(tree["unstorable"])
-        return decode(tree, fetch)
-    except UnknownError as error:
-        reason = f"the homotopy cannot be made from the file ({error}); pass homotopy="
+        return decode(tree, fetch, known)
+    except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
+        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy="
         raise ArchiveError(f"{source.file}: {reason}") from None
 
 
-def _options(source: Archive, checkpoint: Checkpoint, given: Mapping[str, Any]) -> dict[str, Any]:
+def _options(
+    source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
+) -> dict[str, Any]:
     stored = {}
-    for name, tree in checkpoint.run["options"].items():
+    trees: Any = checkpoint.run.get("options")
+    for name in OPTIONS:
         if name in given:
             continue
         try:
+            tree = trees[name]
             if isinstance(tree, dict) and "unstorable" in tree:
                 raise UnknownError(tree["unstorable"])
-            stored[name] = decode(tree, whole)
-        except UnknownError as error:
-            raise ArchiveError(f"{source.file}: {name} cannot be made from the file ({error}); pass {name}=") from None
+            stored[name] = decode(tree, whole, known)
+        except (UnknownError, KeyError, TypeError) as error:
+            reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
+            raise ArchiveError(f"{source.file}: {reason}") from None
     return {**stored, **given}
 
 
@@ -164,21 +213,12 @@ def _check_homotopy(homotopy: Any, checkpoint: Checkpoint, stored: float) -> Non
         raise ValueError(f"homotopy: expected the archive's residual {stored:.2g} at its last point, found {found:.2g}")
 
 
-def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File) -> Store:
-    """The file up to the checkpoint, ready to grow.
-
-    It is never closed on the way: a file opened again is, for a moment, neither closed nor safe from a kill.
-    """
-    if target == source.file:
-        check_writable(target)
+def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File, replace: bool) -> Store:
+    """The file up to the checkpoint, ready to grow, and already so when it takes the place of the old one."""
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
-    share = Share(source, checkpoint.path, rows)
-
-    def write(part: File) -> Store:
+    share = leading_paths(source, checkpoint.path, rows)
+    with beside(target) as part:
         store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
-        store.share()
-        return store
-
-    return put(target, write)
+        return publish_live(store, target, replace=replace)

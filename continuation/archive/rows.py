@@ -84,9 +84,12 @@ def _observed(row: Row, name: str) -> float:
 
 
 def from_columns(
-    block: Mapping[str, Any], names: Sequence[str], observed: Sequence[str]
+    block: Mapping[str, Any], names: Sequence[str], observed: Sequence[str], first: int = 0
 ) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps and events of one path again. Tangents are NaN where the archive does not hold them."""
+    """Steps and events of one path again, the first step with the index `first`.
+
+    Tangents are NaN where the archive does not hold them.
+    """
     points = np.column_stack((block["y"], block["parameter"]))
     tangents = np.full_like(points, _NAN)
     if "tangent_y" in block:
@@ -97,12 +100,12 @@ def from_columns(
     events: list[LocatedEvent] = []
     for i in range(len(points)):
         if cells["event_index"][i] != NO_EVENT:
-            events.append(_event(cells, i, points[i], tangents[i], names, len(steps)))
+            events.append(_event(cells, i, points[i], tangents[i], names, first + len(steps)))
         if cells["role"][i] == ACCEPTED:
             seen = {name: column[i] for name, column in extras.items()}
-            steps.append(_step(cells, i, points[i], tangents[i], seen, len(steps)))
-    ends = (event.step < len(steps) and np.array_equal(event.u, steps[event.step].u) for event in events)
-    events = [evolve(event, ends_step=end) for event, end in zip(events, ends)]
+            steps.append(_step(cells, i, points[i], tangents[i], seen, first + len(steps)))
+    accepted = {step.index: step.u for step in steps}
+    events = [evolve(e, ends_step=e.step in accepted and np.array_equal(e.u, accepted[e.step])) for e in events]
     return (_joined(steps) if "tangent_y" in block else steps), events
 
 

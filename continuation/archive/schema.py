@@ -1,8 +1,8 @@
-"""The schema `continuation-path-1`: names, types, units and meanings of everything in the two tables."""
+"""The schema `continuation-path-2`: names, types, units and meanings of everything in the two tables."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import attrs
@@ -12,8 +12,11 @@ from attrs import field, frozen
 from continuation.counts import Counts
 from continuation.status import Kind, Status
 
-SCHEMA = "continuation-path-1"
-"""Additions keep the name; a change of meaning would be `continuation-path-2`, which this reader refuses."""
+SCHEMA = "continuation-path-2"
+"""Additions keep the name; a change of meaning would be `continuation-path-3`, which this reader refuses."""
+
+UNCHECKED = "continuation-path-1"
+"""The same tables without checksums: read as they are, since nothing tells what was written."""
 
 TEXT = 240
 """Bytes (UTF-8) of a path's message."""
@@ -170,7 +173,39 @@ class Layout:
         return tuple(lengths[name] for name in column.dimensions[1:])
 
 
+def check_names(prefix: str, names: Iterable[str]) -> None:
+    """Whether names can be those of columns ``<prefix><name>`` in a file that every tool reads.
+
+    Parameters
+    ----------
+    prefix : str
+    names : iterable of str
+
+    Raises
+    ------
+    ValueError
+        If one is empty, longer than 100 bytes, not text, or holds a slash, a NUL or another control character.
+    """
+    for name in names:
+        if not isinstance(name, str) or not name or not name.isprintable() or "/" in name or name != name.strip():
+            raise ValueError(f"{prefix}: expected names of printable characters without a slash, found {name!r:.60}")
+        if len(name.encode(errors="replace")) > _COLUMN_NAME or not _encodable(name):
+            raise ValueError(f"{prefix}: expected names of at most {_COLUMN_NAME} bytes of UTF-8, found {name!r:.60}")
+
+
+def _encodable(name: str) -> bool:
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+_COLUMN_NAME = 100
+"""netCDF allows 256 bytes a name, the prefix included."""
+
+
 def text(value: str, length: int) -> bytes:
     """UTF-8 of at most `length` bytes, cut between characters."""
-    raw = value.encode()
+    raw = value.encode(errors="replace")
     return raw if len(raw) <= length else raw[:length].decode(errors="ignore").encode()

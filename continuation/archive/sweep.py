@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
+import glob
 import os
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Executor, Future, as_completed, wait
+import secrets
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from contextlib import suppress
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
-from attrs import frozen
+from attrs import define, field
 
+from continuation.archive.atomic import check_new
 from continuation.archive.errors import ArchiveError
-from continuation.archive.merge import merge
+from continuation.archive.merge import gather
 from continuation.archive.reader import open_archive
-from continuation.archive.record import sentence
-from continuation.archive.store import check_new
+from continuation.archive.workers import Batch, Result, failed, work
 from continuation.archive.writer import PathLog
-from continuation.path import LocatedEvent, Path, Step
+from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import Options, check_names
-from continuation.step.tracer import Tracer
 
 Progress = Callable[[int, int], None]
 _PARTS_PER_WORKER = 4
+_GRACE = 0.7
+"""Seconds that workers get to end their paths after Ctrl-C."""
 
 
 def trace_many(
@@ -33,13 +38,15 @@ def trace_many(
     archive: str | PathLike[str] | None = None,
     *,
     progress: Progress | None = None,
+    timeout: float | None = None,
     **options: Unpack[Options],
 ) -> Sequence[Path]:
     """Trace many homotopies.
 
-    A homotopy that raises costs its own path only: that one has the status INTERRUPTED and the exception's text as its
-    message. The order is that of the homotopies, whatever the order in which workers finish. Ctrl-C keeps the paths
-    that are finished.
+    A homotopy that raises, exits, ends its worker's process, takes longer than the timeout or cannot be sent to a
+    worker costs its own path only: that one has the status INTERRUPTED and the exception's text as its message. The
+    order is that of the homotopies, whatever the order in which workers finish. Ctrl-C keeps the paths that are
+    finished, and ends within about a second.
 
     Parameters
     ----------
@@ -48,10 +55,13 @@ def trace_many(
     executor : concurrent.futures.Executor, optional
         A process pool, dask's ``Client.get_executor()``, ...; without one, the calling process does it all.
     archive : path, optional
-        One file with all paths. Workers write files of their own, ``name.0001.h5``, ..., which are merged into it and
-        removed.
+        One file with all paths. Workers write files of their own, ``name.sweep-xxxxxxxx.0001.h5``, ..., which are
+        merged into it and removed. If this process is killed they stay, to be merged, and the sweep can be run again.
     progress : callable, optional
         ``progress(done, total)``, called in this process.
+    timeout : float, optional
+        Seconds that one homotopy may take with a process pool, whose processes are ended then. (`Budget.seconds` is
+        looked at between steps, and so never where a homotopy does not come back.)
     **options
         As for `continuation.trace`, the same for all; `start` is every homotopy's own.
 
@@ -70,104 +80,20 @@ def trace_many(
         After Ctrl-C, when everything finished is in the archive.
     """
     check_names(options, owned={"start": "where every homotopy has its own"})
+    if timeout is not None and not timeout > 0:
+        raise ValueError(f"timeout: expected a positive number of seconds, found {timeout!r}")
     tasks = list(homotopies)
     target = None if archive is None else File(archive)
     if target is not None:
         check_new(target)
     report = progress or _silent
     if executor is None:
-        result = _work(_Batch(tasks, 0, target, None, options), lambda done: report(done, len(tasks)))
+        result = work(Batch(tasks, 0, target, None, options), lambda done: report(done, len(tasks)))
         if result.stopped:
             raise KeyboardInterrupt
     else:
-        result = _spread(executor, tasks, target, report, options)
+        result = _spread(executor, tasks, target, report, timeout, options)
     return result.paths if target is None else open_archive(target)
-
-
-@frozen(eq=False)
-class _Batch:
-    """Homotopies for one worker, the number of the first, and the file for their paths."""
-
-    homotopies: Sequence[Any]
-    first: int
-    file: File | None
-    stop: File | None
-    options: Options
-
-
-@frozen(eq=False)
-class _Result:
-    """The paths of a batch (none where they are in a file), and whether Ctrl-C ended it."""
-
-    paths: list[Path]
-    stopped: bool = False
-
-
-@frozen(eq=False)
-class _Held:
-    """A log whose path is not ended by the tracer but by the sweep, which knows of an exception."""
-
-    log: PathLog
-
-    def step(self, tracer: Tracer, step: Step) -> None:
-        self.log.step(tracer, step)
-
-    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        self.log.event(tracer, event)
-
-    def end(self, tracer: Tracer) -> None:
-        """Not yet."""
-
-
-def _work(batch: _Batch, report: Callable[[int], None] | None = None) -> _Result:
-    if batch.file is None:
-        return _trace_batch(batch, None, report)
-    with PathLog(batch.file) as log:
-        return _trace_batch(batch, log, report)
-
-
-def _trace_batch(batch: _Batch, log: PathLog | None, report: Callable[[int], None] | None) -> _Result:
-    paths: list[Path] = []
-    for i, homotopy in enumerate(batch.homotopies):
-        if batch.stop is not None and batch.stop.exists():
-            return _Result(paths, stopped=True)
-        if log is not None:
-            log.member = batch.first + i
-        path, stopped = _one(homotopy, log, batch.options)
-        if log is None:
-            paths.append(path)
-        if stopped:
-            return _Result(paths, stopped=True)
-        if report is not None:
-            report(i + 1)
-    return _Result(paths)
-
-
-def _one(homotopy: Any, log: PathLog | None, options: Options) -> tuple[Path, bool]:
-    """One path, and whether Ctrl-C ended it."""
-    try:
-        tracer = Tracer(homotopy, observers=() if log is None else (_Held(log),), **options)
-    except Exception as error:
-        if log is not None:
-            log.failure(homotopy, error)
-        return _failed(error), False
-    stopped = True
-    try:
-        for _ in tracer:
-            pass
-        stopped = tracer.path.status is Status.INTERRUPTED
-    except ArchiveError:
-        # The disk's, not the path's.
-        raise
-    except Exception as error:
-        tracer.path.message, stopped = sentence(error), False
-    if log is not None:
-        log.end(tracer)
-    return tracer.path, stopped
-
-
-def _failed(error: BaseException) -> Path:
-    return Path(status=Status.INTERRUPTED, message=sentence(error))
 
 
 def _silent(done: int, total: int) -> None:
@@ -178,33 +104,166 @@ def _silent(done: int, total: int) -> None:
 
 
 def _spread(
-    executor: Executor, tasks: list[Any], target: File | None, report: Progress, options: Options
-) -> _Result:
+    executor: Executor, tasks: list[Any], target: File | None, report: Progress, timeout: float | None,
+    options: Options,
+) -> Result:
     # A worker may run in another directory, on another machine.
     target = None if target is None else target.absolute()
-    batches = _batches(tasks, _parts(executor, len(tasks)), target, options)
-    futures: dict[Future[_Result], int] = {}
-    stopped, done = False, 0
+    token = secrets.token_hex(4)
+    stop = (File(tempfile.gettempdir()) / f"continuation-{token}.stop" if target is None
+            else target.with_name(f"{target.stem}.sweep-{token}.stop"))
+    parts = len(tasks) if timeout is not None else _parts(executor, len(tasks))
+    batches = _batches(tasks, max(parts, 1), target, token, stop, options)
+    run = _Run(executor, batches, report, timeout)
     try:
-        for k, batch in enumerate(batches):
-            futures[executor.submit(_work, batch)] = k
-        for future in as_completed(futures):
-            done += len(batches[futures[future]].homotopies)
-            report(done, len(tasks))
+        run.begin()
+        run.mend()
     except KeyboardInterrupt:
-        stopped = True
-        _stop(futures, target)
-    results = {futures[future]: _outcome(future) for future in futures}
-    stopped = stopped or any(isinstance(r, _Result) and r.stopped for r in results.values())
+        run.stop(stop)
+    finally:
+        with suppress(OSError):
+            stop.unlink()
+    found = run.results
+    stopped = run.stopped or any(result.stopped for result in found.values() if isinstance(result, Result))
     if target is not None:
-        _collect(batches, results, target)
+        _collect(batches, run.errors(), target, token, stopped)
     if stopped:
         raise KeyboardInterrupt
-    paths: list[Path] = []
-    for k, batch in enumerate(batches):
-        result = results[k]
-        paths += result.paths if isinstance(result, _Result) else [_failed(result) for _ in batch.homotopies]
-    return _Result(paths)
+    return Result([] if target is not None else run.paths())
+
+
+@define(eq=False)
+class _Run:
+    """The batches of a sweep on their way: a result or an exception for each, and for single homotopies done again."""
+
+    executor: Executor
+    batches: Sequence[Batch]
+    report: Progress
+    timeout: float | None
+    results: dict[int, Result | BaseException] = field(factory=dict)
+    again: dict[int, Result | BaseException] = field(factory=dict)
+    futures: dict[Future[Result], int] = field(factory=dict)
+    stopped: bool = False
+    done: int = 0
+
+    def begin(self) -> None:
+        """Submit all of it and wait; workers that hang past the timeout are ended with their processes."""
+        for k, batch in enumerate(self.batches):
+            self.futures[self.executor.submit(work, batch)] = k
+        waiting = set(self.futures)
+        while waiting:
+            finished, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
+            if not finished:
+                # All that run have run for that long, since a worker that ends one begins the next.
+                if not _end_processes(self.executor):
+                    waiting = {future for future in waiting if not future.cancel() and not future.running()}
+                    continue
+                finished, waiting = wait(waiting)
+            for future in finished:
+                self._take(future)
+
+    def _take(self, future: Future[Result]) -> None:
+        k = self.futures[future]
+        self.results[k] = _outcome(future)
+        if isinstance(self.results[k], Result):
+            self._count(len(self.batches[k].homotopies))
+
+    def _count(self, number: int) -> None:
+        self.done += number
+        self.report(self.done, self._total)
+
+    @property
+    def _total(self) -> int:
+        return sum(len(batch.homotopies) for batch in self.batches)
+
+    def mend(self) -> None:
+        """Do again, one by one, what was lost with a worker, or with a batch that could not be sent to one.
+
+        Where the executor is broken each homotopy gets a process of its own, so that one that ends its process takes no
+        other with it.
+        """
+        for k, batch in enumerate(self.batches):
+            error = self.results.setdefault(k, TimeoutError(f"took longer than {self.timeout:g} s" if self.timeout
+                                                            else "was never begun"))
+            if isinstance(error, Result):
+                continue
+            written = _finished(batch)
+            for i in range(len(batch.homotopies)):
+                if batch.first + i not in written:
+                    self.again[batch.first + i] = self._alone(batch.single(i), error)
+                self._count(1)
+
+    def _alone(self, batch: Batch, error: BaseException) -> Result | BaseException:
+        if isinstance(error, TimeoutError):
+            return error
+        if not isinstance(error, BrokenExecutor):
+            return _waited(self.executor.submit(work, batch), self.timeout)
+        if not isinstance(self.executor, ProcessPoolExecutor):
+            return error
+        context = getattr(self.executor, "_mp_context", None)
+        alone = ProcessPoolExecutor(1, mp_context=context)
+        try:
+            found = _waited(alone.submit(work, batch), self.timeout)
+        except BaseException:
+            _end_processes(alone)
+            raise
+        if isinstance(found, TimeoutError):
+            _end_processes(alone)
+        alone.shutdown()
+        return found
+
+    def stop(self, sign: File) -> None:
+        """Let the workers end their paths, and those that do not do so soon, with their processes."""
+        self.stopped = True
+        with suppress(OSError):
+            sign.touch()
+        for future in self.futures:
+            future.cancel()
+        if wait(self.futures, timeout=_GRACE).not_done:
+            _end_processes(self.executor)
+            wait(self.futures, timeout=_GRACE / 4)
+        for future, k in self.futures.items():
+            if future.done():
+                self.results[k] = _outcome(future)
+
+    def errors(self) -> dict[int, BaseException]:
+        """By the number of the homotopy."""
+        return {number: found for number, found in self.again.items() if isinstance(found, BaseException)}
+
+    def paths(self) -> list[Path]:
+        """All the paths, in the order of the homotopies."""
+        paths: list[Path] = []
+        for k, batch in enumerate(self.batches):
+            result = self.results[k]
+            if isinstance(result, Result):
+                paths += result.paths
+                continue
+            for i in range(len(batch.homotopies)):
+                found = self.again[batch.first + i]
+                paths += found.paths if isinstance(found, Result) else [failed(found)]
+        return paths
+
+
+def _waited(future: Future[Result], timeout: float | None) -> Result | BaseException:
+    if not wait([future], timeout=timeout).done:
+        future.cancel()
+        return TimeoutError(f"took longer than {timeout:g} s")
+    return _outcome(future)
+
+
+def _outcome(future: Future[Result]) -> Result | BaseException:
+    if future.cancelled():
+        return Result([], stopped=True)
+    error = future.exception()
+    return future.result() if error is None else error
+
+
+def _end_processes(executor: Executor) -> bool:
+    """End the processes of a pool, whose homotopies do not come back; False where it has none of its own."""
+    processes = getattr(executor, "_processes", None) if isinstance(executor, ProcessPoolExecutor) else None
+    for process in list((processes or {}).values()):
+        process.kill()
+    return bool(processes)
 
 
 def _parts(executor: Executor, tasks: int) -> int:
@@ -212,66 +271,47 @@ def _parts(executor: Executor, tasks: int) -> int:
     return max(min(_PARTS_PER_WORKER * int(workers), tasks), 1)
 
 
-def _batches(tasks: list[Any], parts: int, target: File | None, options: Options) -> list[_Batch]:
+def _batches(
+    tasks: list[Any], parts: int, target: File | None, token: str, stop: File, options: Options
+) -> list[Batch]:
     """Consecutive homotopies of nearly equal number, each with the file that its worker writes."""
     bounds = [len(tasks) * k // parts for k in range(parts + 1)]
     batches = []
     for k, (first, last) in enumerate(pairwise(bounds)):
-        file = None if target is None else target.with_name(f"{target.stem}.{k + 1:04d}{target.suffix}")
-        if file is not None:
-            check_new(file)
-        batches.append(_Batch(tasks[first:last], first, file, _stop_sign(target), options))
+        name = f"{target.stem}.sweep-{token}.{k + 1:04d}{target.suffix}" if target is not None else ""
+        file = target.with_name(name) if target is not None else None
+        batches.append(Batch(tasks[first:last], first, file, stop, options))
     return batches
 
 
-def _stop_sign(target: File | None) -> File | None:
-    """A file whose existence ends the workers, wherever they are, after the path at hand."""
-    return None if target is None else target.with_name(target.name + ".stop")
+# -- the files of the workers ---------------------------------------------------------------------------------
 
 
-def _stop(futures: dict[Future[_Result], int], target: File | None) -> None:
-    sign = _stop_sign(target)
-    if sign is not None:
-        sign.touch()
-    for future in futures:
-        future.cancel()
-    wait(futures)
-    if sign is not None:
-        sign.unlink()
+def _finished(batch: Batch) -> set[int]:
+    """The numbers of the homotopies whose paths a lost worker had finished."""
+    found: set[int] = set()
+    if batch.file is not None:
+        for file in batch.file.parent.glob(f"{glob.escape(batch.file.stem)}*{batch.file.suffix}"):
+            with suppress(ArchiveError), open_archive(file) as part:
+                ended = part.paths["status"] != int(Status.TRACING)
+                found.update(part.paths["member"][ended].tolist())
+    return found
 
 
-def _outcome(future: Future[_Result]) -> _Result | BaseException:
-    if future.cancelled():
-        return _Result([], stopped=True)
-    error = future.exception()
-    return future.result() if error is None else error
-
-
-def _collect(batches: Sequence[_Batch], results: dict[int, _Result | BaseException], target: File) -> None:
-    """Merge the workers' files; what a worker that died did not come to is there as failures."""
-    files: list[File] = []
-    for k, batch in enumerate(batches):
-        assert batch.file is not None
-        if batch.file.exists():
-            files.append(batch.file)
-        result = results.get(k)
-        if isinstance(result, BaseException):
-            files.append(_lost(batch, result))
+def _collect(
+    batches: Sequence[Batch], errors: Mapping[int, BaseException], target: File, token: str, stopped: bool
+) -> None:
+    """Merge the workers' files; what was lost is there as failures, unless Ctrl-C is why it is not there."""
+    pattern = f"{glob.escape(target.stem)}.sweep-{token}.*{glob.escape(target.suffix)}"
+    lost = target.with_name(f"{target.stem}.sweep-{token}.lost{target.suffix}")
+    if errors and not stopped:
+        tasks = {batch.first + i: homotopy for batch in batches for i, homotopy in enumerate(batch.homotopies)}
+        with PathLog(lost) as log:
+            for number, error in sorted(errors.items()):
+                log.member = number
+                log.failure(tasks[number], error)
+    files = sorted(target.parent.glob(pattern))
     if files:
-        merge(files, target)
+        gather(files, target, finished=stopped)
     for file in files:
         file.unlink()
-
-
-def _lost(batch: _Batch, error: BaseException) -> File:
-    assert batch.file is not None
-    written = 0
-    if batch.file.exists():
-        with open_archive(batch.file) as part:
-            written = len(part)
-    file = batch.file.with_name(f"{batch.file.stem}.lost{batch.file.suffix}")
-    with PathLog(file) as log:
-        for i, homotopy in enumerate(batch.homotopies[written:], start=written):
-            log.member = batch.first + i
-            log.failure(homotopy, error)
-    return file

@@ -48,7 +48,11 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
 
     def block(self, rows: slice) -> dict[str, np.ndarray[Any, Any]]:
         """All columns of some rows: from memory where they are remembered, and not remembered where they are not."""
-        return {n: self._read[n][rows] if n in self._read else self._fetch(n, rows) for n in self.columns}
+        return {name: self.some(name, rows) for name in self.columns}
+
+    def some(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
+        """Some rows of one column, not remembered."""
+        return self._read[name][rows] if name in self._read else self._fetch(name, rows)
 
     def load(self) -> None:
         """Read everything."""
@@ -56,5 +60,14 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
             self[name]
 
     def choose(self, rows: Any) -> Table:
-        """The table of these rows only (numbers of all rows, in order)."""
+        """The table of these rows only (numbers of all rows, in order).
+
+        Parameters
+        ----------
+        rows : array_like of int
+
+        Returns
+        -------
+        Table
+        """
         return Table(tuple(self.columns.values()), self._rows, self._fetch, rows)

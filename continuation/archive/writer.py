@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
@@ -11,16 +12,21 @@ from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
+from attrs.validators import ge
 
 from continuation.archive import record
+from continuation.archive.atomic import check_new
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.errors import ArchiveError
+from continuation.archive.live import create
 from continuation.archive.problem import problem_data
 from continuation.archive.provenance import root_attributes, scalars
+from continuation.archive.reader import open_archive
 from continuation.archive.record import Record, counted
 from continuation.archive.rows import Row, to_columns
-from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout
-from continuation.archive.store import SLOTS, Store, check_new
+from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
+from continuation.archive.store import SLOTS, Store
+from continuation.archive.stored import StoredSteps, kept_every
 from continuation.path import LocatedEvent, Step
 from continuation.status import Status
 from continuation.step.state import State
@@ -31,9 +37,9 @@ from continuation.step.tracer import Tracer
 class Limits:
     """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
 
-    rows: int = 256
-    nbytes: int = 4 << 20
-    seconds: float = 1.0
+    rows: int = field(default=256, validator=ge(1))
+    nbytes: int = field(default=4 << 20, validator=ge(1))
+    seconds: float = field(default=1.0, validator=ge(0.0))
 
 
 @frozen(eq=False)
@@ -85,6 +91,9 @@ class PathLog:
     title : str
     limits : Limits
         When to commit.
+    keep : str
+        Which steps the path keeps in memory: ``"all"``, ``"ends"`` (the first and the last) or ``"every k"``. The
+        others are read from the file when they are asked for.
 
     Attributes
     ----------
@@ -107,12 +116,13 @@ class PathLog:
         tangents: bool = False,
         title: str = "",
         limits: Limits | None = None,
+        keep: str = "all",
     ) -> None:
         check_new(File(file))
-        self._begin(File(file), durable, tangents, title, limits or Limits())
+        self._begin(File(file), durable, tangents, title, limits or Limits(), kept_every(keep))
 
-    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits) -> None:
-        self.file = file
+    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
+        self.file, self._every = file, every
         self.member: int | None = None
         self._durable, self._tangents, self._title, self._limits = durable, tangents, title, limits
         self._many = self._closed = False
@@ -126,10 +136,12 @@ class PathLog:
         self._commit_at = 0.0
 
     @classmethod
-    def continued(cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer) -> PathLog:
+    def continued(
+        cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer, every: int
+    ) -> PathLog:
         """A log that goes on with a path of which the file holds the beginning; for `resume`."""
         log = cls.__new__(cls)
-        log._begin(store.file, store.durable, store.layout.tangents, "", Limits())
+        log._begin(store.file, store.durable, store.layout.tangents, "", Limits(), every)
         log._store, log._buffer, log._paths, log._sequence = store, _Buffer(points), paths, checkpoint.sequence
         log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
         mark = _Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
@@ -144,6 +156,8 @@ class PathLog:
         path = self._path(tracer)
         if self._store is None:
             self._make(tracer, step.u.size - 1, tuple(step.observed))
+        if self._every != 1 and not isinstance(tracer.path.steps, StoredSteps):
+            tracer.path.steps = self._stored(path.number, tracer.path.steps)
         self._add_step(path, step, tracer.path.events)
         state = tracer.state
         if state is not None and state.index == step.index:
@@ -162,6 +176,9 @@ class PathLog:
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
+        if self._closed and self._open is not None:
+            # The disk is full, and has been told of.
+            return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         row = record.of_path(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
@@ -173,7 +190,13 @@ class PathLog:
             self.close()
 
     def failure(self, homotopy: Any, error: BaseException) -> None:
-        """A path that could not even begin, as a row with the exception's text."""
+        """A path that could not even begin, as a row with the exception's text.
+
+        Parameters
+        ----------
+        homotopy : Homotopy
+        error : BaseException
+        """
         self._check_open()
         self._finish(record.of_failure(homotopy, error), self._paths, 0)
 
@@ -232,6 +255,9 @@ class PathLog:
             held = self._store.layout.unknowns
             raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {u.size - 1}")
         self._buffer.rows.append(row)
+        steps: Any = path.tracer.path.steps
+        if row.step is None and isinstance(steps, StoredSteps):
+            steps.locate()
         self._buffer.nbytes += u.nbytes
         path.rows += 1
 
@@ -246,6 +272,7 @@ class PathLog:
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> None:
         """Make the file, and write the rows of paths that ended before there was one."""
+        check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
         names = {name for row in self._early for name in row["scalars"]} | set(scalars(homotopy))
@@ -253,7 +280,7 @@ class PathLog:
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, self._title)
-        self._store = Store(self.file, layout, attributes, problem, durable=self._durable)
+        self._store = create(self.file, layout, attributes, problem, durable=self._durable)
         for event in tracer.settings.events if tracer is not None else ():
             self._store.name_event(event.name)
         self._store.commit()
@@ -265,15 +292,33 @@ class PathLog:
         store, buffer, path = self._store, self._buffer, self._open
         assert store is not None
         points, checkpoints = None, {}
-        if path is not None and buffer.rows:
-            points = to_columns(buffer.rows, path.number, store.layout, store.name_event)
+        # A commit that Ctrl-C interrupted may have been complete.
+        start = max(buffer.start, store.committed.points)
+        rows = buffer.rows[start - buffer.start :]
+        if path is not None and rows:
+            points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
             checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
-        paths = record.to_columns(row, store.layout) if row is not None else None
-        store.commit(points, buffer.start, paths, row["path"] if row is not None else 0, checkpoints)
-        self._buffer = _Buffer(buffer.start + len(buffer.rows))
+        paths = None
+        if row is not None and row["path"] >= store.committed.paths:
+            paths = record.to_columns(row, store.layout)
+        try:
+            store.commit(points, start, paths, row["path"] if row is not None else 0, checkpoints)
+        except ArchiveError:
+            self._closed = True
+            store.close()
+            raise
+        self._buffer = _Buffer(start + len(rows))
+        if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
+            path.tracer.path.steps.committed()
         self._sequence += 1
         self._commit_at = time.monotonic() + self._limits.seconds
+
+    def _stored(self, number: int, steps: Iterable[Step]) -> Any:
+        stored = StoredSteps(open_archive, self.file, number, self._every)
+        for step in steps:
+            stored.append(step)
+        return stored
 
     def _checkpoint(self, path: _Open, mark: _Mark) -> bytes:
         if path.run is None:

@@ -14,10 +14,11 @@ import numpy as np
 from attrs import fields_dict
 from h5py import h5s
 
+from continuation.archive.atomic import check_new
 from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import history
 from continuation.archive.schema import TEXT, Column, text
-from continuation.archive.store import LIBVER, check_new
+from continuation.archive.store import LIBVER
 from continuation.chart.results import Results, Row
 from continuation.counts import Counts
 

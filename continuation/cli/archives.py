@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from importlib import import_module
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any
 
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
 
@@ -24,6 +26,8 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
     parser.add_argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps")
     parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
+    parser.add_argument("--trust", action="append", default=[], type=_named, metavar="MODULE:NAME",
+                        help="a class or function that may be made, besides what is installed; can be given again")
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.set_defaults(run=_resume)
 
@@ -61,10 +65,21 @@ def _resume(arguments: argparse.Namespace) -> int:
     options: Options = {"budget": Budget(**limits)} if limits else {}
     observers = (Progress(),) if arguments.progress else ()
     with _complaints("FILE", new="--archive"):
-        path = resume(arguments.file, archive=arguments.archive, observers=observers, **options)
+        path = resume(
+            arguments.file, archive=arguments.archive, observers=observers, trust=arguments.trust, **options
+        )
     print(f"{path.status.name}: {path.message}")
     print(f"{len(path)} points, lam = {path.endpoint.lam:.6g}")
     return SUCCESS if path.success else FAILURE
+
+
+def _named(path: str) -> Any:
+    """The class or function ``module:name``, which the user names and so trusts."""
+    module, _, name = path.partition(":")
+    try:
+        return attrgetter(name)(import_module(module))
+    except (ImportError, AttributeError, ValueError) as error:
+        raise argparse.ArgumentTypeError(f"expected module:name, found {path!r} ({error})") from None
 
 
 def _recover(arguments: argparse.Namespace) -> int:

@@ -89,7 +89,16 @@ class Bounds:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
 
     def cap(self, h: float) -> float:
-        """The step kept below the ceiling; the floor is the tracer's to check."""
+        """The step kept below the ceiling; the floor is the tracer's to check.
+
+        Parameters
+        ----------
+        h : float
+
+        Returns
+        -------
+        float
+        """
         return min(h, self.maximum)
 
     def beginning_with(self, usual: float) -> Bounds:
@@ -115,5 +124,16 @@ class Controller(Protocol):
         ...
 
     def update(self, state: State, attempt: StepMeasures) -> Decision:
-        """Judge an attempt; pure, so that a resumed run decides alike."""
+        """Judge an attempt; pure, so that a resumed run decides alike.
+
+        Parameters
+        ----------
+        state : tuple of float
+            What `init`, or the decision before this one, gave.
+        attempt : StepMeasures
+
+        Returns
+        -------
+        Decision
+        """
         ...

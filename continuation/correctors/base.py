@@ -57,7 +57,16 @@ class Correction:
         return self.rejection is None
 
     def rejected(self, h: float) -> Rejected | None:
-        """The failure as that of an attempt with step length h; None where it converged."""
+        """The failure as that of an attempt with step length h; None where it converged.
+
+        Parameters
+        ----------
+        h : float
+
+        Returns
+        -------
+        Rejected or None
+        """
         return None if self.rejection is None else Rejected(h, self.rejection, self.detail, self.contraction)
 
 

@@ -47,7 +47,19 @@ class Event(Protocol):
         ...
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The function whose zeros are wanted, of the point and the tangent; continuous along the path."""
+        """The function whose zeros are wanted, of the point and the tangent; continuous along the path.
+
+        Parameters
+        ----------
+        u : ndarray, shape (N + 1,)
+            A point (y, lam) of the path.
+        v : ndarray, shape (N + 1,)
+            The unit tangent there.
+
+        Returns
+        -------
+        float
+        """
         ...
 
 

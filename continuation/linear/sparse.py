@@ -20,6 +20,14 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
     """Sign of a permutation of 0..n-1: (-1)^(n - cycles), in O(n).
 
     The cycles are the connected components of the graph that joins i with permutation[i].
+
+    Parameters
+    ----------
+    permutation : ndarray of int
+
+    Returns
+    -------
+    int
     """
     n = len(permutation)
     edges = coo_array((np.ones(n, dtype=np.int8), (np.arange(n), permutation)), shape=(n, n))

@@ -23,5 +23,15 @@ class BorderedSystem(Protocol):
         ...
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + 1,), of ``H_y dy + H_lam dlam = r`` and ``border . z = rho``."""
+        """The solution z, shape (N + 1,), of ``H_y dy + H_lam dlam = r`` and ``border . z = rho``.
+
+        Parameters
+        ----------
+        r : ndarray, shape (N,)
+        rho : float
+
+        Returns
+        -------
+        ndarray, shape (N + 1,)
+        """
         ...

@@ -41,7 +41,17 @@ class SupportsSegment(Curve, Protocol):
     """A prediction accurate enough to be the path between its ends: dense output, and where events are looked for."""
 
     def segment(self, h: float, end: Array) -> Segment:
-        """The path from the current point to the corrected one, `end`, at step length h."""
+        """The path from the current point to the corrected one, `end`, at step length h.
+
+        Parameters
+        ----------
+        h : float
+        end : ndarray, shape (N + 1,)
+
+        Returns
+        -------
+        Segment
+        """
         ...
 
 
@@ -70,7 +80,20 @@ class Predictor(Protocol):
         ...
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Prediction:
-        """The prediction from `point`; `history` holds at most `memory` knots, the current one last."""
+        """The prediction from `point`; `history` holds at most `memory` knots, the current one last.
+
+        Parameters
+        ----------
+        evaluator : Evaluator
+            Of the homotopy; it counts what is asked.
+        point : Linearization
+            The current point, with its factorisation and tangent.
+        history : sequence of Knot
+
+        Returns
+        -------
+        Prediction
+        """
         ...
 
 

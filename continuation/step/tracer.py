@@ -33,15 +33,32 @@ class Observer(Protocol):
     """Something that watches a trace: an archive, a progress bar, a plot. It may not change the trace."""
 
     def step(self, tracer: Tracer, step: Step) -> None:
-        """An accepted step; `tracer.state` is the state after it."""
+        """An accepted step; `tracer.state` is the state after it.
+
+        Parameters
+        ----------
+        tracer : Tracer
+        step : Step
+        """
         ...
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """A located event, before the step that holds it."""
+        """A located event, before the step that holds it.
+
+        Parameters
+        ----------
+        tracer : Tracer
+        event : LocatedEvent
+        """
         ...
 
     def end(self, tracer: Tracer) -> None:
-        """The end; `tracer.path` is complete."""
+        """The end; `tracer.path` is complete.
+
+        Parameters
+        ----------
+        tracer : Tracer
+        """
         ...
 
 

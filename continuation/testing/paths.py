@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 import tempfile
 from collections.abc import Iterator
 from itertools import pairwise
+from operator import attrgetter
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 
 from continuation.archive import ArchiveError, open_archive, resume
-from continuation.archive.codec import UnknownError, decode
+from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
 from continuation.auditing import audit
@@ -122,7 +124,7 @@ def archive(subject: Subject) -> None:
         # Said in the archive; such a homotopy is handed to `resume` by its owner.
         return
     try:
-        homotopy: Any = decode(tree, arrays.__getitem__)
+        homotopy: Any = decode(tree, arrays.__getitem__, registry(_named(tree)))
     except UnknownError as error:
         fail(f"archive: the homotopy was stored and cannot be made again: {error}")
     for place in subject.places:
@@ -132,6 +134,19 @@ def archive(subject: Subject) -> None:
         if not np.array_equal(found, wanted, equal_nan=True):
             difference = float(np.abs(found - wanted).max()) if found.shape == wanted.shape else math.inf
             fail(f"archive: {place.where} the homotopy read back has another residual, by {difference:.3g}")
+
+
+def _named(tree: Any) -> list[Any]:
+    """The classes and functions of a description that was made of the subject just now, so that they are at hand."""
+    if isinstance(tree, list):
+        return [thing for item in tree for thing in _named(item)]
+    if not isinstance(tree, dict):
+        return []
+    found = _named(list(tree.values()))
+    for path in (tree[kind] for kind in ("class", "function") if kind in tree):
+        module, _, name = path.partition(":")
+        found.append(attrgetter(name)(sys.modules[module]))
+    return found
 
 
 def resumed(subject: Subject) -> None:

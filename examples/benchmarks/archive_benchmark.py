@@ -1,10 +1,11 @@
 """The archive, measured: cost a step, kills, many small paths.
 
-    python examples/benchmarks/archive_benchmark.py [cost] [kills] [small]
+    python examples/benchmarks/archive_benchmark.py [cost] [kills] [small] [--kills N] [--damage N] [--seed S]
 """
 
 from __future__ import annotations
 
+import argparse
 import multiprocessing
 import os
 import random
@@ -18,6 +19,8 @@ from pathlib import Path
 
 import numpy as np
 import xarray
+from archive_damage import damage
+from archive_kills import kill
 from attrs import evolve
 
 from continuation import Budget, Step, Tracer, trace
@@ -161,8 +164,27 @@ def small(folder: Path, count: int = 10_000) -> None:
               f"group by path {1e3 * (grouped - opened):.0f} ms")
 
 
-if __name__ == "__main__":
-    wanted = sys.argv[1:] or ["cost", "kills", "small"]
+def main() -> int:
+    """What is asked for; the campaigns end with status 1 if anything went wrong."""
+    parser = argparse.ArgumentParser(description="The archive, measured.")
+    parser.add_argument("parts", nargs="*", help="cost, kills, small; all of them without a campaign")
+    parser.add_argument("--kills", type=int, default=0, metavar="N", help="kill N processes at work with archives")
+    parser.add_argument("--damage", type=int, default=0, metavar="N", help="damage N archives")
+    parser.add_argument("--seed", type=int, default=0)
+    arguments = parser.parse_args()
+    campaigns = {"kill": arguments.kills, "damage": arguments.damage}
+    good = True
     with tempfile.TemporaryDirectory() as name:
-        for part in wanted:
+        for part in arguments.parts or ([] if any(campaigns.values()) else ["cost", "kills", "small"]):
             {"cost": cost, "kills": kills, "small": small}[part](Path(name))
+        for campaign in (kill, damage):
+            count = campaigns[campaign.__name__]
+            if count:
+                folder = Path(name) / campaign.__name__
+                folder.mkdir()
+                good &= campaign(folder, count, arguments.seed)
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -17,9 +17,9 @@ from problems.lcp.homotopies import (
     random_start,
 )
 from problems.lcp.proof.certificate import Certificate, ExactCertificate, certify, certify_exactly
-from problems.lcp.proof.farkas import Farkas, empty_interior, farkas
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, empty_interior, farkas
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
-from problems.lcp.reference.enumeration import solve_by_enumeration
+from problems.lcp.reference.enumeration import Exhaustion, solve_by_enumeration
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.solver import solve
 
@@ -27,7 +27,9 @@ __all__ = [
     "LCP",
     "Certificate",
     "ExactCertificate",
+    "Exhaustion",
     "Farkas",
+    "FloatFarkas",
     "KKTHomotopy",
     "KojimaMegiddoMizunoHomotopy",
     "NoStrictlyFeasiblePoint",

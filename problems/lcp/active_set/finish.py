@@ -13,7 +13,8 @@ from problems.lcp.active_set.face import Face, Faces, Mask
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.proof.certificate import Certificate, certify
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.verdict import confirmed
 
 SIGN_CORRECTIONS = 2
 """Corrections, with w in twice the working precision, of a point whose signs are nearly right.
@@ -131,22 +132,33 @@ class Finish:
         return None
 
     def _judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The point, clipped to x >= 0 and certified; else corrected in twice the working precision, for its signs."""
-        lowest = min(float(x.min()), float(w.min()))
+        """The point, clipped to x >= 0 and certified; corrected in twice the precision until that is round-off."""
         # A certificate is worth its cost where the signs are right to about the tolerance.
-        if not (lowest >= 0.0 or lowest >= -self.tolerance * self.problem.scale(x)):
+        if not self._plausible(x, w):
             return x, w, False
+        best = certify(self.problem, np.maximum(x, 0.0))
         for _ in range(SIGN_CORRECTIONS):
-            clipped = np.maximum(x, 0.0)
-            certificate = certify(self.problem, clipped)
-            if certificate.solves(self.tolerance):
-                self.certificate = certificate
-                return clipped, certificate.w, True
+            if best.relative_residual <= ROUND_OFF:
+                break
             better = face.refined(x)
             if not np.isfinite(better).all():
                 break
             x = better
+            certificate = certify(self.problem, np.maximum(x, 0.0))
+            if certificate.relative_residual < best.relative_residual:
+                best = certificate
+        if confirmed(self.problem, best, self.tolerance):
+            self.certificate = best
+            return best.x, best.w, True
         return x, self.problem.w(x), False
+
+    def _plausible(self, x: Array, w: Array) -> bool:
+        """Whether the signs are right to about the tolerance, x relative to its size and w to that of its terms."""
+        low_x, low_w = float(x.min()), float(w.min())
+        if low_x >= 0.0 and low_w >= 0.0:
+            return True
+        size = float(np.abs(x).max())
+        return low_x >= -self.tolerance * size and low_w >= -self.tolerance * (self.problem.scale(x) - 1.0)
 
 
 @define(eq=False)

@@ -6,6 +6,7 @@ A container (.npz, .json, .mat, .h5) holds named arrays, ``A`` and ``q``; the ot
 from __future__ import annotations
 
 import json
+import math
 import re
 import zipfile
 import zlib
@@ -19,16 +20,21 @@ import numpy as np
 import scipy.io
 import scipy.sparse as sp
 
+from continuation.archive.datasets import dataset, member, subgroup
+from continuation.archive.image import Image
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP
-from problems.options import finite_vector
+from problems.options import finite_vector, sound_sparse
 
 ALONE = ""
 """The name of the array in a file that holds one array without a name."""
 
+LIMIT = 1 << 32
+"""Bytes that a compressed file may unfold to; one that is not compressed is as large as it is."""
+
 _UNREADABLE = (
     OSError, ValueError, TypeError, KeyError, EOFError, RecursionError, NotImplementedError, OverflowError,
-    zipfile.BadZipFile, zlib.error, scipy.io.matlab.MatReadError,
+    MemoryError, RuntimeError, AttributeError, IndexError, zipfile.BadZipFile, zlib.error, scipy.io.matlab.MatReadError,
 )  # fmt: skip
 
 _WANTED = ("A", "q", "x0")
@@ -122,7 +128,7 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
     if not Path(file).exists():
         raise InputError(argument, f"expected a file, found nothing at {_shown(file)}")
     if not Path(file).is_file():
-        raise InputError(argument, f"expected a file, found a directory at {_shown(file)}")
+        raise InputError(argument, f"expected a file, found a directory or a device at {_shown(file)}")
     if suffix not in _READERS:
         known = ", ".join(_READERS)
         raise InputError(argument, f"expected one of {known}, found {suffix or 'no extension'} in {_shown(file)}")
@@ -140,9 +146,9 @@ def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | Pa
         found = ", ".join(sorted(contents)) or "nothing"
         raise InputError(argument, f"expected an array {name}, found {found} in {_shown(path)}")
     value = contents.get(name, contents.get(ALONE))
-    if sp.issparse(value):
-        return value
     try:
+        if sp.issparse(value):
+            return sound_sparse(name, value)
         array = np.asarray(value)
         return array.astype(float) if array.dtype == object else array
     except (ValueError, TypeError, OverflowError) as error:
@@ -160,8 +166,23 @@ def _flat(value: Matrix) -> Matrix:
     return array.ravel() if array.ndim == 2 and 1 in array.shape else array
 
 
+def _claims(size: int, file: str) -> None:
+    """Whether so many bytes are to be unpacked from a file: not more than it has, nor than a limit where it is packed.
+
+    Raises
+    ------
+    ValueError
+        If they are more.
+    """
+    if size > max(LIMIT, Path(file).stat().st_size):
+        raise ValueError(f"it claims {size} bytes, expected at most {LIMIT} where a file is compressed")
+
+
 def _npz(file: str) -> Mapping[str, Any]:
-    stored = np.load(file, allow_pickle=False)
+    if zipfile.is_zipfile(file):
+        with zipfile.ZipFile(file) as archive:
+            _claims(sum(part.file_size for part in archive.infolist()), file)
+    stored = np.load(file, mmap_mode="r", allow_pickle=False)
     if not isinstance(stored, np.lib.npyio.NpzFile):
         raise ValueError("it holds one array, not named arrays")
     with stored:
@@ -171,11 +192,10 @@ def _npz(file: str) -> Mapping[str, Any]:
 
 
 def _npy(file: str) -> Mapping[str, Any]:
-    array = np.load(file, allow_pickle=False)
-    if isinstance(array, np.lib.npyio.NpzFile):
-        array.close()
+    if zipfile.is_zipfile(file):
         raise ValueError("it holds named arrays, not one")
-    return {ALONE: array}
+    # A map of the file is no larger than the file, whatever its head claims.
+    return {ALONE: np.array(np.load(file, mmap_mode="r", allow_pickle=False))}
 
 
 def _json(file: str) -> Mapping[str, Any]:
@@ -188,11 +208,16 @@ def _json(file: str) -> Mapping[str, Any]:
 
 
 def _mat(file: str) -> Mapping[str, Any]:
+    _claims(8 * sum(math.prod(shape) for _, shape, kind in scipy.io.whosmat(file) if kind != "sparse"), file)
     stored = scipy.io.loadmat(file)
     return {name: value for name, value in stored.items() if not name.startswith("__")}
 
 
 def _matrix_market(file: str) -> Mapping[str, Any]:
+    rows, columns, entries, form, _, _ = scipy.io.mminfo(file)
+    # A number and the end of its line take two bytes at least.
+    if (rows * columns if form == "array" else entries) > Path(file).stat().st_size:
+        raise ValueError(f"it claims {entries} entries, and is too short for them")
     return {ALONE: scipy.io.mmread(file)}
 
 
@@ -206,26 +231,34 @@ def _text(file: str) -> Mapping[str, Any]:
 
 
 def _hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
-    with h5py.File(file, "r") as root:
-        if group is not None:
-            at = root.get(group)
-            if not isinstance(at, h5py.Group):
-                raise ValueError(f"no group {group}")
-        else:
-            nested = root.get("problem")
-            at = nested if isinstance(nested, h5py.Group) and "A" not in root else root
-        found = {name: _from_hdf5(at[name]) for name in _WANTED if name in at}
-        if not found:
-            raise ValueError(f"none of {', '.join(_WANTED)} in its group {at.name}")
-        return found
+    image = Image(Path(file))
+    try:
+        with h5py.File(image, "r") as root:
+            if group is not None:
+                at = root
+                for part in filter(None, group.split("/")):
+                    if part not in at:
+                        raise ValueError(f"no group {group}")
+                    at = subgroup(at, part)
+            else:
+                nested = subgroup(root, "problem") if "problem" in root and "A" not in root else None
+                at = root if nested is None else nested
+            found = {name: _from_hdf5(at, name) for name in _WANTED if name in at}
+            if not found:
+                raise ValueError(f"none of {', '.join(_WANTED)} in its group {at.name}")
+            return found
+    finally:
+        image.close()
 
 
-def _from_hdf5(node: Any) -> Matrix:
+def _from_hdf5(group: Any, name: str) -> Matrix:
     """A dataset, or the parts of a compressed sparse matrix in a group."""
+    node = member(group, name)
     if isinstance(node, h5py.Dataset):
-        return node[()]
-    shape = tuple(int(n) for n in (node["shape"][()] if "shape" in node else node.attrs["shape"]))
-    return sp.csr_array((node["data"][()], node["indices"][()], node["indptr"][()]), shape=shape)
+        return dataset(group, name, None, None, LIMIT)[()]
+    parts = [dataset(node, part, None, (None,), LIMIT)[()] for part in ("data", "indices", "indptr")]
+    shape = tuple(int(n) for n in (dataset(node, "shape", None, (2,))[()] if "shape" in node else node.attrs["shape"]))
+    return sp.csr_array((parts[0], parts[1], parts[2]), shape=shape)
 
 
 _READERS: Mapping[str, Callable[[str], Mapping[str, Any]]] = {

@@ -147,7 +147,17 @@ class Structure:
         return bool(dpotrf(scaled, lower=1, overwrite_a=1)[1] == 0)
 
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
-        """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A is."""
+        """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A is.
+
+        Parameters
+        ----------
+        factor : float
+        columns, diagonal : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, sparse array or Banded
+        """
         if self.band is not None:
             return self.band.scaled(factor, columns, diagonal)
         if self.problem.sparse:
@@ -157,7 +167,17 @@ class Structure:
         return dense
 
     def normal(self, factor: float, weights: Array, diagonal: Array) -> Matrix:
-        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, symmetric of shape (n, n), stored as A is."""
+        """``factor (A + A' + A' diag(weights) A) + diag(diagonal)``, symmetric of shape (n, n), stored as A is.
+
+        Parameters
+        ----------
+        factor : float
+        weights, diagonal : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, sparse array or Banded
+        """
         if self.band is not None:
             return self.band.normal(factor, weights, diagonal)
         A = self.problem.A
@@ -179,6 +199,15 @@ class Structure:
         """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]`` times ``diag(columns)`` plus a diagonal.
 
         Of order 2n, for a column scaling and a diagonal of length n on the first half; dense, or sparse as A is.
+
+        Parameters
+        ----------
+        factor, shift : float
+        columns, diagonal, z2, w : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray or sparse array, shape (2n, 2n)
         """
         n = self.n
         if self.problem.sparse:

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from problems.options import finite_vector
+from problems.options import finite_vector, real_array, sound_sparse
 
 
 def _q(value: Any) -> Array:
@@ -20,20 +20,10 @@ def _q(value: Any) -> Array:
 def _matrix(value: Any) -> Matrix:
     """A finite square float matrix, dense or CSR."""
     if sp.issparse(value):
-        matrix = sp.csr_array(value)
-        if matrix.dtype.kind not in "fiub":
-            raise ValueError(f"A: expected real numbers, found dtype {matrix.dtype}")
-        matrix = matrix.astype(float)
-        matrix.sum_duplicates()
+        matrix = sound_sparse("A", value)
         entries: Array = matrix.data
     else:
-        if np.iscomplexobj(value):
-            raise ValueError("A: expected real numbers, found complex ones")
-        try:
-            matrix = np.array(value, dtype=float)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"A: expected real numbers, found {type(value).__name__} ({error})") from None
-        entries = matrix
+        matrix = entries = real_array("A", value)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
         raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
     if not np.isfinite(entries).all():
@@ -80,16 +70,43 @@ class LCP:
         return bool(sp.issparse(self.A))
 
     def w(self, x: Array) -> Array:
-        """A x + q, shape (n,)."""
+        """A x + q, shape (n,).
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         product: Array = self.A @ x + self.q
         return product
 
     def natural_residual(self, x: Array) -> float:
-        """max_i |min(x_i, w_i)|, absolute."""
+        """max_i |min(x_i, w_i)|, absolute.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        float
+        """
         return float(np.abs(np.minimum(x, self.w(x))).max())
 
     def scale(self, x: Array) -> float:
-        """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative."""
+        """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        float
+        """
         return 1.0 + max(float(np.abs(self.q).max()), self._norm * float(np.abs(x).max()))
 
     @cached_property
@@ -98,5 +115,14 @@ class LCP:
         return float(np.max(abs(self.A).sum(axis=1)))
 
     def relative_residual(self, x: Array) -> float:
-        """The natural residual divided by `scale`."""
+        """The natural residual divided by `scale`.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Returns
+        -------
+        float
+        """
         return self.natural_residual(x) / self.scale(x)

@@ -113,7 +113,16 @@ class KKTHomotopy:
         return np.concatenate([self.origin.x0, self.origin.z1, self.origin.z2]), 1.0
 
     def split(self, y: Array) -> tuple[Array, Array, Array]:
-        """The blocks x, z1, z2 of y, as views of shape (n,)."""
+        """The blocks x, z1, z2 of y, as views of shape (n,).
+
+        Parameters
+        ----------
+        y : ndarray, shape (3n,)
+
+        Returns
+        -------
+        x, z1, z2 : ndarray, shape (n,)
+        """
         n = self.n
         return y[:n], y[n : 2 * n], y[2 * n :]
 

@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP
 
 _UNIT = float(np.finfo(float).eps) / 2
@@ -17,6 +18,10 @@ _HIGH_BITS = np.int64(~0x7FFFFFF)
 
 _BLOCK = 2**15
 """Entries of A in a block of rows."""
+
+_LARGE = 1e240
+"""Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
+of products below 1e-260 are no longer exact."""
 
 
 def accurate_w(problem: LCP, x: Array) -> tuple[Array, Array]:
@@ -39,12 +44,86 @@ def accurate_w(problem: LCP, x: Array) -> tuple[Array, Array]:
     Ogita, Rump and Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26, 2005 (Dot2, Proposition 5.5).
     """
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
-        total, lost, size, terms = _sparse_sums(problem, x) if problem.sparse else _dense_sums(problem, x)
-        w = total + lost
+        w, size, terms = _rows(problem, x)
         gamma = 4.0 * (terms + 2) * _UNIT
         bound = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
     overflowed = ~np.isfinite(w) | ~np.isfinite(bound)
     return np.where(overflowed, np.inf, w), np.where(overflowed, np.inf, bound)
+
+
+@frozen(eq=False)
+class Terms:
+    """The rows of A x + q for a matrix A and vectors x, q, each row over a power of two of its own.
+
+    Attributes
+    ----------
+    A : Array or sparse array, shape (n, n)
+    x : Array of shape (n,)
+        With `A`: the products A_ij x_j over 2^exponents[i].
+    w, size : Array of shape (n,)
+        (A x + q)_i in twice the working precision, and (|A| |x| + |q|)_i, both over 2^exponents[i].
+    exponents : integer array of shape (n,)
+        Zero but for data or x near the ends of the range of floats.
+    """
+
+    A: Matrix
+    x: Array
+    w: Array
+    size: Array
+    exponents: NDArray[Any]
+
+
+def row_terms(problem: LCP, x: Array) -> Terms:
+    """What each row of A x + q comes to and what it is made of; nothing overflows, and no row underflows.
+
+    Parameters
+    ----------
+    problem : LCP
+    x : Array of shape (n,)
+        Finite.
+    """
+    with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+        w, size, _ = _rows(problem, x)
+    none = np.zeros(problem.n, dtype=np.int64)
+    doubtful = ~np.isfinite(w) | ~(size <= _LARGE) | ((size < 1.0 / _LARGE) & _filled(problem, x))
+    if not doubtful.any():
+        return Terms(problem.A, x, w, size, none)
+    mantissas, powers = np.frexp(x)
+    stored = sp.csr_array(problem.A) if problem.sparse else problem.A
+    entries, entry_powers = np.frexp(stored.data if problem.sparse else stored)
+    constants, constant_powers = np.frexp(problem.q)
+    lowest = np.iinfo(np.int32).min // 4
+    products = entry_powers + (powers[stored.indices] if problem.sparse else powers)
+    products[(entries == 0.0) | ((mantissas[stored.indices] if problem.sparse else mantissas) == 0.0)] = lowest
+    exponents = np.where(constants == 0.0, lowest, constant_powers)
+    if problem.sparse:
+        row_of = np.repeat(np.arange(problem.n), np.diff(stored.indptr))
+        np.maximum.at(exponents, row_of, products)
+    else:
+        row_of = np.arange(problem.n)[:, None]
+        exponents = np.maximum(exponents, products.max(axis=1))
+    exponents = np.where(exponents == lowest, 0, exponents)
+    with np.errstate(under="ignore"):
+        # Products that are smaller than their row's largest by 2^-1000 may vanish: they are below its last digits.
+        moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
+        q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
+        A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
+        w, size, _ = _rows(LCP(A, q), mantissas)
+    return Terms(A, mantissas, w, size, exponents)
+
+
+def _rows(problem: LCP, x: Array) -> tuple[Array, Array, int]:
+    """(w, the sum of the magnitudes of its terms, their number) of each row."""
+    total, lost, size, terms = _sparse_sums(problem, x) if problem.sparse else _dense_sums(problem, x)
+    return total + lost, size, terms
+
+
+def _filled(problem: LCP, x: Array) -> Any:
+    """Where a row has a term that is not zero."""
+    support = x != 0.0
+    if not support.any():
+        return problem.q != 0.0
+    return (problem.q != 0.0) | ((problem.A != 0.0) @ support.astype(float) > 0.0)
 
 
 def _dense_sums(problem: LCP, x: Array) -> tuple[Array, Array, Array, int]:

@@ -8,6 +8,7 @@ necessary, by the duality theorem.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from fractions import Fraction
 from math import gcd, lcm
@@ -15,10 +16,12 @@ from math import gcd, lcm
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
+from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP
+from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.rational import IntegerRow, Integers, integer_rows, integers, solve_exactly
 
 _HIGHS_TOLERANCE = 1e-10
@@ -33,8 +36,20 @@ _TIGHT = (1e-12, 1e-9, 1e-7)
 """A scaled condition this close to zero is tried as an equation."""
 _SUPPORT = 1e-9
 """Scaled multipliers above this are taken as nonzero."""
+PRECISION = 100 * float(np.finfo(float).eps)
+"""The relative error of A'y <= 0 that counts as rounding."""
+CLEAR = 1e-6
+"""A gap -q'y below this part of |q|'y is too near zero to say infeasible without a proof."""
+_NEARLY_TIGHT = 1e-7
+"""A condition this close to zero, relative to its terms, is solved as an equation when y is refined,"""
+_REFINEMENTS = 4
+"""so many times: the program's 1e-10 is squared each time, and the last ones confirm,"""
+LARGEST_REFINED = 1500
+"""for at most so many multipliers: a least squares solution of that order takes seconds."""
 LARGEST_VERTEX = 300
 """The largest order at which a multiplier is made exact by solving its tight equations in rationals."""
+AFFORDABLE_VERTEX = 100
+"""The same for a proof that nobody asked for: a tenth of a second, where order 300 takes six."""
 
 
 @frozen(eq=False)
@@ -57,6 +72,43 @@ class Farkas:
         """Whether {x >= 0, A x + q >= 0} is proved empty, so that the LCP has no solution."""
         return self.gap < 0
 
+    def in_units(self, problem: LCP, rows: NDArray[np.int64]) -> Farkas:
+        """The multiplier for `problem`, where this one is for the problem whose rows are 2^rows times those of it."""
+        least = int(rows.min())
+        y = [value << (int(power) - least) for value, power in zip(self.y, rows)]
+        return _farkas(_integers_of(problem).gap, y)
+
+    def holds(self, problem: LCP) -> bool:
+        """Whether it proves, exactly, that `problem` has no feasible point."""
+        return _integers_of(problem).hold(list(self.y), strict=True)
+
+
+@frozen(eq=False)
+class FloatFarkas:
+    """A multiplier that proves that there is no feasible point but for rounding: y >= 0, A'y <= 0 nearly, q'y < 0.
+
+    Some matrix whose entries differ from those of A by at most `error`, relatively, has A'y <= 0 exactly, so that its
+    LCP is infeasible for every q with q'y < 0.
+
+    Attributes
+    ----------
+    y : Array of shape (n,)
+        Its largest entry is 1.
+    error : float
+        max_j (A'y)_j / (|A|'y)_j: of the size of the rounding unit.
+    gap : float
+        -q'y / |q|'y, at least `CLEAR`: how clearly q'y is negative.
+    """
+
+    y: Array
+    error: float
+    gap: float
+
+    def in_units(self, rows: NDArray[np.int64]) -> FloatFarkas:
+        """The multiplier for the problem whose rows are 2^-rows times those of this one."""
+        y = np.ldexp(self.y, rows - int(rows[self.y > 0.0].max()))
+        return FloatFarkas(y / y.max(), self.error, self.gap)
+
 
 def farkas(problem: LCP) -> Farkas | None:
     """An exact proof that {x >= 0, A x + q >= 0} is empty, or None.
@@ -78,8 +130,34 @@ def farkas(problem: LCP) -> Farkas | None:
     return _multiplier(problem, strict=True)
 
 
+def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFarkas | None:
+    """A proof that {x >= 0, A x + q >= 0} is empty: exact, else to working precision, else None.
+
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse, of any scaling and any order. Tight conditions are solved in rationals up to order
+        `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
+    seconds : float
+        For the linear program.
+    """
+    rows, columns = scales(problem)
+    matrix, vector = scaled_data(problem, rows, columns)
+    vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
+    guess = _linear_program(matrix, vector, seconds)
+    if guess is None or not float(vector @ guess) < 0.0:
+        return None
+    proof = _exact(problem, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
+    return proof if proof is not None else _nearly(LCP(matrix, vector), guess, rows)
+
+
 def empty_interior(problem: LCP) -> Farkas | None:
     """An exact proof that F = {x > 0, A x + q > 0} is empty, or None.
+
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse.
 
     Returns
     -------
@@ -119,16 +197,45 @@ def _multiplier(problem: LCP, strict: bool) -> Farkas | None:
     rows, columns = scales(problem)
     matrix, vector = scaled_data(problem, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    guess = _linear_program(matrix, vector)
+    guess = _linear_program(matrix, vector, math.inf)
     if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
         return None
+    return _exact(problem, matrix, guess, rows, strict, LARGEST_VERTEX)
+
+
+def _exact(
+    problem: LCP, matrix: Matrix, guess: Array, rows: Array, strict: bool, largest: int
+) -> Farkas | None:
+    """The first candidate near the guess that passes the check in integers."""
     # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
-    conditions = _Conditions(
-        integer_rows(_transposed(problem.A), np.zeros(problem.n)), integer_rows(problem.q[None, :], np.zeros(1))[0]
-    )
-    for candidate in _candidates(conditions, matrix, guess, rows):
+    conditions = _integers_of(problem)
+    for candidate in _candidates(conditions, matrix, guess, rows, largest):
         if conditions.hold(candidate, strict):
-            return _farkas(conditions, candidate)
+            return _farkas(conditions.gap, candidate)
+    return None
+
+
+def _nearly(scaled: LCP, guess: Array, rows: Array) -> FloatFarkas | None:
+    """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
+    y = np.where(guess > _SUPPORT, guess, 0.0)
+    conditions = LCP(_transposed(scaled.A), np.zeros(scaled.n))
+    for _ in range(_REFINEMENTS):
+        terms = row_terms(conditions, y)
+        relative = np.where(terms.size > 0.0, terms.w / np.where(terms.size > 0.0, terms.size, 1.0), 0.0)
+        error = max(float(relative.max()), 0.0)
+        gap = float(scaled.q @ y) / float(np.abs(scaled.q) @ y)
+        if error <= PRECISION and gap <= -CLEAR:
+            given = y / rows
+            return FloatFarkas(given / given.max(), error, -gap)
+        support, tight = np.flatnonzero(y), np.flatnonzero(np.abs(relative) <= _NEARLY_TIGHT)
+        if support.size > LARGEST_REFINED or not tight.size:
+            return None
+        block = scaled.A[support][:, tight].T
+        block = block.toarray() if scaled.sparse else block
+        moved = y.copy()
+        # Relative to y, so that small multipliers move little.
+        moved[support] -= y[support] * np.linalg.lstsq(block * y[support], terms.w[tight], rcond=None)[0]
+        y = np.maximum(moved, 0.0)
     return None
 
 
@@ -136,14 +243,15 @@ def _transposed(matrix: Matrix) -> Matrix:
     return sp.csr_array(matrix.T) if sp.issparse(matrix) else matrix.T
 
 
-def _linear_program(matrix: Matrix, vector: Array) -> Array | None:
+def _linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | None:
     """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if there is none, or HiGHS gave up."""
     n = vector.size
     total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
     result = linprog(
         vector, A_ub=_transposed(matrix), b_ub=np.zeros(n), A_eq=total, b_eq=[1.0], bounds=(0, None), method="highs",
-        options={"primal_feasibility_tolerance": _HIGHS_TOLERANCE, "dual_feasibility_tolerance": _HIGHS_TOLERANCE},
-    )
+        options={"primal_feasibility_tolerance": _HIGHS_TOLERANCE, "dual_feasibility_tolerance": _HIGHS_TOLERANCE,
+                 **({"time_limit": seconds} if seconds < math.inf else {})},
+    )  # fmt: skip
     if result.status != 0:
         return None
     solution: Array = np.maximum(result.x, 0.0)
@@ -167,7 +275,15 @@ class _Conditions:
         return all(column.times(y, 1) <= 0 for column in self.columns)
 
 
-def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array) -> Iterator[list[int]]:
+def _integers_of(problem: LCP) -> _Conditions:
+    """The conditions on a multiplier, on the data as given."""
+    columns = integer_rows(_transposed(problem.A), np.zeros(problem.n))
+    return _Conditions(columns, integer_rows(problem.q[None, :], np.zeros(1))[0])
+
+
+def _candidates(
+    conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array, order: int
+) -> Iterator[list[int]]:
     """Integer multipliers near the scaled guess: small denominators, its own floats, the vertex it approximates."""
     weights = integers(rows.max() / rows)[0]  # y of the data as given is the scaled one over the row scales
     largest = float(guess.max())
@@ -181,15 +297,15 @@ def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Arr
     for tolerance in _TIGHT:
         tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -tolerance)]
         for equations in (tight, [*tight, conditions.gap]):
-            found = _vertex(equations, guess, rows)
+            found = _vertex(equations, guess, rows, order)
             if found is not None:
                 yield found
 
 
-def _vertex(equations: list[IntegerRow], guess: Array, rows: Array) -> list[int] | None:
-    """The exact y with the support of the guess, on which the equations vanish; normalised by its scaled sum."""
+def _vertex(equations: list[IntegerRow], guess: Array, rows: Array, order: int) -> list[int] | None:
+    """The exact y with the support of the guess, of at most that order, on which the equations vanish."""
     support = np.flatnonzero(guess > _SUPPORT)
-    if support.size > LARGEST_VERTEX or len(equations) > 4 * LARGEST_VERTEX:
+    if support.size > order or len(equations) > 4 * order:
         return None
     system: Integers = np.zeros((len(equations) + 1, support.size), dtype=object)
     place = np.full(guess.size, -1)
@@ -208,8 +324,8 @@ def _vertex(equations: list[IntegerRow], guess: Array, rows: Array) -> list[int]
     return y
 
 
-def _farkas(conditions: _Conditions, y: list[int]) -> Farkas:
+def _farkas(gap: IntegerRow, y: list[int]) -> Farkas:
     """The multiplier without a common factor, and its exact gap."""
     common = gcd(*y)
     y = [value // common for value in y]
-    return Farkas(tuple(y), Fraction(conditions.gap.times(y, 1), 1 << conditions.gap.shift))
+    return Farkas(tuple(y), Fraction(gap.times(y, 1), 1 << gap.shift))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from fractions import Fraction
 
 import numpy as np
@@ -97,14 +99,85 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
     n = problem.n
     if n > LARGEST_FACES:
         raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
-    dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
-    values = [Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())]
-    flat, scale = over_common_denominator(values)
-    entries, q = [flat[i * n : (i + 1) * n] for i in range(n)], flat[n * n :]
+    entries, q, scale = _integers(problem)
     on_face = {mask: face_point(entries, q, indices(mask)) for mask in range(1 << n)}
     wide = [mask for mask, point in on_face.items() if point is not None and not point.only]
     distinct = {point.x: point for point in on_face.values() if point is not None}
     return Enumeration(tuple(_solution(point, scale, wide) for point in distinct.values()))
+
+
+@frozen
+class Exhaustion:
+    """What trying the complementary faces in exact arithmetic came to, until one held a solution.
+
+    Parameters
+    ----------
+    x : tuple of Fraction, or None
+        A solution, exactly; None proves that there is none, every face having been tried.
+    faces : int
+        How many were tried.
+    """
+
+    x: tuple[Fraction, ...] | None
+    faces: int
+
+    @property
+    def solvable(self) -> bool:
+        """Whether the problem has a solution: a proof either way."""
+        return self.x is not None
+
+    @property
+    def point(self) -> Array | None:
+        """X in floats, shape (n,): infinite or zero where it is beyond their range."""
+        return None if self.x is None else np.array([_float(value) for value in self.x])
+
+
+def _float(value: Fraction) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def exhaust(problem: LCP, seconds: float = math.inf) -> Exhaustion | None:
+    """Whether the LCP has a solution, decided like `solve_by_enumeration`, which goes on to find all of them.
+
+    Parameters
+    ----------
+    problem : LCP
+        Dense or sparse, n at most `LARGEST_FACES`.
+    seconds : float
+        After so long it is given up.
+
+    Returns
+    -------
+    Exhaustion or None
+        None if time was up before the question was decided.
+
+    Raises
+    ------
+    ValueError
+        If n is larger.
+    """
+    if problem.n > LARGEST_FACES:
+        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
+    entries, q, _ = _integers(problem)
+    end = time.perf_counter() + seconds
+    for mask in range(1 << problem.n):
+        point = face_point(entries, q, indices(mask))
+        if point is not None:
+            return Exhaustion(point.x, mask + 1)
+        if time.perf_counter() > end:
+            return None
+    return Exhaustion(None, 1 << problem.n)
+
+
+def _integers(problem: LCP) -> tuple[list[list[int]], list[int], int]:
+    """The entries of A and of q as integers over one scale."""
+    n = problem.n
+    dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
+    flat, scale = over_common_denominator([Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())])
+    return [flat[i * n : (i + 1) * n] for i in range(n)], flat[n * n :], scale
 
 
 def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
+import time
+
+import numpy as np
 from attrs import evolve
 
+from continuation.arrays import Array
+from continuation.counts import Counts
 from problems.lcp.data.problem import LCP
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.proof.certificate import certify
+from problems.lcp.proof.farkas import Farkas, FloatFarkas
+from problems.lcp.proof.verdict import NEARLY, confirmed
+from problems.lcp.reference.enumeration import exhaust
 from problems.lcp.search.outcome import Outcome, Solution
-from problems.lcp.search.search import Search
-
-NEARLY = 1e-5
-"""An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
+from problems.lcp.search.search import Candidate, Search
 
 
 def answer(search: Search, message: str) -> Solution:
@@ -21,31 +27,44 @@ def answer(search: Search, message: str) -> Solution:
     ----------
     search : Search
     message : str
-        What was done; the outcome's own sentence is put before it.
+        What was done; the outcome's own sentence, and that of the proof, are put before it.
     """
-    end = search.best()
-    outcome = Outcome.NOT_FOUND
-    if end is not None and end.certificate.solves(search.tolerance):
-        outcome = Outcome.SOLVED
-    elif search.proof is not None:
-        outcome = Outcome.UNSOLVABLE
-    elif end is not None and end.stationary and not end.certificate.solves(NEARLY):
-        outcome = Outcome.STATIONARY
-    return Solution(
+    end, proof = search.best(), search.proof
+    found = Solution(
         search.problem,
-        outcome,
-        f"{outcome} {message}",
+        _outcome(search, end),
+        message,
         None if end is None else end.certificate,
         tuple(search.paths),
         -1 if end is None else end.path,
         search.counts,
         search.seconds,
-        search.proof,
+        proof if isinstance(proof, Farkas) else None,
+        search.exhaustion,
+        proof if isinstance(proof, FloatFarkas) else None,
     )
+    return evolve(found, message=" ".join(part for part in (str(found.outcome), found.proof, message) if part))
+
+
+def _outcome(search: Search, end: Candidate | None) -> Outcome:
+    """What is certain comes first.
+
+    Where all faces were tried and one holds a solution, but its rounding to floats is not `confirmed`, none is found.
+    """
+    proof, exhaustion = search.proof, search.exhaustion
+    if end is not None and search.confirmed(end.certificate):
+        return Outcome.SOLVED
+    if isinstance(proof, Farkas) or (exhaustion is not None and not exhaustion.solvable):
+        return Outcome.UNSOLVABLE
+    if proof is not None:
+        return Outcome.INFEASIBLE_TO_PRECISION
+    if exhaustion is None and end is not None and end.stationary and not end.certificate.solves(NEARLY):
+        return Outcome.STATIONARY
+    return Outcome.NOT_FOUND
 
 
 def unscaled(problem: LCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
-    """The answer for the problem as given, judged anew there; a proof is of that problem from the beginning.
+    """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units.
 
     Parameters
     ----------
@@ -56,12 +75,60 @@ def unscaled(problem: LCP, scaled: Scaled, found: Solution, tolerance: float) ->
     found : Solution
         Of the scaled problem.
     tolerance : float
-        What `Certificate.solves` is asked.
+        Of the relative residual.
     """
-    message = f"{found.message} Rows and columns were scaled by powers of two; the paths are in scaled units."
-    certificate = None if found.x is None else certify(problem, scaled.x(found.x))
-    outcome = found.outcome
-    if outcome is Outcome.SOLVED and certificate is not None and not certificate.solves(tolerance):
-        outcome = Outcome.NOT_FOUND
-        message += f" Unscaled, the solution misses the tolerance: its residual is {certificate.residual:.1e}."
-    return evolve(found, problem=problem, outcome=outcome, certificate=certificate, message=message)
+    said = "In scaled units."
+    if found.paths:
+        said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
+    found = evolve(found, problem=problem, message=f"{found.message} {said}")
+    exact, nearly = found.farkas, found.float_farkas
+    if exact is not None:
+        moved = exact.in_units(problem, scaled.rows)
+        if not scaled.exact and not moved.holds(problem):
+            message = f"{Outcome.NOT_FOUND} A Farkas vector fails for the digits that scaling lost. {found.message}"
+            return evolve(found, outcome=Outcome.NOT_FOUND, certificate=None, message=message, farkas=None)
+        found = evolve(found, farkas=moved)
+    if nearly is not None:
+        found = evolve(found, float_farkas=nearly.in_units(scaled.rows))
+    return found if found.x is None else _at(found, scaled.x(found.x), tolerance)
+
+
+def beyond_floats(problem: LCP, tolerance: float) -> Solution:
+    """The answer to a small problem whose entries are too far apart for floats: by exact arithmetic alone.
+
+    Parameters
+    ----------
+    problem : LCP
+    tolerance : float
+        Of the relative residual.
+    """
+    began = time.perf_counter()
+    decided = exhaust(problem)
+    assert decided is not None
+    outcome = Outcome.SOLVED if decided.solvable else Outcome.UNSOLVABLE
+    message = "Its entries are too far apart for floats; all complementary faces were tried in exact arithmetic."
+    found = Solution(
+        problem, outcome, f"{outcome} {message}", None, (), -1, Counts(), time.perf_counter() - began, None, decided
+    )
+    return found if decided.point is None else _at(found, decided.point, tolerance)
+
+
+def _at(found: Solution, x: Array, tolerance: float) -> Solution:
+    """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
+    bad = ~np.isfinite(x)
+    certificate = None if bad.any() else certify(found.problem, x)
+    if found.outcome is not Outcome.SOLVED or (
+        certificate is not None and confirmed(found.problem, certificate, tolerance)
+    ):
+        return evolve(found, certificate=certificate)
+    if not bad.any() and (x > 0.0).any() and float(x[x > 0.0].min()) > np.finfo(float).tiny:
+        off = math.nan if certificate is None else certificate.relative_residual
+        message = f"{Outcome.NOT_FOUND} In the units given the point misses the tolerance, by {off:.1e}."
+        return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")
+    i = int(np.argmax(bad)) if bad.any() else int(np.argmin(np.where(x > 0.0, x, np.inf)))
+    message = f"{Outcome.NOT_FOUND} There is a solution, but no float holds it: x[{i}] is {_size(x[i])}."
+    return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")
+
+
+def _size(value: float) -> str:
+    return "beyond 1e308" if not np.isfinite(value) else f"too small, near {value:.0e}"

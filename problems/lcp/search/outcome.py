@@ -14,7 +14,8 @@ from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import LCP
 from problems.lcp.proof.certificate import Certificate
-from problems.lcp.proof.farkas import Farkas
+from problems.lcp.proof.farkas import Farkas, FloatFarkas
+from problems.lcp.reference.enumeration import Exhaustion
 
 
 class Outcome(IntEnum):
@@ -24,6 +25,7 @@ class Outcome(IntEnum):
     STATIONARY = 1
     UNSOLVABLE = 2
     NOT_FOUND = 3
+    INFEASIBLE_TO_PRECISION = 4
 
     def __str__(self) -> str:
         return _SENTENCES[self]
@@ -38,11 +40,19 @@ class Outcome(IntEnum):
 
 
 _SENTENCES = {
-    Outcome.SOLVED: "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, verified in twice the working precision.",
+    Outcome.SOLVED: "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, each row relative to its own terms, "
+    "verified in twice the working precision.",
     Outcome.STATIONARY: "A stationary point of min x'w over x >= 0, w >= 0 was found, and it does not solve the LCP; "
     "other solutions may exist.",
-    Outcome.UNSOLVABLE: "The LCP has no solution: a Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
+    Outcome.UNSOLVABLE: "The LCP has no solution, which is proved exactly.",
     Outcome.NOT_FOUND: "No solution was found, and none is excluded.",
+    Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x >= 0 has w >= 0: a vector y >= 0 has q'y < 0, and "
+    "A'y <= 0 but for rounding. A change of A in its last digits makes that a proof.",
+}
+_PROOFS = {
+    "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
+    "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried in exact arithmetic.",
+    "unrepresented": "In exact arithmetic there is one (`exhaustion.x`), which rounded to floats is none: q drowns.",
 }
 
 
@@ -67,7 +77,11 @@ class Solution:
     seconds : float
         Wall-clock time.
     farkas : Farkas or None
-        The proof of UNSOLVABLE.
+        The proof of UNSOLVABLE where there is no feasible point.
+    exhaustion : Exhaustion or None
+        What trying all faces in exact arithmetic came to, where that was done: the other proof of UNSOLVABLE.
+    float_farkas : FloatFarkas or None
+        The vector y of INFEASIBLE_TO_PRECISION.
     """
 
     problem: LCP
@@ -79,6 +93,17 @@ class Solution:
     counts: Counts
     seconds: float
     farkas: Farkas | None = None
+    exhaustion: Exhaustion | None = None
+    float_farkas: FloatFarkas | None = None
+
+    @property
+    def proof(self) -> str:
+        """What proves UNSOLVABLE, or that the solution which was not found exists, as a sentence; else empty."""
+        if self.outcome is Outcome.NOT_FOUND and self.exhaustion is not None and self.exhaustion.solvable:
+            return _PROOFS["unrepresented"]
+        if self.outcome is not Outcome.UNSOLVABLE:
+            return ""
+        return _PROOFS["farkas" if self.farkas is not None else "exhaustion"]
 
     def __repr__(self) -> str:
         found = "no point" if self.certificate is None else f"residual {self.residual:.1e}"
@@ -106,12 +131,12 @@ class Solution:
 
     @property
     def residual(self) -> float:
-        """The natural residual max_i |min(x_i, w_i)|; infinite without a point."""
+        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point."""
         return math.inf if self.certificate is None else self.certificate.residual
 
     @property
     def relative_residual(self) -> float:
-        """The residual over 1 + max(|q|_inf, |A|_inf |x|_inf)."""
+        """The same with each row relative to its own terms: see `Certificate`."""
         return math.inf if self.certificate is None else self.certificate.relative_residual
 
     @property

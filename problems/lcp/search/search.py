@@ -23,20 +23,13 @@ from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import LCPHomotopy
-from problems.lcp.proof.certificate import Certificate, certify
-from problems.lcp.proof.farkas import Farkas
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.farkas import Farkas, FloatFarkas
+from problems.lcp.proof.verdict import confirmed, stationary
+from problems.lcp.reference.enumeration import Exhaustion
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.restarts import FAR_STARTS, Band, Restart, light, reweighted, trace_light
 from problems.lcp.search.route import follow
-
-POLISHED = 1e-15
-"""An end of this relative residual, a few units in the last place, needs no polish."""
-
-STATIONARY = 1e-6
-"""Relative to the data and the point: how well the optimality conditions hold at what is called stationary.
-
-A degenerate end is a series in the root of lambda, so that half of the digits of a good end can be asked of it.
-"""
 
 IN_FLIGHT = 64
 """Restarts handed to an executor before the first of them has come back: more than one machine has workers.
@@ -82,8 +75,10 @@ class Search:
     paths : list of Path
     ends : list of Candidate
         Where the paths, and the finish, led.
-    proof : Farkas or None
-        That there is no solution.
+    proof : Farkas, FloatFarkas or None
+        That there is no feasible point, exactly or to working precision.
+    exhaustion : Exhaustion or None
+        What trying all faces came to.
     began : float
     """
 
@@ -97,7 +92,8 @@ class Search:
     counts: Counts = field(factory=Counts)
     paths: list[Path] = field(factory=list)
     ends: list[Candidate] = field(factory=list)
-    proof: Farkas | None = None
+    proof: Farkas | FloatFarkas | None = None
+    exhaustion: Exhaustion | None = None
     began: float = field(factory=time.perf_counter)
     _kept: int = field(default=0, init=False)
 
@@ -112,6 +108,11 @@ class Search:
         return time.perf_counter() - self.began
 
     @property
+    def seconds_left(self) -> float:
+        """Of the budget: infinite where that does not look at the clock."""
+        return max(self.budget.seconds - self.seconds, 0.0)
+
+    @property
     def exhausted(self) -> str:
         """Which limit of the budget is reached; empty if none is."""
         return self.budget.spent(self.counts, self.seconds)
@@ -119,7 +120,11 @@ class Search:
     @property
     def solved(self) -> bool:
         """Whether the last end is a solution."""
-        return bool(self.ends) and self.ends[-1].certificate.solves(self.tolerance)
+        return bool(self.ends) and self.confirmed(self.ends[-1].certificate)
+
+    def confirmed(self, certificate: Certificate) -> bool:
+        """Whether a point may be called a solution."""
+        return confirmed(self.problem, certificate, self.tolerance)
 
     def accept(self, certificate: Certificate) -> None:
         """Take a point that no path led to into account."""
@@ -154,27 +159,21 @@ class Search:
         self.counts = self.counts + path.counts
         if path.steps:
             arrived = path.status is Status.REACHED_TARGET
-            stationary = arrived and not weighted and self._stationary(path)
-            self.ends.append(Candidate(self._certified(path, arrived), len(self.paths), stationary))
+            at_stationary = arrived and not weighted and stationary(self.problem, path.endpoint.y)
+            self.ends.append(Candidate(self._certified(path, arrived), len(self.paths), at_stationary))
             self._kept += len(path) * path.endpoint.u.size
         if self._kept > LARGEST_KEPT:
             light(path)
         self.paths.append(path)
 
-    def _stationary(self, path: Path) -> bool:
-        """Whether the end satisfies the optimality conditions of min x'w: those that the KKT homotopy relaxes."""
-        end, n = path.endpoint, self.problem.n
-        if end.y.size != 3 * n:
-            return False
-        size = STATIONARY * (1.0 + float(np.abs(self.problem.q).max()) + float(np.abs(end.y).max()))
-        lowest = min(float(end.y.min()), float(self.problem.w(end.y[:n]).min()))
-        return end.residual_norm <= size and lowest >= -size
-
     def _certified(self, path: Path, arrived: bool) -> Certificate:
         """The certificate of a path's end, which the finish brings to round-off where it can."""
         x = np.maximum(path.endpoint.y[: self.problem.n], 0.0)
         end = certify(self.problem, x)
-        if self.finish is None or not arrived or end.relative_residual <= POLISHED:
+        if arrived and not self.confirmed(end):
+            zeros = certify(self.problem, x, self.tolerance)
+            end = zeros if zeros.relative_residual < end.relative_residual else end
+        if self.finish is None or not arrived or end.relative_residual <= ROUND_OFF:
             return end
         before = self.finish.counts.factorizations
         polished = self.finish.settle(x > end.w, Policy(steps=0), x)
@@ -263,7 +262,7 @@ class Search:
         b, counts = self.budget, self.counts
         return Budget(
             steps=max(b.steps - counts.accepted, 1.0),
-            seconds=max(b.seconds - self.seconds, 1e-3),
+            seconds=max(self.seconds_left, 1e-3),
             factorizations=max(b.factorizations - counts.factorizations, 1.0),
         )
 
@@ -273,6 +272,6 @@ class Search:
             return None
 
         def rank(end: Candidate) -> tuple[bool, bool, float]:
-            return not end.certificate.solves(self.tolerance), not end.stationary, end.certificate.residual
+            return not self.confirmed(end.certificate), not end.stationary, end.certificate.residual
 
         return min(self.ends, key=rank)

@@ -27,7 +27,8 @@ from problems.lcp.data.scaling import balanced
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import positive_vector
-from problems.lcp.search.judging import answer, unscaled
+from problems.lcp.proof.verdict import LARGEST_DECIDED
+from problems.lcp.search.judging import answer, beyond_floats, unscaled
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.search import Search
 from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
@@ -113,6 +114,9 @@ def solve(
         restarts = min(10 * problem.n, 1000) if automatic else 0
     start = None if x0 is None else positive_vector("x0", x0, problem.n)
     scaled = balanced(problem) if automatic else None
+    beyond = scaled is not None and not scaled.exact and problem.n <= LARGEST_DECIDED
+    if beyond:
+        scaled = None
     if scaled is not None and start is not None:
         start = scaled.u(start)
     structure = Structure(problem if scaled is None else scaled.problem)
@@ -125,14 +129,19 @@ def solve(
         progress,
         dict(options),
     )
-    case = Case(search, problem, start, "kkt" if automatic else homotopy, restarts, seed, executor)
+    case = Case(search, start, "kkt" if automatic else homotopy, restarts, seed, executor)
     strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
-    with search.log if search.log is not None else nullcontext():
-        settled = settled_by(case, strategy)
-        found = answer(search, _account(case, settled))
+    # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
+    with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
+        if beyond:
+            found = beyond_floats(problem, tolerance)
+        else:
+            settled = settled_by(case, strategy)
+            found = answer(search, _account(case, settled))
+            found = found if scaled is None else unscaled(problem, scaled, found, tolerance)
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)
-    return found if scaled is None else unscaled(problem, scaled, found, tolerance)
+        return found
 
 
 def _check_arguments(
@@ -176,11 +185,11 @@ def _archive_without_path(search: Search, found: Solution) -> None:
 
     With z1 = w and z2 = x a solution satisfies the equations of that homotopy at lambda = 0.
     """
-    homotopy = KKTHomotopy(search.problem, structure=search.structure)
+    homotopy = KKTHomotopy(found.problem)
     path = Path(status=Status.INTERRUPTED, message=f"No path was traced. {found.message}")
-    end = search.best()
+    end = found.certificate
     if end is not None:
-        x, w = end.certificate.x, np.maximum(end.certificate.w, 0.0)
+        x, w = end.x, np.maximum(end.w, 0.0)
         y = np.concatenate([x, w, x])
         u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
         observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)

@@ -22,8 +22,10 @@ from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_fact
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.proof.certificate import certify
-from problems.lcp.proof.farkas import farkas
+from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
+from problems.lcp.proof.verdict import LARGEST_DECIDED
+from problems.lcp.reference.enumeration import exhaust
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
 from problems.lcp.search.search import Search
 
@@ -39,6 +41,9 @@ MOST_Z_STEPS = 1000
 LARGEST_PROOF = 300
 """The largest order at which a proof that there is no solution is looked for unasked: larger ones take seconds."""
 
+PROOF_SHARE = 0.2
+"""Of the time left, where that is limited, the most that a proof takes: it is mostly far quicker than a path."""
+
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
 
@@ -51,8 +56,6 @@ class Case:
     ----------
     search : Search
         What is found goes there.
-    given : LCP
-        The problem as given, whatever the units of the search.
     x0 : Array or None
         A start, in the units of the search.
     asked : str
@@ -72,7 +75,6 @@ class Case:
     """
 
     search: Search
-    given: LCP
     x0: Array | None
     asked: str
     restarts: int
@@ -161,10 +163,18 @@ def _proximally_from_last(case: Case) -> bool:
 
 
 def _proof(case: Case) -> bool:
-    """Of the problem as given, whatever units the search has: so the proof is the one that is handed over."""
     case.proof_sought = True
-    case.search.proof = farkas(case.given)
+    case.search.proof = infeasibility(case.problem, PROOF_SHARE * case.search.seconds_left)
     return case.search.proof is not None
+
+
+def _all_faces(case: Case) -> bool:
+    case.search.exhaustion = found = exhaust(case.problem, case.search.seconds_left)
+    if found is None:
+        return False
+    if found.point is not None and np.isfinite(found.point).all():
+        case.search.accept(certify(case.problem, found.point))
+    return True
 
 
 def _feasible_start(case: Case) -> bool:
@@ -232,6 +242,7 @@ def _lacks_feasible_start(case: Case) -> bool:
 
 
 _PROVED = "A linear program gave the proof."
+_TRIED = "All complementary faces were tried in exact arithmetic."
 _FOLLOWED = "Solved by the path of the {case.followed} homotopy."
 _SETTLED = "Solved by active sets alone, before any path."
 _SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
@@ -254,6 +265,7 @@ PATHS: tuple[Attempt, ...] = (
     Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
     Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, _PROVED),
     Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
+    Attempt("all faces", lambda c: c.in_budget and c.problem.n <= LARGEST_DECIDED, _all_faces, _TRIED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, _RESTARTED),
 )
 """Any of these may cost the whole budget."""

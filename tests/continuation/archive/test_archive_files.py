@@ -50,15 +50,15 @@ def test_foreign_hdf5(tmp_path):
     assert refused(tmp_path / "other.h5").startswith("is an HDF5 file, but not an archive of paths")
     with h5py.File(tmp_path / "other.h5", "a") as file:
         file.attrs["schema"] = "weather-2"
-    assert refused(tmp_path / "other.h5") == "has the schema 'weather-2', expected 'continuation-path-1'"
+    assert refused(tmp_path / "other.h5") == "has the schema 'weather-2', expected 'continuation-path-2'"
 
 
 def test_newer_version(archive):
     with h5py.File(archive, "a", libver="latest") as file:
-        file.attrs["schema"] = "continuation-path-2"
+        file.attrs["schema"] = "continuation-path-3"
         file.attrs["library_version"] = "3.1.4"
     message = refused(archive)
-    assert message.startswith("has the newer schema continuation-path-2, this library reads up to continuation-path-1")
+    assert message.startswith("has the newer schema continuation-path-3, this library reads up to continuation-path-2")
     assert "continuation 3.1.4" in message
     assert "xarray" in message
 

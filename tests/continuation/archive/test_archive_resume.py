@@ -21,7 +21,8 @@ from continuation import (
 )
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpack
-from continuation.archive.resume import _homotopy
+from continuation.archive.resume import stored_homotopy
+from continuation.archive.trust import registry
 from continuation.metric import Relative
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth
 
@@ -199,7 +200,9 @@ def _line(y, lam):
 def test_a_homotopy_of_functions_is_stored_by_name_and_arrays(tmp_path):
     homotopy = from_functions(_line, start=(np.array([0.3, 0.6]), 0.1), target=1.0)
     interrupt(tmp_path / "run.h5", homotopy, 1)
-    assert_same_path(resume(tmp_path / "run.h5"), trace(homotopy))
+    with pytest.raises(ArchiveError, match=r"_line is a function, which is not trusted: pass it in trust="):
+        resume(tmp_path / "run.h5")
+    assert_same_path(resume(tmp_path / "run.h5", trust=[_line]), trace(homotopy))
 
 
 class Stateful:
@@ -241,7 +244,9 @@ def test_a_homotopy_that_cannot_be_stored_is_asked_for(tmp_path):
 
 def test_a_homotopy_that_says_what_to_store(tmp_path):
     interrupt(tmp_path / "run.h5", Telling(2.0), 2)
-    assert_same_path(resume(tmp_path / "run.h5"), trace(Telling(2.0)))
+    with pytest.raises(ArchiveError, match=r"Telling is not registered: pass it in trust=.*pass homotopy="):
+        resume(tmp_path / "run.h5")
+    assert_same_path(resume(tmp_path / "run.h5", trust=[Telling]), trace(Telling(2.0)))
 
 
 @attrs.frozen(eq=False)
@@ -272,10 +277,10 @@ def test_matrices_come_back_as_they_lay_in_memory(tmp_path, order, first):
         assert any(step.index == 2 for step in steps)
         steps.close()
     with open_archive(tmp_path / "run.h5") as archive:
-        made = _homotopy(archive, archive.checkpoint(), None)
+        made = stored_homotopy(archive, archive.checkpoint(), registry([Quadric]))
     assert made.matrix.flags == matrix.flags
     assert np.array_equal(made.matrix, matrix)
-    assert_same_path(resume(tmp_path / "run.h5"), trace(homotopy))
+    assert_same_path(resume(tmp_path / "run.h5", trust=[Quadric]), trace(homotopy))
 
 
 def test_a_monitor_that_cannot_be_stored_is_asked_for(tmp_path):
@@ -305,7 +310,7 @@ def test_an_exception_of_the_homotopy_is_an_interruption(tmp_path):
         trace(homotopy, archive=tmp_path / "run.h5", events=[TargetValue(0.2, terminal=0)])
     path = trace(Winding(2.0), events=[TargetValue(0.2, terminal=0)])
     assert len(path.events) == 2
-    assert_same_path(resume(tmp_path / "run.h5"), path)
+    assert_same_path(resume(tmp_path / "run.h5", trust=[Winding]), path)
 
 
 def test_what_has_ended_or_spent_its_budget_says_so(tmp_path):

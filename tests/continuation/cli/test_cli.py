@@ -35,7 +35,7 @@ def archive(tmp_path_factory):
 
 
 class Fold:
-    """lam = 1 - y^2; a class that an archive can name and make again."""
+    """lam = 1 - y^2; a class that an archive can name, and make again for who trusts it."""
 
     target = None
 
@@ -225,7 +225,10 @@ def test_plot_writes_a_picture(run, archive, tmp_path, options):
 def test_resume_goes_on_to_the_end(run, tmp_path):
     file = tmp_path / "run.h5"
     trace_fold(file, budget=continuation.Budget(steps=3))
-    status, out, _ = run("resume", file, "--steps", 100)
+    status, _, err = run("resume", file, "--steps", 100)
+    assert status == BAD_INPUT
+    assert "Fold is not registered: pass it in trust=[...]" in err
+    status, out, _ = run("resume", file, "--steps", 100, "--trust", f"{__name__}:Fold")
     assert status == SUCCESS
     assert out.startswith("STOPPED_AT_EVENT")
     with open_archive(file) as stored:
@@ -235,7 +238,7 @@ def test_resume_goes_on_to_the_end(run, tmp_path):
 def test_resume_that_does_not_arrive_exits_with_one(run, tmp_path):
     file = tmp_path / "run.h5"
     trace_fold(file, budget=continuation.Budget(steps=3))
-    status, out, _ = run("resume", file, "--steps", 4)
+    status, out, _ = run("resume", file, "--steps", 4, "--trust", f"{__name__}:Fold")
     assert status == FAILURE
     assert out.startswith("BUDGET_EXHAUSTED")
 

@@ -165,7 +165,7 @@ def test_weights_of_a_ratio_of_1e8_do_not_matter(data):
     z1, z2 = np.split(10.0 ** np.array(powers), 2)
     path = trace(KKTHomotopy(problem, x0, z1, z2))
     assert path.status is Status.REACHED_TARGET
-    assert certify(problem, x_at_end(problem, path)).solves(1e-8)
+    assert certify(problem, x_at_end(problem, path), 1e-8).solves(1e-8)
 
 
 @PRESETS
@@ -197,7 +197,7 @@ def test_an_end_inside_a_face_of_solutions(name, preset):
     problem = LCP(A, q)
     path = trace(KKTHomotopy(problem, x0), preset=preset)
     assert path.status is Status.REACHED_TARGET
-    assert certify(problem, x_at_end(problem, path)).solves(1e-8)
+    assert certify(problem, x_at_end(problem, path), 1e-8).solves(1e-8)
     assert path.endpoint.residual_norm < 1e-12
     assert 0.0 < path.end_error < 1e-8
     reference = trace(KKTHomotopy(problem, x0))

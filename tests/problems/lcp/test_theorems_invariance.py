@@ -166,7 +166,7 @@ def test_an_end_of_the_earlier_homotopies_is_a_solution(make):
             assert path.status is Status.DIVERGED
             return
         x = np.maximum(path.endpoint.y[: problem.n], 0.0)
-        assert certify(problem, x).solves(1e-7)
+        assert certify(problem, x, 1e-7).solves(1e-7)
         truth = solve_by_enumeration(problem)
         assert truth.solvable
         assert not truth.complete or any(near(x, point) for point in truth.points)
@@ -181,7 +181,7 @@ def test_a_certified_end_of_the_kkt_path_is_one_of_the_solutions(pair):
     problem, x0 = pair
     x = np.maximum(end(KKTHomotopy(problem, x0)), 0.0)
     truth = solve_by_enumeration(problem)
-    solved = certify(problem, x).solves(1e-7)
+    solved = certify(problem, x, 1e-7).solves(1e-7)
     if solved:
         assert truth.solvable
     if truth.complete:

@@ -90,11 +90,17 @@ def test_accurate_w_has_twice_the_precision(sparse):
     assert np.abs(problem.w(x) - truth).max() > 0.1 * np.abs(truth).max()
 
 
-def test_overflow_is_an_infinite_residual_and_no_warning():
+def test_products_beyond_the_range_of_floats_are_judged_without_overflow_or_warning():
     problem = LCP([[1e200, -1e200], [0.0, 1.0]], [0.0, 0.0])
     certificate = certify(problem, np.array([1e200, 1e200]))
-    assert certificate.residual == np.inf or certificate.relative_residual == np.inf
+    np.testing.assert_array_equal(certificate.w, [0.0, 1e200])
+    assert certificate.relative_residual == 1.0
     assert not certificate.solves()
+    assert certify(LCP([[1e200]], [0.0]), np.array([1e200])).w[0] == np.inf
+    # 1e-200 times 1e-200 is no zero: w1 = -5e-401, which no float holds, is half of what its row is made of.
+    small = certify(LCP([[1e-200, 0.0], [0.0, 1.0]], [-1e-300, 0.0]), np.array([1e-100, 0.0]))
+    assert small.solves()
+    assert not certify(LCP([[-1e-200, -1e-200], [0.0, -1.0]], [0.0, 0.0]), np.array([1e-200, 0.0])).solves()
 
 
 def test_ragged_sparse_rows():
@@ -122,7 +128,8 @@ def test_parts_of_the_certificate():
     assert (certificate.negative_x, certificate.negative_w) == (0.5, 1.0)
     assert certificate.complementarity == 3.0
     assert certificate.residual == 1.0
-    assert certificate.relative_residual == 1.0 / 5.0
+    # x1 = -1/2 is 1/3 of the terms of row 1, 1/2 + 1, and w2 = -1 is 1/7 of those of row 2, 3 + 4.
+    assert certificate.relative_residual == 1.0 / 3.0
 
 
 def test_the_ends_of_the_counterexamples_are_not_certified():
@@ -131,11 +138,13 @@ def test_the_ends_of_the_counterexamples_are_not_certified():
 
 
 def test_a_point_running_to_infinity_is_not_called_a_solution():
-    """x = (t, 0) solves LCP(0, A), so the relative residual falls like 1/t although no solution exists."""
-    problem = LCP([[0.0, 0.0], [1.0, 0.0]], [-1.0, 0.0])
-    certificate = certify(problem, np.array([1e12, 0.0]))
+    """x = t (1, 1) solves LCP(0, A), so the relative residual falls like 1/t although no solution exists."""
+    problem = LCP([[1.0, -1.0], [-1.0, 1.0]], [-1.0, -1.0])
+    certificate = certify(problem, np.array([1e12, 1e12]))
     assert certificate.relative_residual < 1e-10
+    assert certificate.drowned == 1.0
     assert not certificate.solves()
+    assert not certify(LCP([[0.0, 0.0], [1.0, 0.0]], [-1.0, 0.0]), np.array([1e12, 0.0])).solves()
 
 
 def test_bad_points_are_named():

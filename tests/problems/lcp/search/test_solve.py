@@ -60,7 +60,7 @@ def test_the_counterexamples_end_stationary_and_say_so(case):
 
 def test_stationary_means_that_the_optimality_conditions_hold():
     case = COUNTEREXAMPLES[0]
-    solution = lcp.solve(case.problem, restarts=6)
+    solution = lcp.solve(case.problem, "kkt", restarts=6)
     A, q, n = case.A, case.q, case.q.size
     x, z1, z2 = np.split(solution.path.endpoint.y, 3)
     w = A @ x + q
@@ -80,9 +80,36 @@ def test_unsolvable_comes_with_a_proof_that_can_be_checked_by_hand():
         assert problem.q @ y < 0
 
 
-def test_a_feasible_problem_without_solution_is_not_called_unsolvable():
-    solution = lcp.solve(COUNTEREXAMPLES[1].problem, restarts=3)
+def test_a_feasible_problem_without_solution_is_called_unsolvable_only_where_all_faces_were_tried():
+    problem = COUNTEREXAMPLES[1].problem
+    solution = lcp.solve(problem, "kkt", restarts=3)
     assert solution.outcome in (Outcome.STATIONARY, Outcome.NOT_FOUND)
+    assert solution.proof == ""
+    decided = lcp.solve(problem)
+    assert decided.outcome is Outcome.UNSOLVABLE
+    assert decided.farkas is None
+    assert decided.exhaustion.faces == 2**problem.n
+    assert not decided.exhaustion.solvable
+    assert "complementary faces" in decided.proof
+    assert decided.proof in decided.message
+
+
+def test_collapse_is_infeasible_to_working_precision():
+    # Three bars under a load above their joint capacity: y = (1, 1, 1) has q'y = -0.1, and A'y = 0 but for rounding.
+    problem = lcp.LCP(np.eye(3) - np.ones((3, 3)) / 3, np.array([0.3, 0.6, 1.2]) - 2.2 / 3)
+    assert lcp.farkas(problem) is None
+    solution = lcp.solve(problem)
+    assert solution.outcome is Outcome.INFEASIBLE_TO_PRECISION
+    assert not solution.paths
+    np.testing.assert_allclose(solution.float_farkas.y, np.ones(3), rtol=1e-12)
+    assert solution.float_farkas.error <= 1e-14
+    assert solution.float_farkas.gap == pytest.approx(0.1 / np.abs(problem.q).sum())
+    units = np.array([1e-6, 3.0, 1e5])
+    moved = lcp.solve(lcp.LCP(units[:, None] * problem.A, units * problem.q))
+    assert moved.outcome is Outcome.INFEASIBLE_TO_PRECISION
+    y = moved.float_farkas.y * units
+    np.testing.assert_allclose(y / y.max(), np.ones(3), rtol=1e-12)
+    assert lcp.solve(lcp.LCP(problem.A, np.array([0.3, 0.6, 1.2]) - 2.05 / 3)).outcome is Outcome.SOLVED
 
 
 @pytest.mark.parametrize("name", ["auto", "kkt", "wang", "yu", "xu", "kmm"])
@@ -108,7 +135,7 @@ def test_nonnegative_q_is_solved_by_zero_without_work():
 def test_without_finish_the_path_is_the_pure_homotopy():
     solution = lcp.solve(PD, finish=False)
     assert solution.outcome is Outcome.SOLVED
-    homotopy = lcp.WangHomotopy(PD)
+    homotopy = lcp.WangHomotopy(balanced(PD).problem)
     pure = continuation.trace(homotopy, preset=continuation.FAST)
     np.testing.assert_array_equal(solution.path.u, pure.u)
 
@@ -161,7 +188,7 @@ def test_scales_from_1e_minus_8_to_1e8(symmetric):
     if symmetric:
         np.testing.assert_array_equal(scaled.problem.A, scaled.problem.A.T)
     assert solution.problem is problem
-    assert balanced(PD) is None
+    assert balanced(lcp.LCP(np.eye(3), [1.0, -1.0, 1.0])) is None
 
 
 def test_scaled_paths_solve_what_needs_a_path():

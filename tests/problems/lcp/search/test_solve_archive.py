@@ -8,7 +8,6 @@ import pytest
 import continuation
 from continuation.archive import open_archive
 from problems import lcp
-from problems.paper import COUNTEREXAMPLES
 
 PD = lcp.LCP([[4.0, -1.0, 0.5], [1.0, 3.0, -1.0], [0.0, 1.0, 2.0]], [-1.0, 1.0, -2.0])
 
@@ -24,7 +23,14 @@ def test_the_archive_holds_the_path(tmp_path):
 BIMATRIX = lcp.LCP([[0, 0, 1, 2], [0, 0, 3, 1], [1, 3, 0, 0], [2, 1, 0, 0]], [-1.0, -1.0, -1.0, -1.0])
 
 
-@pytest.mark.parametrize("problem", [PD, BIMATRIX, COUNTEREXAMPLES[0].problem], ids=["no path", "a path", "restarts"])
+# Feasible, without a solution, and too large for all faces to be tried: one block of two, and ones.
+RESTARTED = lcp.LCP(
+    np.block([[np.array([[0.0, 1.0], [0.0, 0.0]]), np.zeros((2, 11))], [np.zeros((11, 2)), np.eye(11)]]),
+    np.append([-1.0, 1.0], -np.ones(11)),
+)
+
+
+@pytest.mark.parametrize("problem", [PD, BIMATRIX, RESTARTED], ids=["no path", "a path", "restarts"])
 @pytest.mark.parametrize("workers", [0, 1])
 def test_an_archive_changes_nothing_of_what_is_done(problem, workers, tmp_path):
     def solved(file):

@@ -9,6 +9,7 @@ import continuation
 from problems import lcp
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
+from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.search import strategy
 from problems.lcp.search.search import Search
 from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
@@ -21,7 +22,7 @@ def case(problem, **changes):
     structure = lcp.Structure(problem)
     search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, continuation.Budget(), None, False, {})
     asked = {"x0": None, "asked": "kkt", "restarts": 2, "seed": 0, "executor": None} | changes
-    return Case(search, problem, **asked)
+    return Case(search, **asked)
 
 
 def tried(one, order):
@@ -39,10 +40,11 @@ def test_the_order_depends_on_the_matrix():
     skew = np.array([[1.0, 2.0, 0.0], [-2.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     q = [-1.0, 1.0, 0.0]
     expected = [ZERO, "active sets of A + shift I, from the last", "proof, early"]
-    expected += ["Wang's path", "proof", "KKT path", "restarts"]
+    expected += ["Wang's path", "proof", "KKT path", "all faces", "restarts"]
     assert tried(case(lcp.LCP(skew, q)), AUTOMATIC) == expected
     negative = lcp.LCP(-np.eye(3) + np.ones((3, 3)) * [[0.0], [-3.0], [1.0]], q)
-    assert tried(case(negative), AUTOMATIC) == [ZERO, "proof, early", "KKT path, first", "proof", "restarts"]
+    expected = [ZERO, "proof, early", "KKT path, first", "proof", "all faces", "restarts"]
+    assert tried(case(negative), AUTOMATIC) == expected
     definite = lcp.LCP(np.full((3, 3), 1.0) + np.eye(3), q)
     assert tried(case(definite), AUTOMATIC)[:2] == ["active sets of A + shift I, from x = 0", ZERO]
     assert tried(case(lcp.LCP(skew, np.ones(3))), AUTOMATIC)[0] == "x = 0"
@@ -52,13 +54,19 @@ def test_the_order_depends_on_the_matrix():
 
 
 def test_a_path_that_is_wanted_comes_first():
-    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", "restarts"]
+    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", "all faces", "restarts"]
 
 
 def test_what_is_dear_is_left_out_when_the_budget_is_spent():
     one = case(lcp.LCP(np.eye(50), -np.ones(50)))
     one.search.counts.accepted = 10_000
     assert not {"proof", "KKT path"} & set(tried(one, AUTOMATIC))
+
+
+def test_all_faces_are_tried_where_they_are_few():
+    assert "all faces" in tried(case(lcp.LCP(np.eye(12), -np.ones(12))), AUTOMATIC)
+    assert "all faces" not in tried(case(lcp.LCP(np.eye(13), -np.ones(13))), AUTOMATIC)
+    assert "all faces" not in tried(case(INFEASIBLE), NAMED)
 
 
 def test_a_homotopy_by_name_looks_for_the_start_that_it_needs():
@@ -86,13 +94,13 @@ def test_another_attempt_is_one_more_entry():
         (INFEASIBLE, {"homotopy": "kkt"}, 1),
         # Phase I has the proof already.
         (INFEASIBLE, {"homotopy": "zhao"}, 0),
-        # Scaled: the proof is of the problem as given from the beginning.
+        # Scaled: the proof is moved to the problem as given.
         (lcp.LCP([[0.0, 1e9], [-1e-9, 0.0]], [-1e9, -1.0]), {}, 1),
     ],
 )
 def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, options, expected, monkeypatch):
     calls = []
-    monkeypatch.setattr(strategy, "farkas", lambda p: calls.append(p) or lcp.farkas(p))
+    monkeypatch.setattr(strategy, "infeasibility", lambda *a: calls.append(a) or infeasibility(*a))
     solution = lcp.solve(problem, **options)
     assert solution.outcome is lcp.Outcome.UNSOLVABLE
     y = np.array(solution.farkas.y, dtype=float)

@@ -35,7 +35,8 @@ def test_large_problems_have_two_paths_at_least():
 def test_no_clock_decides_the_answer(monkeypatch):
     """Ten minutes pass between any two looks at the clock, and the search goes on as if none had."""
     r = np.random.default_rng(3)
-    problem = lcp.LCP(r.standard_normal((6, 6)), -r.random(6))
+    # Larger than what trying all faces decides.
+    problem = lcp.LCP(r.standard_normal((13, 13)), -r.random(13))
     usual = lcp.solve(problem, restarts=4)
     now = iter(range(0, 10**9, 600))
     monkeypatch.setattr("problems.lcp.search.search.time.perf_counter", lambda: float(next(now)))

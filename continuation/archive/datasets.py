@@ -1,0 +1,126 @@
+"""Datasets of a file that may come from anybody: of the type expected, stored in the file itself, as large as they say.
+
+External, soft and user-defined links, virtual and external storage, and filters that are not ours are refused: each of
+them lets a file show what is not in it. Sizes claimed are held against the bytes that are there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import h5py
+import numpy as np
+from h5py import h5d, h5l, h5z
+
+LIMIT = 1 << 28
+"""Bytes that a compressed dataset may unfold to, unless the caller says more. Others are no larger than their file."""
+
+_CHUNK = 1 << 26
+"""Bytes of a chunk: HDF5 reads it whole. Ours have 512 KiB, or one row."""
+
+_FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF)
+"""Those that h5py brings itself; any other would be a library that is loaded to read the file."""
+
+
+class StructureError(ValueError):
+    """Something that is in no archive; the message says what."""
+
+
+def member(group: Any, name: str) -> Any:
+    """A group or dataset in a group, by a hard link.
+
+    Raises
+    ------
+    StructureError
+        If there is none of that name, or it is a link to somewhere else.
+    """
+    raw = name.encode()
+    if raw not in group.id:
+        raise StructureError(f"it has no {name}")
+    if group.id.links.get_info(raw).type != h5l.TYPE_HARD:
+        raise StructureError(f"{name} is a link to somewhere else")
+    return group[name]
+
+
+def names(group: Any) -> list[str]:
+    """The names of all that is in a group."""
+    return [raw.decode(errors="surrogateescape") for raw in group.id]
+
+
+def subgroup(group: Any, name: str) -> Any:
+    """A group in a group.
+
+    Raises
+    ------
+    StructureError
+        If it is anything else.
+    """
+    found = member(group, name)
+    if not isinstance(found, h5py.Group):
+        raise StructureError(f"{name} is no group")
+    return found
+
+
+def dataset(
+    group: Any, name: str, kind: np.dtype[Any] | None, shape: Sequence[int | None] | None, limit: int = LIMIT
+) -> Any:
+    """A dataset in a group, its storage checked.
+
+    Parameters
+    ----------
+    group : h5py.Group
+    name : str
+    kind : dtype, optional
+        What it holds; any numbers without it.
+    shape : sequence of int or None, optional
+        Its shape; None for a length that is checked when rows are read.
+    limit : int
+        Bytes that it may unfold to where it is compressed.
+
+    Raises
+    ------
+    StructureError
+        If it is something else, or could be larger than what is stored of it.
+    """
+    found = member(group, name)
+    if not isinstance(found, h5py.Dataset):
+        raise StructureError(f"{name} is no dataset")
+    if kind is not None and found.dtype != kind and not (kind.kind == "S" and found.dtype.itemsize == kind.itemsize):
+        raise StructureError(f"{name} holds {found.dtype}, expected {kind}")
+    if kind is None and found.dtype.kind not in "fiubc":
+        raise StructureError(f"{name} holds {found.dtype}, expected numbers")
+    if shape is not None and (
+        found.ndim != len(shape) or any(n is not None and n != m for n, m in zip(shape, found.shape))
+    ):
+        raise StructureError(f"{name} has the shape {found.shape}, expected {tuple(shape)}")
+    properties = found.id.get_create_plist()
+    if properties.get_layout() == h5d.VIRTUAL or properties.get_external_count():
+        raise StructureError(f"{name} is stored outside of the file")
+    for k in range(properties.get_nfilters()):
+        code = properties.get_filter(k)[0]
+        if code not in _FILTERS:
+            raise StructureError(f"{name} is stored by the filter number {code}, which h5py does not bring itself")
+    if found.chunks is not None and math.prod(found.chunks) * found.dtype.itemsize > _CHUNK and math.prod(
+        found.chunks[1:]
+    ) * found.dtype.itemsize > _CHUNK >> 3:
+        raise StructureError(f"{name} is stored in chunks of {found.chunks}")
+    claimed = math.prod(found.shape) * found.dtype.itemsize if shape is None or None not in shape else 0
+    check_size(found, claimed, limit)
+    return found
+
+
+def check_size(found: Any, claimed: int, limit: int = LIMIT) -> None:
+    """Whether so many bytes may be read of a dataset.
+
+    Raises
+    ------
+    StructureError
+        If less is stored, or more than the limit would unfold from what is.
+    """
+    stored = found.id.get_storage_size()
+    compressed = found.id.get_create_plist().get_nfilters() > 0
+    if claimed > (limit if compressed else stored):
+        where = f"more than the limit of {limit}; say limit=" if compressed else f"but only {stored} are stored"
+        raise StructureError(f"{found.name[1:]} claims {claimed} bytes, {where}")

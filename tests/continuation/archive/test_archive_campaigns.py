@@ -1,0 +1,18 @@
+"""The campaigns of the benchmark, small: kills and damage at random, of which none may go wrong."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BENCHMARK = Path(__file__).parents[3] / "examples" / "benchmarks" / "archive_benchmark.py"
+
+
+@pytest.mark.parametrize("campaign", [("--kills", "28"), ("--damage", "60")])
+def test_a_small_campaign(campaign):
+    pytest.importorskip("xarray", reason="the benchmark needs the extra `xarray`")
+    command = [sys.executable, str(BENCHMARK), *campaign, "--seed", "5"]
+    found = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stdout + found.stderr
+    assert campaign[1] in found.stdout

@@ -1,0 +1,99 @@
+"""Paths that stay in their archive: the same steps, read when they are asked for."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from continuation import Budget, Tracer, trace
+from continuation.archive import ArchiveError, Limits, PathLog, open_archive, resume
+from continuation.archive.stored import StoredSteps
+from continuation.controllers import Bounds, Fixed
+from problems.bifurcation import ExponentialCosine, FreudensteinRoth
+
+OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.05))}
+HOMOTOPY = ExponentialCosine(3)
+
+
+def assert_same(found, path):
+    assert len(found.steps) == len(path.steps)
+    for a, b in zip(found.steps, path.steps):
+        assert (a.index, a.arclength, a.kind, a.rejections) == (b.index, b.arclength, b.kind, b.rejections)
+        assert np.array_equal(a.u, b.u)
+    assert np.array_equal(found.u, path.u)
+    assert np.array_equal(found.arclength, path.arclength)
+    assert [(e.name, e.step, *e.u) for e in found.events] == [(e.name, e.step, *e.u) for e in path.events]
+    assert (found.status, found.message, found.counts) == (path.status, path.message, path.counts)
+
+
+@pytest.mark.parametrize(("keep", "memory"), [("ends", 2), ("every 7", 0), ("every 1", 0), ("all", 0)])
+@pytest.mark.parametrize("problem", [FreudensteinRoth(), HOMOTOPY], ids=["events", "many steps"])
+def test_what_is_not_in_memory_is_read(tmp_path, keep, memory, problem):
+    path = trace(problem, **OPTIONS)
+    found = trace(problem, archive=PathLog(tmp_path / "run.h5", keep=keep, limits=Limits(rows=10)), **OPTIONS)
+    assert_same(found, path)
+    assert np.array_equal(found.steps[-3].u, path.steps[-3].u)
+    assert [step.index for step in found.steps[9:2:-3]] == [9, 6, 3]
+    if memory:
+        assert len(found.steps._memory) == memory
+    with open_archive(tmp_path / "run.h5") as archive:
+        stored = archive.path(0, keep="ends")
+        assert_same(archive.path(0), path)
+    assert_same(stored, path)
+
+
+def test_it_can_be_read_while_it_grows(tmp_path):
+    log, seen = PathLog(tmp_path / "run.h5", keep="ends", limits=Limits(rows=4)), []
+    tracer = Tracer(HOMOTOPY, observers=(log,), **OPTIONS)
+    for step in tracer:
+        seen.append(step.u)
+        if step.index % 9 == 5:
+            assert np.array_equal(tracer.path.u, seen)
+
+
+@pytest.mark.parametrize("keep", ["ends", "every 5", "all"])
+@pytest.mark.parametrize("tangents", [False, True])
+def test_resume_from_it(tmp_path, keep, tangents):
+    path = trace(FreudensteinRoth(), **OPTIONS)
+    log = PathLog(tmp_path / "run.h5", keep="ends", tangents=tangents, limits=Limits(rows=3))
+    trace(FreudensteinRoth(), archive=log, budget=Budget(steps=len(path) // 2), **OPTIONS)
+    found = resume(tmp_path / "run.h5", budget=Budget(), keep=keep)
+    assert isinstance(found.steps, list) == (keep == "all")
+    assert_same(found, path)
+    if tangents and keep == "ends":
+        middle = path.arclength[7:9].mean()
+        with open_archive(tmp_path / "run.h5") as archive:
+            assert np.array_equal(found(middle), archive.path(0)(middle))
+
+
+def test_an_archive_that_is_gone_says_so(tmp_path):
+    found = trace(HOMOTOPY, archive=PathLog(tmp_path / "run.h5", keep="ends"), **OPTIONS)
+    (tmp_path / "run.h5").unlink()
+    assert isinstance(found.steps, StoredSteps)
+    assert found.endpoint.index == len(found) - 1
+    with pytest.raises(ArchiveError, match="there is no such file"):
+        _ = found.u
+
+
+@pytest.mark.parametrize("keep", ["some", "every 0", "every", "every -1", 3, None])
+def test_what_can_be_kept(tmp_path, keep):
+    with pytest.raises(ValueError, match="keep: expected"):
+        PathLog(tmp_path / "run.h5", keep=keep)
+
+
+def test_memory_does_not_grow_with_the_path(tmp_path):
+    """Of Python's own, which is counted exactly: a list of steps takes more than a kilobyte a step."""
+    options = {"controller": Fixed(bounds=Bounds(initial=0.01))}
+    log = PathLog(tmp_path / "run.h5", keep="ends")
+    used = []
+    tracer = Tracer(HOMOTOPY, observers=(log,), **options)
+    tracemalloc.start()
+    try:
+        for step in tracer:
+            if step.index in (100, 300):
+                log._commit()
+                used.append(tracemalloc.get_traced_memory()[0])
+    finally:
+        tracemalloc.stop()
+    assert len(used) == 2
+    assert used[1] - used[0] < 200 * 100
