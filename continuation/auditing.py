@@ -33,7 +33,7 @@ _CHECK_NODES = np.concatenate(([0.0], _NODES[1:4], [1.0]))
 _CHECK_WEIGHTS: Array = np.linalg.solve(np.vander(_CHECK_NODES, increasing=True).T, 1.0 / np.arange(1.0, 6.0))
 """The interpolatory rule, of degree 5, on the inner Gauss nodes and the ends, where the speed is known anyway."""
 
-_AGREEMENT = 1e-7
+_AGREEMENT = 1e-8
 """Relative difference of the two rules; Gauss's, of degree 9, is then far more accurate."""
 
 _DIVISIONS = 20

@@ -35,7 +35,7 @@ def scan_events(
         g = event.monitor(arc.b.u, arc.b.tangent)
         values.append(g)
         first = before[i] if before[i] != 0.0 else event.monitor(*arc.just_after_start)
-        if first == 0.0 or not may_vanish(event, arc.samples, first, g):
+        if first == 0.0 or not may_vanish(event, arc, first, g):
             continue
         if isinstance(event, SupportsResolution):
             if noise is None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
 
 Mask = NDArray[np.bool_]
@@ -34,6 +34,9 @@ GROWTH = 30.0
 
 FARTHEST = 1e30
 """A path without a target that is straight to this length, relative to its start, has no scale."""
+
+STANDSTILL = 1e-60
+"""A component that moves by no more than this part of the one that moves most, whatever their units, stands still."""
 
 NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
@@ -69,7 +72,8 @@ def initial_extent(evaluator: Evaluator, point: Linearization, target: float | N
     for _ in range(TRIALS):
         try:
             d, turned = _nonlinearity(evaluator, point, v, moving, h, residual)
-        except EvaluationError:
+        except Exception:
+            # Nobody asked for H there: what it raises beyond its domain is shown by the step that needs that point.
             d, turned = off, np.inf
         if turned > 2.0 * TURN:
             high = h
@@ -85,7 +89,7 @@ def initial_extent(evaluator: Evaluator, point: Linearization, target: float | N
         if high < 1.5 * low:
             break
     extent = np.maximum(found * size, np.abs(off))
-    still = extent <= 0.0
+    still = extent <= STANDSTILL * float(extent.max())
     extent[still] = float(np.median(extent[~still]))
     return extent
 
