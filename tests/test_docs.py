@@ -82,6 +82,12 @@ def test_the_files_that_the_map_names_exist():
     assert [name for name in named if not list(ROOT.glob(name))] == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_the_files_that_a_page_names_exist(page):
+    named = re.findall(r"\b(?:continuation|problems|tests|docs|examples)/[\w/*]+\.(?:py|md)\b", page.read_text("utf-8"))
+    assert [name for name in named if not list(ROOT.glob(name))] == []
+
+
 def test_a_failing_block_is_named_with_its_line(tmp_path):
     text = "# Title\n\n```python\nx = 1\n```\n\n```python\nx += 1\nx / 0\n```\n"
     with pytest.raises(ZeroDivisionError) as caught:

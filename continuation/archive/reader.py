@@ -101,6 +101,8 @@ class Archive(Sequence[Path]):
         ----------
         index : int
             0 is the first; from the end where it is negative.
+        keep : str
+            "all" steps in memory, or its "ends".
 
         Returns
         -------

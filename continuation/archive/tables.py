@@ -47,11 +47,32 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         return f"<Table of {self.size} rows: {', '.join(self.columns)}>"
 
     def block(self, rows: slice) -> dict[str, np.ndarray[Any, Any]]:
-        """All columns of some rows: from memory where they are remembered, and not remembered where they are not."""
+        """All columns of some rows: from memory where they are remembered, and not remembered where they are not.
+
+        Parameters
+        ----------
+        rows : slice
+            Of all rows, also where this table is a choice of them.
+
+        Returns
+        -------
+        dict of str to ndarray
+        """
         return {name: self.some(name, rows) for name in self.columns}
 
     def some(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        """Some rows of one column, not remembered."""
+        """Some rows of one column, not remembered.
+
+        Parameters
+        ----------
+        name : str
+            Of the column.
+        rows : slice
+
+        Returns
+        -------
+        ndarray
+        """
         return self._read[name][rows] if name in self._read else self._fetch(name, rows)
 
     def load(self) -> None:

@@ -139,7 +139,19 @@ class PathLog:
     def continued(
         cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer, every: int
     ) -> PathLog:
-        """A log that goes on with a path of which the file holds the beginning; for `resume`."""
+        """A log that goes on with a path of which the file holds the beginning; for `resume`.
+
+        Parameters
+        ----------
+        store : Store
+            The file, open for writing.
+        points, paths : int
+            Rows and ended paths that it holds.
+        checkpoint : Checkpoint
+        tracer : Tracer
+        every : int
+            Which steps stay in memory.
+        """
         log = cls.__new__(cls)
         log._begin(store.file, store.durable, store.layout.tangents, "", Limits(), every)
         log._store, log._buffer, log._paths, log._sequence = store, _Buffer(points), paths, checkpoint.sequence

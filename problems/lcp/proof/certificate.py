@@ -77,6 +77,15 @@ class Certificate:
 
         Relative to its terms alone a row would pass at a point that runs off to infinity on a problem without
         solution; so what it is off may not exceed `DROWNED` times q either. The answer is the same in all units.
+
+        Parameters
+        ----------
+        tolerance : float, default 1e-10
+            Of the relative residual.
+
+        Returns
+        -------
+        bool
         """
         return self.relative_residual <= tolerance and self.drowned <= DROWNED
 

@@ -73,13 +73,24 @@ class Farkas:
         return self.gap < 0
 
     def in_units(self, problem: LCP, rows: NDArray[np.int64]) -> Farkas:
-        """The multiplier for `problem`, where this one is for the problem whose rows are 2^rows times those of it."""
+        """The multiplier for `problem`, where this one is for the problem whose rows are 2^rows times those of it.
+
+        Parameters
+        ----------
+        problem : LCP
+        rows : ndarray of int, shape (n,)
+        """
         least = int(rows.min())
         y = [value << (int(power) - least) for value, power in zip(self.y, rows)]
         return _farkas(_integers_of(problem).gap, y)
 
     def holds(self, problem: LCP) -> bool:
-        """Whether it proves, exactly, that `problem` has no feasible point."""
+        """Whether it proves, exactly, that `problem` has no feasible point.
+
+        Parameters
+        ----------
+        problem : LCP
+        """
         return _integers_of(problem).hold(list(self.y), strict=True)
 
 
@@ -105,7 +116,12 @@ class FloatFarkas:
     gap: float
 
     def in_units(self, rows: NDArray[np.int64]) -> FloatFarkas:
-        """The multiplier for the problem whose rows are 2^-rows times those of this one."""
+        """The multiplier for the problem whose rows are 2^-rows times those of this one.
+
+        Parameters
+        ----------
+        rows : ndarray of int, shape (n,)
+        """
         y = np.ldexp(self.y, rows - int(rows[self.y > 0.0].max()))
         return FloatFarkas(y / y.max(), self.error, self.gap)
 

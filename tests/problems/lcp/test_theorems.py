@@ -184,7 +184,7 @@ def test_where_the_end_is_no_solution_a_matrix_is_singular(pair):
     """Theorem 3.8: if diag(w) + diag(x) A' is nonsingular at the end, then x solves the LCP."""
     problem, _ = pair
     x = kkt_path(pair).endpoint.y[: problem.n]
-    if not certify(problem, x).solves(1e-4):
+    if not certify(problem, x, 1e-4).solves(1e-4):
         M = np.diag(problem.w(x)) + np.diag(x) @ problem.A.T
         values = np.linalg.svd(M, compute_uv=False)
         assert values[-1] <= SMALL * max(1.0, values[0])
@@ -200,5 +200,5 @@ def test_row_sufficient_matrices_are_solved(pair):
     problem, _ = pair
     path = kkt_path(pair)
     assert path.status is Status.REACHED_TARGET
-    certificate = certify(problem, np.maximum(path.endpoint.y[: problem.n], 0.0))
+    certificate = certify(problem, np.maximum(path.endpoint.y[: problem.n], 0.0), 1e-8)
     assert certificate.solves(1e-8), (certificate.relative_residual, path.message)

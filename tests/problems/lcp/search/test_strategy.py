@@ -63,6 +63,15 @@ def test_what_is_dear_is_left_out_when_the_budget_is_spent():
     assert not {"proof", "KKT path"} & set(tried(one, AUTOMATIC))
 
 
+def test_a_large_proof_is_looked_for_only_within_a_limit_of_seconds():
+    q = -np.ones(1000)
+    assert "proof" not in tried(case(lcp.LCP(np.eye(1000), q)), AUTOMATIC)
+    assert "proof" in tried(case(lcp.LCP(sp.eye_array(1000, format="csc"), q)), AUTOMATIC)
+    timed = case(lcp.LCP(np.eye(1000), q))
+    timed.search.budget = continuation.Budget(seconds=60.0)
+    assert "proof" in tried(timed, AUTOMATIC)
+
+
 def test_all_faces_are_tried_where_they_are_few():
     assert "all faces" in tried(case(lcp.LCP(np.eye(12), -np.ones(12))), AUTOMATIC)
     assert "all faces" not in tried(case(lcp.LCP(np.eye(13), -np.ones(13))), AUTOMATIC)
