@@ -134,14 +134,24 @@ class Automatic:
         return self.of_extent(np.where(size > 0.0, size, float(size.max())))
 
     def of_extent(self, extent: Array) -> Array:
-        """The weights for the extent of each component, shape (N + 1,), positive."""
+        """The weights for the extent of each component.
+
+        Parameters
+        ----------
+        extent : ndarray, shape (N + 1,)
+        """
         weights: Array = extent**-2.0
         weights[:-1] *= (1.0 - self.share) / (extent.size - 1)
         weights[-1] *= self.share
         return weights
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:
-        """The weights where the path, which began at `origin`, has come to `u`."""
+        """The weights where the path, which began at `origin`, has come to `u`.
+
+        Parameters
+        ----------
+        current, origin, u : ndarray, shape (N + 1,)
+        """
         return np.minimum(current, self.of_extent(np.maximum(np.abs(u - origin), TINY)))
 
 
@@ -159,9 +169,31 @@ class SupportsExtent(Protocol):
         ...
 
     def of_extent(self, extent: Array) -> Array:
-        """The weights for the extent of each component."""
+        """The weights for the extent of each component.
+
+        Parameters
+        ----------
+        extent : ndarray, shape (N + 1,)
+            How far the path goes in each component; positive.
+
+        Returns
+        -------
+        ndarray, shape (N + 1,)
+        """
         ...
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:
-        """The weights at u, on a path from `origin`."""
+        """The weights where a path has come to `u`.
+
+        Parameters
+        ----------
+        current : ndarray, shape (N + 1,)
+            The weights before.
+        origin, u : ndarray, shape (N + 1,)
+            The start of the path, and where it is.
+
+        Returns
+        -------
+        ndarray, shape (N + 1,)
+        """
         ...

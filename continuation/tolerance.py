@@ -32,7 +32,14 @@ class Tolerance:
     residual: float = field(default=float("inf"), validator=POSITIVE)
 
     def measure(self, increment: Array, weights: Array) -> float:
-        """The length of an increment in the metric of `weights`, in units of the tolerance: small is <= 1."""
+        """The length of an increment in units of the tolerance: small is <= 1.
+
+        Parameters
+        ----------
+        increment : ndarray, shape (N + 1,)
+        weights : ndarray, shape (N + 1,)
+            Of the metric.
+        """
         return norm(weights, increment) / self.relative
 
 

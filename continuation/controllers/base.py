@@ -102,7 +102,13 @@ class Bounds:
         return min(h, self.maximum)
 
     def beginning_with(self, usual: float) -> Bounds:
-        """The same bounds with `usual` for a first step where they do not say one."""
+        """The same bounds, with a first step where they do not say one.
+
+        Parameters
+        ----------
+        usual : float
+            That of the controller.
+        """
         return self if self.initial is not None else evolve(self, initial=max(self.cap(usual), self.minimum))
 
     @property
