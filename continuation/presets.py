@@ -32,7 +32,7 @@ DEFAULT = Preset(
     "steps that aim at a turn of 20 degrees; follows the paths on which other tracers jump",
     Hermite(),
     BorderedNewton(reuse=0.2),
-    AllgowerGeorg(contraction=0.3, distance=0.15, angle=0.35, deceleration=2.0),
+    AllgowerGeorg(contraction=0.3, distance=0.3, angle=0.35, deceleration=2.0, acceleration=3.0),
 )
 CONSERVATIVE = Preset(
     "CONSERVATIVE",

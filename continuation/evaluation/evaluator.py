@@ -9,13 +9,19 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix, finite, largest
+from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
+
+ULPS = 4.0
+"""Units in the last place by which round-off moves a point, about."""
+
+LOOK = 64.0
+"""By so many a point is moved to see it: the change of an equation is then more than a few of its own last places."""
 
 
 class EvaluationError(ArithmeticError):
@@ -147,6 +153,17 @@ class Evaluator:
             return largest(self.residual(u))
         except EvaluationError:
             return math.nan
+
+    def round_off(self, u: Array, residual: Array) -> Array:
+        """What round-off in u makes of H there, shape (N,): the size of its terms, in units of their last places.
+
+        Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
+        an equation may cancel in one of them. `residual` is H(u).
+        """
+        signs, step = np.sign(generic_vector(u.size)), LOOK * np.spacing(u)
+        looks = (self.residual(u + step * signs), self.residual(u + step * signs[::-1]))
+        terms: Array = np.maximum(*(np.abs(look - residual) for look in looks)) * (ULPS / LOOK)
+        return terms
 
     @property
     def derivative(self) -> Derivative:

@@ -6,9 +6,9 @@ import itertools
 
 import numpy as np
 from attrs import evolve
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
-from continuation.arrays import Array, largest
+from continuation.arrays import largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue
@@ -19,6 +19,9 @@ from continuation.point.segment import Segment, hermite
 
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
+
+LOOKS = 17
+"""Places where a monitor is looked at before its lowest value is sought: a cubic has two turns at most."""
 
 PASSES = 60
 """A bisection in every other pass narrows a bracket to round-off in these."""
@@ -33,15 +36,36 @@ TRANSVERSAL = 1e-6
 """The least component of a tangent, relative to its largest, along which a point is put on a value exactly."""
 
 
-def may_vanish(event: Event, inside: list[tuple[Array, Array]], ga: float, gb: float) -> bool:
-    """Whether the monitor may vanish on an arc, judged by its ends and the samples inside.
+def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
+    """Whether the monitor may vanish on an arc, judged by its ends and its least value inside.
 
-    Ends of one sign may hide a pair of zeros where a sample has the other sign, or dips to less than half of both.
+    Ends of one sign may hide a pair of zeros where it has the other sign there, or dips to less than half of both.
+
+    Parameters
+    ----------
+    event : Event
+    arc : Arc
+    ga, gb : float
+        The monitor at the ends.
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    values = [event.monitor(u, v) for u, v in inside]
-    return any(value * ga < 0.0 for value in values) or min(map(abs, values)) < 0.5 * min(abs(ga), abs(gb))
+    values = [event.monitor(u, v) for u, v in arc.samples]
+    least = min(value * np.sign(ga) for value in values)
+    return bool(least < 0.5 * min(abs(ga), abs(gb)))
+
+
+def _lowest(event: Event, arc: Arc, ga: float) -> float:
+    """Where on the arc's segment the monitor comes nearest to changing its sign."""
+    sign, length = float(np.sign(ga)), float(np.dot(arc.border, arc.b.u - arc.a.u))
+
+    def g(t: float) -> float:
+        return sign * event.monitor(arc.segment.at(t), arc.segment.derivative(t) / length)
+
+    places = np.linspace(0.0, 1.0, LOOKS)
+    k = int(np.argmin([g(float(t)) for t in places]))
+    around = float(places[max(k - 1, 0)]), float(places[min(k + 1, LOOKS - 1)])
+    return float(minimize_scalar(g, bounds=around, method="bounded", options={"xatol": 1e-9}).x)
 
 
 def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[Linearization]:
@@ -59,7 +83,8 @@ def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> 
     along = [ga, *(event.monitor(u, v) for u, v in arc.samples), gb]
     divided = ga * gb > 0.0 or sum(p * q < 0.0 for p, q in itertools.pairwise(along)) > 1
     if divided:
-        knots[1:1] = [_knot(solver, event, arc, t) for t in _dividing(arc, along)]
+        places = {*_dividing(arc, along), _lowest(event, arc, ga)} if ga * gb > 0.0 else _dividing(arc, along)
+        knots[1:1] = [_knot(solver, event, arc, t) for t in sorted(places) if 0.0 < t < 1.0]
     found = []
     for (left, gl), (right, gr) in itertools.pairwise(knots):
         if gl == 0.0 or gl * gr > 0.0 or np.sign(gl) * event.direction > 0:
@@ -118,7 +143,7 @@ def _root(
     best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
     scale = max(abs(ga), abs(gb))
     width = first = float(np.dot(arc.border, b.u - a.u))
-    bisect = False
+    bisect, noise = False, None
     for _ in range(PASSES):
         segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
         series = None
@@ -137,7 +162,14 @@ def _root(
         width = float(np.dot(arc.border, b.u - a.u))
         if least <= AT_ROUND_OFF * scale or (bisect and least <= NEARLY_ZERO * scale):
             break
-    return _on_value(solver, event, best) if least <= JUMP * scale else None
+        if bisect or fine:
+            # As near as points are known: farther bisections would locate round-off.
+            noise = solver.noise(arc.a) if noise is None else noise
+            if width <= noise or least <= noise * abs(gb - ga) / width:
+                break
+    if least > JUMP * scale and not (noise is not None and width <= noise):
+        return None
+    return _on_value(solver, event, best)
 
 
 def _on_value(solver: PathSolver, event: Event, point: Linearization) -> Linearization:

@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 from attrs import evolve, field, frozen
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array
 from continuation.controllers import StepMeasures
 from continuation.ends.divergence import divergence
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.landing import Landing
 from continuation.ends.target import Target
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.metric import norm
+from continuation.metric import SupportsExtent, norm
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import angle_between, length_between
 from continuation.point.linearization import Linearization
@@ -104,6 +104,8 @@ class Advance:
             if limit is not None:
                 return Stopped(singular_end(limit), limit.u)
         h, memory = min(state.h, prediction.reach), state.controller
+        if isinstance(settings.metric, SupportsExtent):
+            h = min(h, settings.metric.longest)
         if math.isinf(h):
             # A controller made for series with a predictor that has no range: begin with the size of the point.
             h = 1.0 + norm(point.weights, point.u)
@@ -154,6 +156,13 @@ class Advance:
             attempt.h, order, rejections, found.iterations, found.contraction, found.distance, attempt.angle
         )
 
+    def _weights(self, arrival: Linearization, state: State) -> Array:
+        """The metric where a step arrived."""
+        metric = self.settings.metric
+        if isinstance(metric, SupportsExtent):
+            return metric.grown(arrival.weights, state.origin.u, arrival.u)
+        return metric.weights(arrival.u, arrival.tangent, arrival.weights)
+
     def _moved(
         self,
         point: Linearization,
@@ -166,8 +175,11 @@ class Advance:
         """Make the arrival the current point: metric, history, divergence, and the step's record."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
-        monitor, diverged = divergence(state.divergence_monitor, arrival.u, largest(state.origin.u[:-1]))
-        moved = arrival.with_weights(self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights))
+        monitor, infinity = divergence(state.divergence_monitor, arrival.u, state.origin, state.origin_weights)
+        moved = arrival.with_weights(self._weights(arrival, state))
+        if isinstance(self.settings.metric, SupportsExtent):
+            # The same step in the new metric: the path has become longer, not the step.
+            h *= norm(moved.weights, arrival.tangent) / norm(arrival.weights, arrival.tangent)
         angle = attempt.angle if ending.whole else angle_between(point, arrival)
         step = self.recorder.record(
             moved,
@@ -205,4 +217,4 @@ class Advance:
             index=step.index,
         )
         event = accepted.events[-1].name if accepted.events else ""
-        return Moved(moved, step, state, accepted.events, arc_ended(ending, diverged, event))
+        return Moved(moved, step, state, accepted.events, arc_ended(ending, infinity, event))

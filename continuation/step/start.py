@@ -11,9 +11,10 @@ from continuation.arrays import Array
 from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import Metric, norm
+from continuation.metric import Metric, SupportsExtent, norm
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
+from continuation.step.extent import FIRST, initial_extent
 
 
 class StartError(ArithmeticError):
@@ -36,8 +37,8 @@ ALIGNED = 1.0 - 1e-6
 
 def first_point(
     solver: PathSolver, u: Array, metric: Metric, direction: int, target: float | None
-) -> Linearization:
-    """The start on the path, with the tangent that leads to the target.
+) -> tuple[Linearization, float]:
+    """The start on the path, with the tangent that leads to the target, and a first step length.
 
     Parameters
     ----------
@@ -56,17 +57,27 @@ def first_point(
         residual = evaluator.residual(u)
     except EvaluationError as error:
         raise StartError(f"At the start {error}.") from error
-    point = _regular(evaluator, u, unit)
-    if tolerance.measure(point.solve(-residual), u) > 1.0:
+    point, extent = measured(evaluator, _regular(evaluator, u, unit), metric, target, residual)
+    if tolerance.measure(point.solve(-residual), point.weights) > 1.0:
         u = _correct_start(solver, point, u, unit)
-        point = _regular(evaluator, u, unit)
-    point = point.with_weights(metric.weights(u, point.tangent, None))
+        there = evaluator.residual(u)
+        point, extent = measured(evaluator, _regular(evaluator, u, unit), metric, target, there)
     wanted = direction
     if wanted == 0:
         wanted = 1 if target is None or target >= u[-1] else -1
     if point.tangent[-1] * wanted < 0:
         point = evolve(point, tangent=-point.tangent, orientation=-point.orientation)
-    return point
+    return point, FIRST * norm(point.weights, extent)
+
+
+def measured(
+    evaluator: Evaluator, point: Linearization, metric: Metric, target: float | None, residual: Array
+) -> tuple[Linearization, Array]:
+    """The start in the metric of the trace, and how far each component goes before the path turns."""
+    extent = initial_extent(evaluator, point, target, residual)
+    if isinstance(metric, SupportsExtent):
+        return point.with_weights(metric.of_extent(extent)), extent
+    return point.with_weights(metric.weights(point.u, point.tangent, None)), extent
 
 
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
@@ -127,7 +138,9 @@ def point_and_direction(start: Any) -> tuple[Array, Array]:
     return u, v
 
 
-def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: int, metric: Metric) -> Linearization:
+def point_from_tangent(
+    evaluator: Evaluator, start: tuple[Array, Array], size: int, metric: Metric, target: float | None
+) -> tuple[Linearization, float]:
     """Begin at a given point in a given direction; the determinant sign there becomes the orientation.
 
     Raises
@@ -141,6 +154,8 @@ def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: i
         raise ValueError(f"start: expected (u, v) of shape ({size},) each, found {u.shape} and {v.shape}")
     weights = metric.weights(u, v, None)
     try:
-        return linearize(evaluator, u, weights, weights * (v / norm(weights, v)), 0)
+        point = linearize(evaluator, u, weights, weights * (v / norm(weights, v)), 0)
+        point, extent = measured(evaluator, point, metric, target, evaluator.residual(u))
     except EvaluationError as error:
         raise SingularStartError(f"({error}.)") from error
+    return point, FIRST * norm(point.weights, extent)

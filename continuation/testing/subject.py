@@ -150,7 +150,7 @@ class Subject:
         target = getattr(self.homotopy, "target", 0.0)
         with called("start", "linearized"):
             try:
-                return first_point(PathSolver(self.evaluator, Tolerance()), self.start.u, metric, 0, target)
+                return first_point(PathSolver(self.evaluator, Tolerance()), self.start.u, metric, 0, target)[0]
             except StartError as error:
                 verdict = refused_start(error)
                 fail(f"{verdict.status.name}: {verdict}")

@@ -68,7 +68,7 @@ def test_the_audit_agrees(n, backwards):
 @pytest.fixture
 def unguarded(monkeypatch):
     """The engine without the guard that refuses arcs whose middle is off the path: with it, nothing jumps here."""
-    monkeypatch.setattr(acceptance, "midpoint_on_path", lambda solver, arc: True)
+    monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance: True)
 
 
 @pytest.mark.parametrize("n", [5, 6, 7, 8])

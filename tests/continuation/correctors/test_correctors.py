@@ -22,7 +22,7 @@ CORRECTORS = [
     NaturalParameter(),
 ]
 every_corrector = pytest.mark.parametrize("corrector", CORRECTORS, ids=repr)
-TOLERANCE = Tolerance(1e-10, 1e-10)
+TOLERANCE = Tolerance(1e-10)
 
 
 class Setting:
@@ -117,7 +117,7 @@ def test_a_reused_factorisation_may_serve_the_tangent():
 
 def test_newton_is_quadratic_and_chord_linear_with_broyden_between():
     iterations = {
-        type(corrector): Setting(0.05).correct(corrector, Tolerance(1e-13, 1e-13)).iterations
+        type(corrector): Setting(0.05).correct(corrector, Tolerance(1e-13)).iterations
         for corrector in (BorderedNewton(reuse=0.0), Broyden(), Chord(max_iterations=40))
     }
     assert iterations[BorderedNewton] < iterations[Broyden] < iterations[Chord]
@@ -167,7 +167,7 @@ def test_values_that_are_not_finite_end_the_attempt(corrector):
 
 @every_corrector
 def test_the_residual_is_judged_where_a_bound_is_given(corrector):
-    loose, strict = Tolerance(1e-2, 1e-2), Tolerance(1e-2, 1e-2, residual=1e-9)
+    loose, strict = Tolerance(1e-2), Tolerance(1e-2, residual=1e-9)
     early, late = Setting().correct(corrector, loose), Setting().correct(corrector, strict)
     assert early.converged
     assert late.converged

@@ -47,7 +47,7 @@ def test_the_truncated_series_satisfies_the_equation_to_its_order(homotopy):
     evaluator, point = at_start(homotopy)
     order = 9
     series = Series(coefficients_at(evaluator, point, order), np.inf)
-    h = 0.5 * series_reach(series.coefficients, 1e-3)
+    h = 0.5 * series_reach(series.coefficients, 1e-3, np.ones(series.coefficients.shape[1]))
     coarse, fine = (np.abs(evaluator.residual(series(t))).max() for t in (h, h / 2))
     assert coarse / fine > 2.0**order
 
@@ -67,7 +67,7 @@ def test_reach_keeps_the_error_near_the_accuracy_asked_for(accuracy):
     # The geometric series 1/(1 - s): the first neglected term bounds nothing yet at order 20 within the reach.
     order = 20
     c = np.ones((order + 1, 2))
-    reach = series_reach(c, accuracy)
+    reach = series_reach(c, accuracy, np.ones(c.shape[1]))
     assert reach < 1.0
     error = abs(Series(c, reach)(0.95 * reach)[0] - 1.0 / (1.0 - 0.95 * reach))
     assert error <= 10.0 * accuracy * (1.0 + 1.0 / (1.0 - reach))
@@ -88,7 +88,7 @@ def test_a_refined_factorisation_gives_the_same_coefficients_as_one_of_its_own()
     homotopy = ExponentialCosine(5)
     evaluator, point = at_start(homotopy)
     ahead = BorderedNewton().correct(
-        evaluator, point, point.u + 0.01 * point.tangent, point.border, continuation.Tolerance(1e-13, 1e-13)
+        evaluator, point, point.u + 0.01 * point.tangent, point.border, continuation.Tolerance(1e-13)
     )
     near = relinearize(evaluator, ahead.u, point.weights, point.anchor, point.border)
     assert not near.exact

@@ -102,7 +102,7 @@ def test_a_fold_just_before_the_target_is_no_end():
     homotopy = scalar(lambda y, lam: y * y - lam, lambda y, lam: (2.0 * y, -1.0), start=(1.0, 1.0), target=-1e-3)
     path = trace(homotopy, budget=Budget(steps=50))
     # It turns in the fold, a thousandth before the target, and runs off on the other side.
-    assert path.status is Status.BUDGET_EXHAUSTED
+    assert path.status is Status.DIVERGED
     (fold,) = path.turning_points
     np.testing.assert_allclose(fold.u, 0.0, rtol=0, atol=1e-12)
     assert path.lam.min() >= 0.0
@@ -255,7 +255,7 @@ class CurveUntil(Tangent):
     """Tangents up to a parameter value, and nothing beyond."""
 
     def prepare(self, evaluator, point, history):
-        if point.lam > 0.3:
+        if point.lam > 0.2:
             raise EvaluationError("there is no curve")
         return super().prepare(evaluator, point, history)
 
@@ -264,7 +264,7 @@ def test_a_predictor_that_fails_is_named_and_no_step_is_blamed():
     path = trace(scalar(lambda y, lam: y - lam, lambda y, lam: (1.0, -1.0)), predictor=CurveUntil())
     assert path.status is Status.PREDICTOR_FAILED
     assert path.message.endswith("It says: there is no curve.")
-    assert path.endpoint.lam > 0.3
+    assert path.endpoint.lam > 0.2
     assert path.rejected == ()
 
 
