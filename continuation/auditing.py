@@ -108,12 +108,14 @@ def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Arr
 
 
 def _metric_of(homotopy: Any, path: Path) -> Metric:
-    """The homotopy's own metric, else each component measured by its extent on the path."""
+    """The homotopy's own metric, else the one in which the path ended."""
     own: Metric | None = getattr(homotopy, "metric", None)
     if own is not None:
         return own
-    extent = np.ptp(path.u, axis=0)
-    weights = Automatic().of_extent(np.where(extent > 0.0, extent, float(extent.max()) or 1.0))
+    weights = path.steps[-1].weights
+    if weights is None:
+        extent = np.ptp(path.u, axis=0)
+        weights = Automatic().of_extent(np.where(extent > 0.0, extent, float(extent.max()) or 1.0))
     return Weighted(weights[:-1], float(weights[-1]))
 
 

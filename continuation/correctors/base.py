@@ -105,8 +105,11 @@ ROUND_OFF = 32.0
 random, and H adds up as many terms as it has."""
 
 
-FAR_FROM_ROUND_OFF = 1e6 * ROUND_OFF
+FAR_FROM_ROUND_OFF = 1e3 * ROUND_OFF
 """A residual this large after polishing is worth a factorisation of its own."""
+
+ROUNDS = 10
+"""At most so many, while they help: near a pole Newton's method first creeps."""
 
 
 def level(r: Array, terms: Array) -> float:
@@ -179,13 +182,17 @@ def iterate(
         count, worst = iteration.count, iteration.worst
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
             # Judged by the residual itself: an increment may be small beside the path and large beside what is left of
-            # a component. Where it no longer shrinks that is round-off too, of terms that do not move with u. A second
-            # round has a factorisation of its own: the one at hand may be of a point where that component was another.
-            for fresh in (False, True):
+            # a component. Where it no longer shrinks that is round-off too, of terms that do not move with u. Rounds
+            # after the first have factorisations of their own: the one at hand may be of a point where that component
+            # was another.
+            before = np.inf
+            for fresh in range(ROUNDS):
                 terms = evaluator.round_off(iteration.x, r)
-                if level(r, terms) <= (FAR_FROM_ROUND_OFF if fresh else ROUND_OFF):
+                left = level(r, terms)
+                if left <= (FAR_FROM_ROUND_OFF if fresh else ROUND_OFF) or left > before:
                     break
-                k, ratio = (count + 2, 1.0) if fresh else (count, worst)
+                before = left if fresh else np.inf
+                k, ratio = (count + 2 * fresh, 1.0) if fresh else (count, worst)
                 iteration = Iteration(iteration.x, POLISHING)
                 iteration.run(partial(polished, k, ratio), leftover, settled)
         elif iteration.stalled:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 
+from scipy.optimize import brentq
+
 from continuation.arrays import Array
 from continuation.metric import norm
 from continuation.predictors import Knot
@@ -25,9 +27,11 @@ FROZEN = 1e-12
 HORIZON = 1e12
 """The distance, in extents at the start, beyond which a path is at infinity, whatever its parameter does."""
 
-POWERS = 0.05
-"""A pole's parameter nears its limit by a steady factor from decade to decade, at least this one for an order up to
-0.77; one that falls faster is no pole."""
+ORDERS = 1.0 / 12.0, 12.0
+"""Orders of poles that are told from an asymptote; a logarithm or an exponential looks like one beyond."""
+
+DIGITS = 9
+"""Of the parameter's way, in messages."""
 
 
 def divergence(
@@ -38,8 +42,8 @@ def divergence(
     Parameters
     ----------
     monitor : tuple of float
-        (distance and parameter at the last mark, decades stalled, the parameter's way so far, and its way in the last
-        decade); empty at the start.
+        (distance and parameter at the last mark, decades stalled, the parameter's way so far, distance and parameter
+        at the mark before); empty at the start.
     u : ndarray, shape (N + 1,)
     origin : Knot
         The start.
@@ -47,24 +51,37 @@ def divergence(
         The metric there.
     """
     distance, lam, lam0 = norm(origin_weights, u - origin.u), float(u[-1]), float(origin.u[-1])
-    mark, before, stalled, way, last = monitor or (1.0, lam0, 0.0, 0.0, math.nan)
+    mark, before, stalled, way, *earlier = monitor or (1.0, lam0, 0.0, 0.0, 0.0, lam0)
     way = max(way, abs(lam - lam0))
     if distance < DECADE * mark:
-        return (mark, before, stalled, way, last), ""
-    moved = lam - before
-    stalled = stalled + (DECADES if abs(moved) <= FROZEN * way else 1.0) if abs(moved) <= STILL * way else 0.0
+        return (mark, before, stalled, way, *earlier), ""
+    moved = abs(lam - before)
+    stalled = stalled + (DECADES if moved <= FROZEN * way else 1.0) if moved <= STILL * way else 0.0
     words = ""
     if stalled >= DECADES:
-        words = _limit(lam, moved, last)
+        words = _limit((earlier[0], mark, distance), (earlier[1], before, lam), way)
     elif distance > HORIZON:
         words = f"It is {distance:.0e} times as far from its start as where it first turned."
-    return (distance, lam, stalled, way, moved), words
+    return (distance, lam, stalled, way, mark, before), words
 
 
-def _limit(lam: float, moved: float, last: float) -> str:
-    """Which infinity: the parameter's ways in the last two decades extrapolated (Aitken)."""
-    ratio = moved / last if last else 0.0
-    if not POWERS <= ratio < 1.0:
-        return f"An asymptote: the parameter tends to {lam:.9g} and stands still while the unknowns grow."
-    limit, order = lam + moved * ratio / (1.0 - ratio), -1.0 / math.log10(ratio)
-    return f"A pole: the unknowns grow like |lam - {limit:.9g}|^-{order:.2g}."
+def _limit(distances: tuple[float, float, float], lams: tuple[float, float, float], way: float) -> str:
+    """Which infinity: lam - limit ~ distance^(-1 / order) through three points, where an order fits."""
+
+    def decay(power: float) -> float:
+        a, b, c = ((d / distances[0]) ** -power for d in distances)
+        return float((c - b) / (b - a))
+
+    def rounded(lam: float) -> str:
+        if way == 0.0:
+            return f"{lam:.{DIGITS}g}"
+        return f"{round(lam, DIGITS - math.floor(math.log10(way))) + 0.0:.{DIGITS}g}"
+
+    (first, second, third), (least, most) = lams, ORDERS
+    ratio = (third - second) / (second - first) if second != first else 0.0
+    if distances[0] == 0.0 or not decay(1.0 / least) < ratio < decay(1.0 / most):
+        return f"An asymptote: the parameter tends to {rounded(third)} and stands still while the unknowns grow."
+    power = float(brentq(lambda p: decay(p) - ratio, 1.0 / most, 1.0 / least))
+    a, b = (distances[1] / distances[0]) ** -power, (distances[2] / distances[0]) ** -power
+    limit = third + (third - second) * b / (a - b)
+    return f"A pole: the unknowns grow like |lam - {rounded(limit)}|^-{1.0 / power:.2g}."

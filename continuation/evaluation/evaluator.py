@@ -104,13 +104,12 @@ class Evaluator:
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
         self.homotopy = homotopy
         self.counts = counts
-        self._residual: Callable[[Array, float], Array] = homotopy.residual
         self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
         self.methods: set[str] = set()
         self._derivative: Derivative | None = None
         if isinstance(homotopy, SupportsJacobian):
-            self._derivative = Derivative(homotopy.jacobian, evaluations=0, source="jacobian")
+            self._derivative = Derivative(homotopy.jacobian, source="jacobian")
 
     def start(self) -> Array:
         """The start as one vector (y0, lam0), checked."""
@@ -125,22 +124,30 @@ class Evaluator:
         u: Array = np.append(y0, lam0)
         if not np.isfinite(u).all():
             raise ValueError("start: expected finite numbers, found NaN or infinity")
-        r = np.asarray(self._residual(u[:-1].copy(), float(u[-1])))
+        r = np.asarray(self.called(u[:-1].copy(), float(u[-1])))
         if r.shape != y0.shape:
             raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
         if r.dtype.kind == "c":
             raise ValueError("residual: expected real numbers, found complex ones")
-        self.counts.residuals += 1
         return u
+
+    def called(self, y: Any, lam: Any) -> Any:
+        """The plug-in's residual, on numbers or on jets, counted.
+
+        Parameters
+        ----------
+        y, lam : ndarray, shape (N,), and float; or jets of them
+        """
+        self.counts.residuals += 1
+        return self.homotopy.residual(y, lam)
 
     def residual(self, u: Array) -> Array:
         """H(u), shape (N,); EvaluationError where it is not finite."""
-        self.counts.residuals += 1
         # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
         with np.errstate(all="ignore"):
             try:
                 # A copy: a plug-in may well return the same array every time.
-                r: Array = np.array(self._residual(u[:-1], float(u[-1])), dtype=float)
+                r: Array = np.array(self.called(u[:-1], float(u[-1])), dtype=float)
             except (ArithmeticError, ValueError) as error:
                 raise NotFiniteError(f"the residual could not be evaluated: {error}") from error
         if not finite(r):
@@ -160,8 +167,10 @@ class Evaluator:
         Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
         an equation may cancel in one of them. `residual` is H(u).
         """
-        signs, step = np.sign(generic_vector(u.size)), LOOK * np.spacing(u)
-        looks = (self.residual(u + step * signs), self.residual(u + step * signs[::-1]))
+        # Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them.
+        generic, step = generic_vector(u.size), LOOK * np.spacing(np.abs(u))
+        moves = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
+        looks = (self.residual(u + step * moves), self.residual(u + step * moves[::-1]))
         terms: Array = np.maximum(*(np.abs(look - residual) for look in looks)) * (ULPS / LOOK)
         return terms
 
@@ -169,7 +178,7 @@ class Evaluator:
     def derivative(self) -> Derivative:
         """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
         if self._derivative is None:
-            self._derivative = from_residual(self._residual, self.homotopy.start())
+            self._derivative = from_residual(self.called, self.homotopy.start())
             self.methods.update(self._derivative.references)
         return self._derivative
 
@@ -187,11 +196,9 @@ class Evaluator:
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
-        derivative = self.derivative
-        self.counts.residuals += derivative.evaluations
         try:
             with np.errstate(all="ignore"):
-                return derivative(u[:-1], float(u[-1]))
+                return self.derivative(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
             raise NotFiniteError(f"the derivative could not be evaluated: {error}") from error
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import itertools
+import math
+from collections.abc import Sequence
 
 import numpy as np
 from attrs import evolve
 from scipy.optimize import brentq, minimize_scalar
 
-from continuation.arrays import largest
+from continuation.arrays import Array, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue
@@ -23,6 +25,10 @@ JUMP = 1e-3
 LOOKS = 17
 """Places where a monitor is looked at before its lowest value is sought: a cubic has two turns at most."""
 
+DESCENTS, INSIDE, AS_EXPECTED = 8, 1e-6, 0.1
+"""At most so many points are put on the path to find a monitor's least value, so far inside of an arc; one at which it
+is within a tenth of what was expected settles that there is no zero."""
+
 PASSES = 60
 """A bisection in every other pass narrows a bracket to round-off in these."""
 
@@ -30,7 +36,8 @@ FINE = 1e-6
 """A bracket so narrow, relative to the first, that the difference of its ends is mostly round-off: a poor cubic."""
 
 AT_ROUND_OFF, NEARLY_ZERO = 1e-15, 1e-10
-"""The monitor's value, relative to those at the ends, that is zero; and that does where it no longer halves."""
+"""The monitor's value, relative to those at the ends, that is zero; and that does where it
+has not halved twice."""
 
 TRANSVERSAL = 1e-6
 """The least component of a tangent, relative to its largest, along which a point is put on a value exactly."""
@@ -50,14 +57,32 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    values = [event.monitor(u, v) for u, v in arc.samples]
-    least = min(value * np.sign(ga) for value in values)
-    return bool(least < 0.5 * min(abs(ga), abs(gb)))
+    sign = math.copysign(1.0, ga)
+    values = [sign * g for g in (ga, *(event.monitor(u, v) for u, v in arc.samples), gb)]
+    places = (0.0, *arc.segment.inside, 1.0)
+    return _least(places, values) < 0.5 * min(abs(ga), abs(gb))
 
 
-def _lowest(event: Event, arc: Arc, ga: float) -> float:
-    """Where on the arc's segment the monitor comes nearest to changing its sign."""
-    sign, length = float(np.sign(ga)), float(np.dot(arc.border, arc.b.u - arc.a.u))
+def _least(places: Sequence[float], values: Sequence[float]) -> float:
+    """The least of some values and of the parabolas through each three neighbours between them.
+
+    For the parameter's component of a cubic's tangent that is the least of all.
+    """
+    least = min(values)
+    for i in range(len(values) - 2):
+        (p, q, r), (a, b, c) = places[i : i + 3], values[i : i + 3]
+        left, right = (b - a) / (q - p), (c - b) / (r - q)
+        bend = (right - left) / (r - p)
+        if bend > 0.0:
+            lowest = 0.5 * (p + q - left / bend)
+            if p < lowest < r:
+                least = min(least, a + (lowest - p) * (left + bend * (lowest - q)))
+    return least
+
+
+def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
+    """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
+    length = float(np.dot(arc.border, arc.b.u - arc.a.u))
 
     def g(t: float) -> float:
         return sign * event.monitor(arc.segment.at(t), arc.segment.derivative(t) / length)
@@ -65,7 +90,34 @@ def _lowest(event: Event, arc: Arc, ga: float) -> float:
     places = np.linspace(0.0, 1.0, LOOKS)
     k = int(np.argmin([g(float(t)) for t in places]))
     around = float(places[max(k - 1, 0)]), float(places[min(k + 1, LOOKS - 1)])
-    return float(minimize_scalar(g, bounds=around, method="bounded", options={"xatol": 1e-9}).x)
+    least = minimize_scalar(g, bounds=around, method="bounded", options={"xatol": 1e-9})
+    return float(least.x), float(least.fun)
+
+
+def _descent(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[tuple[Linearization, float]]:
+    """Points of the path towards the least value of a monitor that has one sign at both ends, up to another sign.
+
+    The segment says where; the point of the path there makes two segments out of one, which say it better, until the
+    monitor changes its sign, or is what was expected and does not.
+    """
+    sign = float(np.sign(ga))
+    knots, parts = [(arc.a, ga), (arc.b, gb)], [arc]
+    for _ in range(DESCENTS):
+        lowest = [_lowest(event, part, sign) for part in parts]
+        k = min(range(len(parts)), key=lambda i: lowest[i][1])
+        part, (t, expected) = parts[k], lowest[k]
+        if not INSIDE < t < 1.0 - INSIDE:
+            break
+        point, g = _knot(solver, event, part, t)
+        knots.insert(k + 1, (point, g))
+        if sign * g <= 0.0 or abs(sign * g - expected) <= AS_EXPECTED * abs(g):
+            break
+        parts[k : k + 1] = [_between(part.a, point, arc.border), _between(point, part.b, arc.border)]
+    return knots[1:-1]
+
+
+def _between(a: Linearization, b: Linearization, border: Array) -> Arc:
+    return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 
 def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[Linearization]:
@@ -81,10 +133,12 @@ def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> 
     """
     knots = [(arc.a, ga), (arc.b, gb)]
     along = [ga, *(event.monitor(u, v) for u, v in arc.samples), gb]
-    divided = ga * gb > 0.0 or sum(p * q < 0.0 for p, q in itertools.pairwise(along)) > 1
-    if divided:
-        places = {*_dividing(arc, along), _lowest(event, arc, ga)} if ga * gb > 0.0 else _dividing(arc, along)
-        knots[1:1] = [_knot(solver, event, arc, t) for t in sorted(places) if 0.0 < t < 1.0]
+    changes = sum(p * q < 0.0 for p, q in itertools.pairwise(along))
+    divided = ga * gb > 0.0 or changes > 1
+    if ga * gb > 0.0 and changes <= 2:
+        knots[1:1] = _descent(solver, event, arc, ga, gb)
+    elif divided:
+        knots[1:1] = [_knot(solver, event, arc, t) for t in _dividing(arc, along) if 0.0 < t < 1.0]
     found = []
     for (left, gl), (right, gr) in itertools.pairwise(knots):
         if gl == 0.0 or gl * gr > 0.0 or np.sign(gl) * event.direction > 0:
@@ -143,7 +197,7 @@ def _root(
     best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
     scale = max(abs(ga), abs(gb))
     width = first = float(np.dot(arc.border, b.u - a.u))
-    bisect, noise = False, None
+    bisect, stalled, noise = False, 0, None
     for _ in range(PASSES):
         segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
         series = None
@@ -160,7 +214,8 @@ def _root(
         else:
             b, gb = point, g
         width = float(np.dot(arc.border, b.u - a.u))
-        if least <= AT_ROUND_OFF * scale or (bisect and least <= NEARLY_ZERO * scale):
+        stalled = stalled + 1 if bisect else 0
+        if least <= AT_ROUND_OFF * scale or (stalled >= 2 and least <= NEARLY_ZERO * scale):
             break
         if bisect or fine:
             # As near as points are known: farther bisections would locate round-off.

@@ -153,9 +153,8 @@ def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> A
     else:
         from continuation import jets
 
-        evaluator.counts.residuals += order - 1
         evaluator.methods.add(GRIEWANK_WALTHER)
-        coefficients = jets.path_series(homotopy.residual, point.u, point.tangent, point.solve, order)
+        coefficients = jets.path_series(evaluator.called, point.u, point.tangent, point.solve, order)
     if not np.isfinite(coefficients.sum()):
         raise EvaluationError("the Taylor coefficients are not finite")
     return coefficients

@@ -9,6 +9,7 @@ from attrs import evolve
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
 from continuation.auditing import arclength, audit
 from continuation.controllers import Bounds, Geometric
+from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance
 from problems.bifurcation import ExponentialCosine
@@ -81,7 +82,7 @@ def test_the_guard_keeps_even_the_papers_controller_on_the_path(n):
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
 @pytest.mark.usefixtures("unguarded")
 def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
-    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric())
+    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric(), metric=Euclidean())
     assert path.status is Status.REACHED_TARGET
     assert len(path.turning_points) != TABLE[n][2]
     assert not audit(ExponentialCosine(n), path).same
@@ -89,6 +90,6 @@ def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
 
 @pytest.mark.usefixtures("unguarded")
 def test_a_path_that_jumped_has_no_length():
-    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=Geometric())
+    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=Geometric(), metric=Euclidean())
     with pytest.raises(ArithmeticError, match="are not joined"):
         arclength(ExponentialCosine(5), path)

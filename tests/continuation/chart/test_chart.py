@@ -143,7 +143,7 @@ def test_shorter_steps_make_better_dense_output():
         name="steps",
         problems=[cosine(3)],
         methods=[chart.traced("Hermite")],
-        ladder=chart.longest_steps(0.3, 0.03),
+        ladder=chart.longest_steps(0.3, 0.01),
         errors=[chart.CURVE_DISTANCE],
         repeats=0,
     )

@@ -178,21 +178,20 @@ class Unreachable:
 
 
 class OneWay(Interior):
-    """Once the parameter has fallen, it cannot rise again on the same path."""
+    """Where points of the path have come with a larger parameter four times, there is another path."""
 
-    lowest = 1.0
+    last, rises = 1.0, 0
 
     def start(self):
-        self.lowest = 1.0
+        self.last, self.rises = 1.0, 0
         return super().start()
 
     def residual(self, y, lam):
-        self.lowest = min(self.lowest, float(lam))
-        return super().residual(y, lam) + (1e-2 if lam > self.lowest + 0.1 else 0.0)
-
-    def jacobian(self, y, lam):
-        self.lowest = min(self.lowest, float(lam))
-        return super().jacobian(y, lam)
+        value = super().residual(y, lam)
+        if np.abs(value).max() < 1e-10:
+            self.rises += lam > self.last + 1e-3
+            self.last = lam
+        return value + (1e-2 if self.rises >= 4 else 0.0)
 
 
 @define
