@@ -39,7 +39,7 @@ CONSERVATIVE = Preset(
     "short steps, a factorisation for every increment: five times the work of DEFAULT; for paths close to others",
     Hermite(),
     BorderedNewton(reuse=0.0),
-    AllgowerGeorg(contraction=0.1, distance=0.02, angle=0.12, deceleration=1.3),
+    AllgowerGeorg(contraction=0.1, distance=0.012, angle=0.12, deceleration=1.3),
 )
 
 SERIES = Preset(

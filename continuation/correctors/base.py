@@ -105,7 +105,7 @@ ROUND_OFF = 32.0
 random, and H adds up as many terms as it has."""
 
 
-FAR_FROM_ROUND_OFF = 1e3 * ROUND_OFF
+FAR_FROM_ROUND_OFF = 30.0 * ROUND_OFF
 """A residual this large after polishing is worth a factorisation of its own."""
 
 ROUNDS = 10

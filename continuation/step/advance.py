@@ -111,7 +111,11 @@ class Advance:
             h = 1.0 + norm(point.weights, point.u)
         landing = self.landing and self.landing.attempt(point, prediction, h, state.last_failed_landing)
         if landing is not None:
-            if isinstance(landing, Arrival):
+            # The controller judges this one too: a long correction says that the path is not what was predicted.
+            if (
+                isinstance(landing, Arrival)
+                and controller.update(memory, self._measures(landing, prediction, 0)).accept
+            ):
                 found = self.examiner.examine(point, state, landing, prediction, landed=True)
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())

@@ -247,7 +247,9 @@ class Tracer:
         """The point after one step, or None where the path has ended."""
         state = self.state
         assert state is not None
-        found = self._advance.advance(point, state)
+        # Overflow is looked for where it counts: by a step that is not finite.
+        with np.errstate(all="ignore"):
+            found = self._advance.advance(point, state)
         end, verdict = None, found.verdict
         if isinstance(found, Stopped):
             end = found.end

@@ -254,9 +254,10 @@ def test_sparse_products_from_the_right():
         M @ sp.csr_array(A)
 
 
-def test_sparse_products_from_the_left_say_what_to_write():
-    with pytest.raises(TypeError, match=r"y @ A\.T"):
-        sp.csr_array(A) @ X
+@pytest.mark.parametrize("make", [sp.csr_array, sp.csc_matrix, sp.dia_array])
+def test_sparse_products_from_the_left(make):
+    np.testing.assert_allclose((make(A) @ X).c, (A @ X).c, atol=1e-13)
+    np.testing.assert_allclose(make(A).dot(X).c, (A @ X).c, atol=1e-13)
 
 
 # --- what must not pass silently --------------------------------------------------------------------------
