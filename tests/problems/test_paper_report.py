@@ -135,8 +135,8 @@ def test_the_figure_has_a_panel_an_example_and_marks_the_turns(report):
 
 # Who solves examples 1 to 3, as an independent program found it; literal ends at a KKT point on example 1.
 SOLVERS = {
-    "kkt": "yyy", "literal": ".yy", "yu": ".yy", "zhao": "...", "xu": ".yy", "wang": ".yy", "lemke": ".yy",
-    "modulus": None, "min-newton": ".yy",
+    "kkt": "yyy", "literal": ".yy", "yu": ".yy", "zhao": "...", "xu": ".yy", "wang": ".yy", "kmm": ".yy",
+    "lemke": ".yy", "modulus": None, "min-newton": ".yy",
 }  # fmt: skip
 
 
@@ -160,7 +160,7 @@ def test_who_solves_what(results):
 def test_the_matrix_has_a_line_a_method(results, tmp_path):
     lines = matrix(results).splitlines()
     assert [line.split()[0] for line in lines] == ["example", *METHODS]
-    assert lines[2].split() == ["literal", "stat.", "21", "15"]
+    assert ["literal", "stat.", "21", "15"] in [line.split() for line in lines]
     write_csv(results, tmp_path / "methods.csv")
     with (tmp_path / "methods.csv").open(newline="") as file:
         stored = list(csv.DictReader(file))
