@@ -112,11 +112,6 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
 
 
 def factor_lu(matrix: Array) -> LU | None:
-    """LU factors of a square matrix by itself; None where a pivot is exactly zero.
-
-    Parameters
-    ----------
-    matrix : Array of shape (N, N)
-    """
+    """LU factors of a square matrix by itself; None where a pivot is exactly zero."""
     lu, pivots, info = dgetrf(matrix)
     return LU(lu, pivots) if info == 0 else None
