@@ -32,3 +32,15 @@ def gauss_jordan(rows, right=None):
 def determinant(rows):
     """Of a square matrix."""
     return gauss_jordan(rows)[1]
+
+
+def exact_w(problem, x):
+    """A x + q."""
+    A = problem.A.toarray() if problem.sparse else problem.A
+    return fractions(A) @ np.array([Fraction(v) for v in x], dtype=object) + fractions(problem.q)
+
+
+def solves(problem, x):
+    """Whether x >= 0, A x + q >= 0 and all products are zero."""
+    w = exact_w(problem, x)
+    return min(*x, *w) >= 0 and not any(Fraction(a) * b for a, b in zip(x, w, strict=True))

@@ -166,17 +166,9 @@ def _copositive(draw: Draw, n: int) -> Rows:
 
 
 _BUILDERS: Mapping[str, Callable[[Draw, int], Rows]] = {
-    "any": _square,
-    "P": _p,
-    "P0": _p0,
-    "PSD": _psd,
-    "K": _k,
-    "Z": _z,
-    "N": _n,
-    "nondegenerate": _nondegenerate,
-    "row_sufficient": _row_sufficient,
-    "copositive": _copositive,
-}
+    "any": _square, "P": _p, "P0": _p0, "PSD": _psd, "K": _k, "Z": _z, "N": _n, "nondegenerate": _nondegenerate,
+    "row_sufficient": _row_sufficient, "copositive": _copositive,
+}  # fmt: skip
 
 CLASSES: tuple[str, ...] = tuple(_BUILDERS)
 """The class names that `matrices` knows."""

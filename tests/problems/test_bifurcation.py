@@ -22,22 +22,10 @@ from problems.bifurcation import (
 )
 
 PROBLEMS = [
-    Circle(),
-    Cusp(),
-    Cusp(splitting=-0.7),
-    Pitchfork(),
-    Pitchfork(imperfection=0.1),
-    Pitchfork(imperfection=-2.0),
-    FreudensteinRoth(),
-    Bratu1D(1),
-    Bratu1D(7),
-    Bratu2D(1),
-    Bratu2D(4),
-    ExponentialCosine(1),
-    ExponentialCosine(6),
-    Aircraft(),
-    Aircraft(elevator=-0.05),
-]
+    Circle(), Cusp(), Cusp(splitting=-0.7), Pitchfork(), Pitchfork(imperfection=0.1), Pitchfork(imperfection=-2.0),
+    FreudensteinRoth(), Bratu1D(1), Bratu1D(7), Bratu2D(1), Bratu2D(4), ExponentialCosine(1), ExponentialCosine(6),
+    Aircraft(), Aircraft(elevator=-0.05),
+]  # fmt: skip
 every_problem = pytest.mark.parametrize("problem", PROBLEMS, ids=repr)
 
 

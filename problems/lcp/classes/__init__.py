@@ -35,48 +35,14 @@ from problems.lcp.classes.minors import (
     is_z,
 )
 from problems.lcp.classes.solvability import is_q, is_q0
-from problems.lcp.classes.sufficiency import (
-    is_column_sufficient,
-    is_p_star,
-    is_psd,
-    is_row_sufficient,
-    is_sufficient,
-)
+from problems.lcp.classes.sufficiency import is_column_sufficient, is_p_star, is_psd, is_row_sufficient, is_sufficient
 
 _TESTS: tuple[Callable[[Any], Membership], ...] = (
-    is_psd,
-    is_p,
-    is_p0,
-    is_row_sufficient,
-    is_column_sufficient,
-    is_sufficient,
-    is_p_star,
-    is_z,
-    is_k,
-    is_k0,
-    is_nondegenerate,
-    is_almost_p,
-    is_almost_p0,
-    is_n,
-    is_n0,
-    is_n_bar,
-    is_almost_n,
-    is_almost_n0,
-    is_almost_n_bar,
-    is_n_of_exact_order,
-    is_n0_of_exact_order,
-    is_n_bar_of_exact_order,
-    is_copositive,
-    is_strictly_copositive,
-    is_almost_copositive,
-    is_semimonotone,
-    is_strictly_semimonotone,
-    is_semimonotone_star,
-    is_r0,
-    is_s,
-    is_q0,
-    is_q,
-)
+    is_psd, is_p, is_p0, is_row_sufficient, is_column_sufficient, is_sufficient, is_p_star, is_z, is_k, is_k0,
+    is_nondegenerate, is_almost_p, is_almost_p0, is_n, is_n0, is_n_bar, is_almost_n, is_almost_n0, is_almost_n_bar,
+    is_n_of_exact_order, is_n0_of_exact_order, is_n_bar_of_exact_order, is_copositive, is_strictly_copositive,
+    is_almost_copositive, is_semimonotone, is_strictly_semimonotone, is_semimonotone_star, is_r0, is_s, is_q0, is_q,
+)  # fmt: skip
 
 
 def classify(A: Any) -> Classification:

@@ -13,14 +13,9 @@ from problems.bifurcation import Circle, ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
 CORRECTORS = [
-    BorderedNewton(),
-    BorderedNewton(reuse=0.0),
-    BorderedNewton(reuse=1.0, max_iterations=20),
-    Chord(),
-    Broyden(),
-    MoorePenrose(),
-    NaturalParameter(),
-]
+    BorderedNewton(), BorderedNewton(reuse=0.0), BorderedNewton(reuse=1.0, max_iterations=20), Chord(), Broyden(),
+    MoorePenrose(), NaturalParameter(),
+]  # fmt: skip
 every_corrector = pytest.mark.parametrize("corrector", CORRECTORS, ids=repr)
 TOLERANCE = Tolerance(1e-10, 1e-10)
 

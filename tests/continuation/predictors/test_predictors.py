@@ -8,29 +8,12 @@ from continuation import from_functions
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import linearize
-from continuation.predictors import (
-    AdamsBashforth,
-    Hermite,
-    Knot,
-    Polynomial,
-    RungeKutta,
-    Secant,
-    Tangent,
-)
+from continuation.predictors import AdamsBashforth, Hermite, Knot, Polynomial, RungeKutta, Secant, Tangent
 
 PREDICTORS = [
-    Tangent(),
-    Secant(),
-    Hermite(),
-    Polynomial(2),
-    Polynomial(3),
-    Polynomial(4),
-    RungeKutta(2),
-    RungeKutta(4),
-    AdamsBashforth(2),
-    AdamsBashforth(3),
-    AdamsBashforth(4),
-]
+    Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(3), Polynomial(4), RungeKutta(2), RungeKutta(4),
+    AdamsBashforth(2), AdamsBashforth(3), AdamsBashforth(4),
+]  # fmt: skip
 every_predictor = pytest.mark.parametrize("predictor", PREDICTORS, ids=repr)
 
 PARABOLA = from_functions(

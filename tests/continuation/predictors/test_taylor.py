@@ -178,10 +178,7 @@ def test_dense_output_is_parametrised_by_arclength(preset):
 @pytest.mark.parametrize("order", [8, 20, 30])
 def test_no_choice_of_order_and_safety_loses_the_path(order, safety):
     path = continuation.trace(
-        ExponentialCosine(5),
-        predictor=Taylor(order=order, safety=safety),
-        controller=SeriesRange(),
-        metric=Euclidean(),
+        ExponentialCosine(5), predictor=Taylor(order=order, safety=safety), controller=SeriesRange(), metric=Euclidean()
     )
     assert path.endpoint.y[0] == pytest.approx(1.5875828159969, abs=1e-10)
     assert len(path.turning_points) == 10

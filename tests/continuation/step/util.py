@@ -8,16 +8,9 @@ from continuation.metric import Euclidean, Relative, RootMeanSquare, Weighted
 from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent
 
 PREDICTORS = [
-    Tangent(),
-    Secant(),
-    Hermite(),
-    Polynomial(2),
-    Polynomial(4),
-    RungeKutta(2),
-    RungeKutta(4),
-    AdamsBashforth(2),
+    Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(4), RungeKutta(2), RungeKutta(4), AdamsBashforth(2),
     AdamsBashforth(4),
-]
+]  # fmt: skip
 
 
 CORRECTORS = [BorderedNewton(), BorderedNewton(reuse=0.0), Chord(), Broyden(), MoorePenrose()]

@@ -8,31 +8,29 @@ from hypothesis import HealthCheck, assume, find, given, settings
 from hypothesis import strategies as st
 from hypothesis.errors import NoSuchExample
 
-from continuation import CONSERVATIVE, DEFAULT, SERIES, Kind, Status, trace
+from continuation import Kind, Status, trace
 from problems.lcp import LCP, KKTHomotopy, Outcome, certify, solve, solve_by_enumeration
 from problems.lcp.classes import is_n, is_nondegenerate, is_p0, is_row_sufficient
 from problems.lcp.strategies import feasible_lcps, matrices
 from problems.paper import COUNTEREXAMPLES
 
+from .util import PRESETS, x_at_end
+
 HUNT = settings(
     max_examples=2000, derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck)
 )
-PRESETS = pytest.mark.parametrize("preset", [DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
 
 
 def stationary(pair):
     """Whether the path from z1 = z2 = e arrives at lambda = 0 and its end does not solve the LCP, not even nearly."""
     problem, x0 = pair
     path = trace(KKTHomotopy(problem, x0))
-    x = np.maximum(path.endpoint.y[: problem.n], 0.0)
+    x = x_at_end(problem, path)
     return path.status is Status.REACHED_TARGET and not certify(problem, x, 1e-3).solves(1e-3)
 
 
 def unsolvable(pair):
     return not solve_by_enumeration(pair[0]).solvable and stationary(pair)
-
-
-# --- the false theorems, refuted by search -----------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -88,9 +86,6 @@ def test_row_sufficiency_is_the_exact_class(A):
     assert wrong
 
 
-# --- the two counterexamples, in closed form ---------------------------------------------------------------
-
-
 @PRESETS
 @pytest.mark.parametrize("counterexample", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
 def test_the_path_of_a_counterexample_ends_where_the_algebra_says(counterexample, preset):
@@ -98,10 +93,9 @@ def test_the_path_of_a_counterexample_ends_where_the_algebra_says(counterexample
     problem = counterexample.problem
     path = trace(KKTHomotopy(problem, counterexample.x0), preset=preset)
     plastic = max(np.roots([1, 0, -1, -1]), key=np.real).real
-    x, w, z2 = {
-        "P0": ([plastic, 1], [0, 1], [1 + plastic, 0]),
-        "nondegenerate": ([2, 0], [1, 0], [0, 3]),
-    }[counterexample.matrix_class]
+    x, w, z2 = {"P0": ([plastic, 1], [0, 1], [1 + plastic, 0]), "nondegenerate": ([2, 0], [1, 0], [0, 3])}[
+        counterexample.matrix_class
+    ]
     assert path.status is Status.REACHED_TARGET
     assert not path.events
     np.testing.assert_allclose(path.endpoint.y[:2], x, rtol=0, atol=1e-9)
@@ -127,8 +121,6 @@ def test_a_counterexample_is_never_called_solved(counterexample, name):
     assert (solution.exhaustion is None) == (name == "kkt")
     assert ("does not solve the LCP" in solution.message) == (name == "kkt")
 
-
-# --- a regular value that is none: the pitchfork of order one ----------------------------------------------
 
 HILL = LCP([[-1]], [2])
 """min x (2 - x): its solutions are 0 and 2, and between them, at x = 1, a maximum, which is stationary too."""

@@ -5,26 +5,14 @@ The rule asserted throughout: an end that is claimed is right, and where it cann
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
-from continuation import CONSERVATIVE, DEFAULT, SERIES, Kind, Status, trace
+from continuation import Kind, Status, trace
 from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, solve, solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, near_singular_lcps, planted_lcps
 
-PRESETS = pytest.mark.parametrize("preset", [DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
-
-
-def share(examples):
-    """So many examples in the default profile, a hundred times as many in the nightly one."""
-    return settings(max_examples=settings.default.max_examples * examples // 100)
-
-
-def x_at_end(problem, path):
-    return np.maximum(path.endpoint.y[: problem.n], 0.0)
-
-
-# --- turning points that come close ------------------------------------------------------------------------
+from .util import PRESETS, share, x_at_end
 
 MERGE = 3.9121535
 """Where the two turning points of the family below merge, from their distance at eight values of a beyond."""
@@ -73,9 +61,6 @@ def test_close_to_the_merger_none_or_both_are_found_and_the_end_is_the_same(pres
     np.testing.assert_allclose(path.endpoint.y[:2], 0.0, atol=1e-8)
 
 
-# --- folds that are nearly singular otherwise too ----------------------------------------------------------
-
-
 def twins(d):
     """Two blocks of the family above, of which the one folds at a = 4.5, the other at 4.5 + d."""
     A = np.zeros((4, 4))
@@ -115,9 +100,6 @@ def test_a_double_fold_is_a_branch_point_and_is_named(preset):
         np.testing.assert_allclose(path.endpoint.y[:4], 0.0, atol=1e-8)
     else:
         assert path.status is Status.STEP_TOO_SMALL
-
-
-# --- near-singular and badly scaled matrices ---------------------------------------------------------------
 
 
 @share(60)
@@ -215,9 +197,6 @@ def test_extreme_units_end_without_a_warning():
     assert path.status in (Status.TURNED_BACK, Status.DIVERGED)
     assert path.lam == pytest.approx(1.0, abs=1e-12)
     assert solve(problem).x == pytest.approx([5 * 2.0**-25], rel=1e-15)
-
-
-# --- ends: degenerate, double, without a solution ----------------------------------------------------------
 
 
 @PRESETS

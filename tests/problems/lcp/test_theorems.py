@@ -4,25 +4,20 @@ Numbers are those of Dutta, Das and Jana, "Bounded Homotopy Path Approach to Fin
 Problems". Where their statement is wrong (3.7, 3.9) or unproven (3.4) the test is of what is true in its place.
 """
 
-from fractions import Fraction
-
 import numpy as np
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from continuation import Status, Tracer, trace
 from problems.lcp import LCP, KKTHomotopy, certify, random_start
 from problems.lcp.classes.exact import ExactMatrix
-from problems.lcp.classes.exact import determinant as integer_determinant
 from problems.lcp.strategies import feasible_lcps, lcps
+
+from ...exact import determinant
+from .util import share
 
 SMALL = 1e-7
 """Relative size below which a number at the end of a path counts as zero; most ends are good to 1e-12."""
-
-
-def share(examples):
-    """So many examples in the default profile, a hundred times as many in the nightly one."""
-    return settings(max_examples=settings.default.max_examples * examples // 100)
 
 
 def kkt_path(pair, **options):
@@ -31,17 +26,8 @@ def kkt_path(pair, **options):
     return trace(KKTHomotopy(problem, x0), **options)
 
 
-def determinant(M):
-    """Exact, in the units of the floats of M."""
-    exact = ExactMatrix.of(M)
-    return Fraction(integer_determinant(exact.entries), exact.scale**exact.n)
-
-
 def small(value, *sizes):
     return np.abs(value) <= SMALL * (1.0 + max(float(np.abs(size).max()) for size in sizes))
-
-
-# --- the start ---------------------------------------------------------------------------------------------
 
 
 @share(50)
@@ -69,9 +55,6 @@ def test_the_determinant_is_negative_in_the_positive_direction(pair):
     tracer = Tracer(homotopy)
     assert next(iter(tracer)).tangent[-1] < 0
     assert tracer.state.orientation == homotopy.bordered(y0, lam0, tau).sign == -1
-
-
-# --- the course --------------------------------------------------------------------------------------------
 
 
 @share(40)
@@ -127,9 +110,6 @@ def test_semidefinite_matrices_give_monotone_paths_and_definite_matrices(pair):
         minors = ExactMatrix.of((1 - step.lam) * inner + step.lam * np.eye(n)).minors
         assert all(minors[(1 << k) - 1] > 0 for k in range(1, n + 1))
         assert step.tangent[-1] < 0
-
-
-# --- the end -----------------------------------------------------------------------------------------------
 
 
 @share(60)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from continuation import Status, trace
@@ -22,13 +22,10 @@ from problems.lcp import (
 )
 from problems.lcp.strategies import feasible_lcps, lcps, planted_lcps
 
+from .util import share, x_at_end
+
 SMALL_ORDERS = st.integers(1, 3)
 TWO_VECTOR = (YuHomotopy, ZhaoHomotopy, XuHomotopy, WangHomotopy, KojimaMegiddoMizunoHomotopy)
-
-
-def share(examples):
-    """So many examples in the default profile, a hundred times as many in the nightly one."""
-    return settings(max_examples=settings.default.max_examples * examples // 100)
 
 
 def powers(n):
@@ -50,9 +47,6 @@ def unique_solution(problem):
     """That of a P-matrix (Cottle, Pang and Stone, Theorem 3.3.7), exact but for its rounding."""
     (solution,) = solve_by_enumeration(problem).solutions
     return solution.point
-
-
-# --- units and order ---------------------------------------------------------------------------------------
 
 
 @share(30)
@@ -105,9 +99,6 @@ def test_the_paths_do_not_depend_on_the_order_of_the_unknowns(data):
     assert len(other.turning_points) == len(one.turning_points)
 
 
-# --- starts ------------------------------------------------------------------------------------------------
-
-
 @share(40)
 @given(lcps("P"), st.integers(0, 2**32 - 1))
 @pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
@@ -125,9 +116,6 @@ def test_every_method_of_solve_finds_the_unique_solution(problem, name):
     solution = solve(problem, name, finish=False, tolerance=1e-8)
     assert solution.outcome is Outcome.SOLVED
     assert near(solution.x, unique_solution(problem))
-
-
-# --- brute force -------------------------------------------------------------------------------------------
 
 
 @share(60)
@@ -165,7 +153,7 @@ def test_an_end_of_the_earlier_homotopies_is_a_solution(make):
         if path.status is not Status.REACHED_TARGET:
             assert path.status is Status.DIVERGED
             return
-        x = np.maximum(path.endpoint.y[: problem.n], 0.0)
+        x = x_at_end(problem, path)
         assert certify(problem, x, 1e-7).solves(1e-7)
         truth = solve_by_enumeration(problem)
         assert truth.solvable

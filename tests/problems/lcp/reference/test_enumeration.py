@@ -15,13 +15,9 @@ from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import LARGEST_FACES, solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, lcps, near_singular_lcps, planted_lcps
 
+from ....exact import exact_w, solves
+
 ORDERS = st.integers(1, 4)
-
-
-def exactly_solves(problem, solution):
-    rows = zip(problem.A.tolist(), problem.q.tolist(), strict=True)
-    w = tuple(sum((Fraction(a) * v for a, v in zip(row, solution.x, strict=True)), Fraction(q)) for row, q in rows)
-    return w == solution.w and min(*solution.x, *w) >= 0 and not any(a * b for a, b in zip(solution.x, w, strict=True))
 
 
 def test_two_by_two_in_closed_form():
@@ -71,7 +67,7 @@ def test_a_continuum_is_reported_as_incomplete(A, q):
     found = solve_by_enumeration(problem)
     assert found.solvable
     assert not found.complete
-    assert all(exactly_solves(problem, s) for s in found.solutions)
+    assert all((solves(problem, s.x) and tuple(exact_w(problem, s.x)) == s.w) for s in found.solutions)
 
 
 def test_a_singular_face_with_one_point_is_complete():
@@ -122,7 +118,7 @@ def test_the_number_of_solutions_of_the_papers_examples(number):
 @given(lcps("any", ORDERS))
 def test_every_solution_solves_exactly_and_they_are_distinct(problem):
     found = solve_by_enumeration(problem)
-    assert all(exactly_solves(problem, s) for s in found.solutions)
+    assert all((solves(problem, s.x) and tuple(exact_w(problem, s.x)) == s.w) for s in found.solutions)
     assert len({s.x for s in found.solutions}) == len(found.solutions)
     assert all(problem.relative_residual(point) < 1e-15 for point in found.points)
 
@@ -177,7 +173,9 @@ def test_scaling_and_permutation_move_the_solutions_and_nothing_else(pair, data)
 @given(st.one_of(near_singular_lcps(), badly_scaled_lcps()))
 def test_hard_numbers_are_exact_too(pair):
     problem, _ = pair
-    assert all(exactly_solves(problem, s) for s in solve_by_enumeration(problem).solutions)
+    assert all(
+        (solves(problem, s.x) and tuple(exact_w(problem, s.x)) == s.w) for s in solve_by_enumeration(problem).solutions
+    )
 
 
 def test_sparse_and_dense_agree():
