@@ -9,9 +9,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from continuation import Status, Tracer, trace
-from problems.lcp import LCP, KKTHomotopy, certify, random_start
+from problems.lcp import KKTHomotopy, certify, random_start
 from problems.lcp.classes.exact import ExactMatrix
 from problems.lcp.strategies import feasible_lcps, lcps
+from problems.paper import COUNTEREXAMPLES
 
 from ...exact import determinant
 from .util import share
@@ -24,6 +25,13 @@ def kkt_path(pair, **options):
     """The path of the paper's start z1 = z2 = e."""
     problem, x0 = pair
     return trace(KKTHomotopy(problem, x0), **options)
+
+
+def with_the_counterexamples(test):
+    """Of feasible problems, and the two whose path ends where no solution is."""
+    for pair in ((item.problem, item.x0) for item in COUNTEREXAMPLES):
+        test = example(pair)(test)
+    return given(feasible_lcps())(test)
 
 
 def small(value, *sizes):
@@ -113,9 +121,7 @@ def test_semidefinite_matrices_give_monotone_paths_and_definite_matrices(pair):
 
 
 @share(60)
-@given(feasible_lcps())
-@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
-@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+@with_the_counterexamples
 def test_the_quadratic_identity_at_the_end(pair):
     """With dx = x - z2, dw = w - z1: A' dx = -dw and x_i w_i + z1_i z2_i = dx_i dw_i >= 0 (from Remark 2)."""
     problem, _ = pair
@@ -133,9 +139,7 @@ def test_the_quadratic_identity_at_the_end(pair):
 
 
 @share(60)
-@given(feasible_lcps())
-@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
-@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+@with_the_counterexamples
 def test_complementarity_index_by_index(pair):
     """Theorem 3.6, read index by index: x_i w_i = 0 exactly where dx_i dw_i = 0 or z1_i + z2_i > 0.
 
@@ -157,9 +161,7 @@ def test_complementarity_index_by_index(pair):
 
 
 @share(100)
-@given(feasible_lcps())
-@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
-@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+@with_the_counterexamples
 def test_where_the_end_is_no_solution_a_matrix_is_singular(pair):
     """Theorem 3.8: if diag(w) + diag(x) A' is nonsingular at the end, then x solves the LCP."""
     problem, _ = pair

@@ -17,6 +17,7 @@ from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import solve_by_enumeration
 from problems.lcp.strategies import CLASSES, matrices
+from problems.paper import EXAMPLES
 
 from ....exact import determinant, fractions
 
@@ -65,37 +66,24 @@ KNOWN = [
 
 
 PAPER = {
-    1: ([[-1, 2], [3, -1]], {"N", "nondegenerate", "Q"}, {"P0", "row sufficient"}),
-    2: ([[1, -1], [-1, 1]], {"PSD", "P0", "K0", "P_*"}, {"nondegenerate", "Q"}),
-    3: ([[1, 1], [0, 0]], {"Q0", "P0", "row sufficient"}, {"nondegenerate", "column sufficient", "Q"}),
-    4: ([[0, 1, 1], [2, 0, 1], [-4, -5, 0]], {"E0^s", "E0", "Q0"}, {"P0", "nondegenerate", "Q"}),
-    5: ([[-1, 2, 1], [1, -0.5, -0.25], [-0.5, -1, -1]], {"nondegenerate"}, {"N", "P0", "Q0"}),
-    6: ([[1, -2, 0], [0, 1, -2], [-2, 0, 1]], {"almost copositive", "Z", "nondegenerate", "Q0"}, {"P0", "Q"}),
-    7: (
-        [[-1, 1, 1, 1], [1, 0, 0, 0], [1, 0, 0, -1], [1, 0, -1, 0]],
-        {"almost N-bar", "almost N0", "Q"},
-        {"P0", "nondegenerate", "almost N", "R0"},
-    ),
-    8: (
-        [[-2, -2, -2, 2], [-2, -1, -3, 3], [-2, -3, -1, 3], [2, 3, 3, 0]],
-        {"almost N0", "almost N-bar", "S"},
-        {"P0", "nondegenerate", "Q", "Q0"},
-    ),
-    9: (
-        [[0, 0, 0, 1, 2], [0, 0, -1, -1, 2], [0, -1, 0, -1, 1], [1, -1, -1, 0, 0], [2, 1, 0, 0, 0]],
-        {"N0 of exact order k", "S"},
-        {"P0", "nondegenerate", "N-bar of exact order k", "Q0"},
-    ),
-    10: (
-        [[0, -90, -80, -70, 0], [-90, -2, -2, -2, 2], [-70, -2, -1, -3, 3], [-50, -2, -3, -0.8, 3], [0, 2, 3, 3, 0]],
-        {"N-bar of exact order k", "N0 of exact order k"},
-        {"P0", "nondegenerate", "S", "Q0"},
-    ),
+    1: ({"N", "nondegenerate", "Q"}, {"P0", "row sufficient"}),
+    2: ({"PSD", "P0", "K0", "P_*"}, {"nondegenerate", "Q"}),
+    3: ({"Q0", "P0", "row sufficient"}, {"nondegenerate", "column sufficient", "Q"}),
+    4: ({"E0^s", "E0", "Q0"}, {"P0", "nondegenerate", "Q"}),
+    5: ({"nondegenerate"}, {"N", "P0", "Q0"}),
+    6: ({"almost copositive", "Z", "nondegenerate", "Q0"}, {"P0", "Q"}),
+    7: ({"almost N-bar", "almost N0", "Q"}, {"P0", "nondegenerate", "almost N", "R0"}),
+    8: ({"almost N0", "almost N-bar", "S"}, {"P0", "nondegenerate", "Q", "Q0"}),
+    9: ({"N0 of exact order k", "S"}, {"P0", "nondegenerate", "N-bar of exact order k", "Q0"}),
+    10: ({"N-bar of exact order k", "N0 of exact order k"}, {"P0", "nondegenerate", "S", "Q0"}),
 }
+"""Of the examples' matrices."""
 
 
 @pytest.mark.parametrize(
-    ("A", "yes", "no"), [*(row[1:] for row in KNOWN), *PAPER.values()], ids=[*(row[0] for row in KNOWN), *PAPER]
+    ("A", "yes", "no"),
+    [*(row[1:] for row in KNOWN), *((EXAMPLES[k - 1].A, *expected) for k, expected in PAPER.items())],
+    ids=[*(row[0] for row in KNOWN), *PAPER],
 )
 def test_known_matrices(A, yes, no):
     """Those of the paper too: each class that it prints; only examples 2 and 3 are P0, 1, 5 and 6 nondegenerate."""
@@ -106,7 +94,7 @@ def test_known_matrices(A, yes, no):
 
 @pytest.mark.parametrize("number", [9, 10])
 def test_the_exact_order_of_the_last_two_matrices_is_two(number):
-    A = PAPER[number][0]
+    A = EXAMPLES[number - 1].A
     assert classes.is_n0_of_exact_order(A).certificate.value == 2
     assert classes.is_n0_of_exact_order(A, 2).holds is True
     assert classes.is_n0_of_exact_order(A, 1).holds is False
@@ -267,7 +255,7 @@ def test_a_sequence_that_shows_a_closure_has_the_strict_signs(A):
 def test_a_closure_is_refuted_by_a_minor_or_by_the_signature_and_shown_by_a_sequence():
     """A triangle of positive cycle product has a positive minor; the paper's example 9 has the minors only."""
     assert classes.is_n_bar([[0, 1, 0], [0, 0, 1], [1, 0, 0]]).certificate.value == 1
-    assert "S A S" in classes.is_n_bar_of_exact_order(PAPER[9][0], 2).certificate.sentence
+    assert "S A S" in classes.is_n_bar_of_exact_order(EXAMPLES[8].A, 2).certificate.sentence
     shown = classes.is_n_bar([[0, 1, 1], [0, 0, -1], [0, 0, 0]])
     assert shown.holds
     assert shown.certificate.perturbation is not None

@@ -14,28 +14,23 @@ from problems.lcp.proof.farkas import empty_interior
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, is_strictly_feasible, strictly_feasible_start
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
+from ....exact import exact_w, fractions
+
 SMALL = st.integers(-2, 2)
-
-
-def fraction_array(values):
-    return np.vectorize(Fraction, otypes=[object])(np.asarray(values, dtype=float))
-
-
-def dense(problem):
-    return problem.A.toarray() if problem.sparse else problem.A
 
 
 def check_start(problem, x0):
     assert min(x0) > 0
-    assert min(fraction_array(dense(problem)) @ fraction_array(x0) + fraction_array(problem.q)) > 0
+    assert min(exact_w(problem, x0)) > 0
 
 
 def check_proof(problem, proof):
     y = np.array(proof.y, dtype=object)
     assert min(y) >= 0
     assert max(y) > 0
-    assert max(fraction_array(dense(problem)).T @ y) <= 0
-    assert fraction_array(problem.q) @ y == proof.gap
+    A = problem.A.toarray() if problem.sparse else problem.A
+    assert max(fractions(A).T @ y) <= 0
+    assert fractions(problem.q) @ y == proof.gap
     assert proof.gap <= 0
 
 
@@ -48,9 +43,7 @@ def interior_is_empty(A, q):
         positive = [row for row in system if row[j] > 0]
         negative = [row for row in system if row[j] < 0]
         system = {row for row in system if row[j] == 0}
-        system |= {
-            tuple(-low[j] * a + up[j] * b for a, b in zip(up, low)) for up in positive for low in negative
-        }
+        system |= {tuple(-low[j] * a + up[j] * b for a, b in zip(up, low)) for up in positive for low in negative}
     return any(row[-1] <= 0 for row in system)
 
 
