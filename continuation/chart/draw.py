@@ -45,10 +45,8 @@ def draw(
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the error, the work, a problem or a method is none of the results'.
+    ImportError, ValueError
+        Without matplotlib; if the error, the work, a problem or a method is none of the results'.
     """
     results.check(error, work)
     shown = list(problems) if problems is not None else results.problems

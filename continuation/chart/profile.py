@@ -65,10 +65,8 @@ def draw_profile(results: Results, work: str) -> Figure:
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the work is unknown.
+    ImportError, ValueError
+        Without matplotlib; for an unknown work.
     """
     results.check(work=work)
     figure, axes = panels(len(results.families))

@@ -81,10 +81,8 @@ def draw_scaling(results: Results, work: str) -> Figure:
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the work is unknown.
+    ImportError, ValueError
+        Without matplotlib; for an unknown work.
     """
     results.check(work=work)
     powers = exponents(results, work)

@@ -31,10 +31,8 @@ def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Fi
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the work is unknown.
+    ImportError, ValueError
+        Without matplotlib; for an unknown work.
     """
     results.check(work=work)
     figure, axes = panels(len(results.methods), most_across=2, height=3.6)

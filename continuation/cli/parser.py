@@ -50,10 +50,6 @@ class Subparsers(Protocol):
             Of the command.
         **options
             As for `argparse.ArgumentParser`, and `help`, the line in the list of commands.
-
-        Returns
-        -------
-        argparse.ArgumentParser
         """
         ...
 
