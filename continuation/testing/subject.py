@@ -210,7 +210,7 @@ class Subject:
             with called("bordered" if self.has("bordered") else "jacobian", f"at step {k} of the path"):
                 yield (
                     Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u),
-                    linearize(self.evaluator, step.u, np.ones_like(step.u), border, 0),
+                    linearize(self.evaluator, step.u, np.ones_like(step.u), border),
                 )
 
     def derivative(self, place: Place) -> Array:

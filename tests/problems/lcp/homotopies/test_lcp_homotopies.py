@@ -32,7 +32,7 @@ def linearized(homotopy, y, lam):
     weights = homotopy.metric.weights(u, u, None)
     reference = np.zeros_like(u)
     reference[-1] = -1.0
-    return linearize(Evaluator(homotopy, Counts()), u, weights, reference, 0)
+    return linearize(Evaluator(homotopy, Counts()), u, weights, reference)
 
 
 def test_kkt_equations_by_hand():
