@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TargetValue, trace
+from continuation import Status, TargetValue, trace
 from continuation.auditing import audit
 from problems.bifurcation import Bratu1D, Bratu2D
 from problems.bifurcation.truth import bratu
 
-every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+from ..util import every_preset
 
 
 def upper_branch(homotopy, lam, **options):

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
+from continuation import Status, trace
 from continuation.auditing import arclength, audit
 from continuation.controllers import Bounds, Geometric
 from continuation.predictors import Tangent
 from continuation.step import acceptance
 from problems.bifurcation import ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
+
+from ..util import every_preset
 
 # n: x1 at the end, arclength, turning points of lam.
 TABLE = {
@@ -21,8 +23,6 @@ TABLE = {
     6: (1.9949909313114, 17.260258578309, 12), 7: (2.3730945655736, 24.433767691728, 18),
     8: (0.39859096762391, 48.712616148201, 24),
 }  # fmt: skip
-
-every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
 
 
 @every_preset

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from scipy.sparse import diags_array
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
+from continuation import Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
 from continuation.correctors import NaturalParameter
 from continuation.metric import Euclidean
 from continuation.rejection import Rejection
 from problems.bifurcation import Circle, Cusp, FreudensteinRoth, Pitchfork
 
+from ...util import every_preset
 from .util import CONTROLLERS, CORRECTORS, METRICS, PREDICTORS, Watcher
 
 # Every pair of parts occurs: the numbers of predictor, corrector and controller make a Latin square.
@@ -39,7 +40,7 @@ def test_the_natural_parameter_follows_what_does_not_turn(predictor, controller)
 
 
 @pytest.mark.parametrize("metric", METRICS, ids=repr)
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+@every_preset
 def test_every_metric_follows_the_cusp(metric, preset):
     path = trace(Cusp(), metric=metric, preset=preset)
     assert path.status is Status.REACHED_TARGET

@@ -14,7 +14,8 @@ from problems.lcp.classes import is_n, is_nondegenerate, is_p0, is_row_sufficien
 from problems.lcp.strategies import feasible_lcps, matrices
 from problems.paper import COUNTEREXAMPLES
 
-from .util import PRESETS, x_at_end
+from ...util import for_interior_paths
+from .util import x_at_end
 
 HUNT = settings(
     max_examples=2000, derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck)
@@ -86,7 +87,7 @@ def test_row_sufficiency_is_the_exact_class(A):
     assert wrong
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("counterexample", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
 def test_the_path_of_a_counterexample_ends_where_the_algebra_says(counterexample, preset):
     """P0: (1 + x)(1 + x - x^2) = x at the end, that is x^3 = x + 1; nondegenerate: x = (2, 0), w = (1, 0)."""
@@ -126,7 +127,7 @@ HILL = LCP([[-1]], [2])
 """min x (2 - x): its solutions are 0 and 2, and between them, at x = 1, a maximum, which is stationary too."""
 
 
-@PRESETS
+@for_interior_paths
 def test_the_start_in_the_middle_meets_a_branch_point_and_ends_on_the_top(preset):
     """Theorem 3.1 holds for almost every start, not for every: from x0 = 1 the path is x = 1, z1 = z2 = lambda.
 
@@ -141,7 +142,7 @@ def test_the_start_in_the_middle_meets_a_branch_point_and_ends_on_the_top(preset
     assert solve(HILL, "kkt", x0=[1.0], finish=False).outcome is Outcome.STATIONARY
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("offset", [1e-2, 1e-4, 1e-6])
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_start_beside_the_middle_turns_off_to_a_solution(preset, offset, side):
@@ -153,7 +154,7 @@ def test_a_start_beside_the_middle_turns_off_to_a_solution(preset, offset, side)
     assert (np.sign(path.y[:, 0] - 1.0) == side).all()
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("offset", [1e-7, 1e-8, 1e-9, 1e-10, 1e-12])
 def test_a_start_nearer_than_the_tolerance_turns_off_or_names_the_branch_point(preset, offset):
     """Where the two arms are as near as the tolerance a leap is possible, and never silent."""

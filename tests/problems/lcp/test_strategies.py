@@ -29,15 +29,13 @@ HUNT = settings(max_examples=5000, database=None, suppress_health_check=list(Hea
 
 
 @pytest.mark.parametrize("cls", TESTS)
-def test_matrices_belong_to_their_class(cls):
-    @given(mine.matrices(cls))
-    def belongs(A):
-        assert A.dtype == np.float64
-        assert A.shape == (len(A), len(A))
-        membership = TESTS[cls](A)
-        assert membership.holds, str(membership)
-
-    belongs()
+@given(data=st.data())
+def test_matrices_belong_to_their_class(cls, data):
+    A = data.draw(mine.matrices(cls))
+    assert A.dtype == np.float64
+    assert A.shape == (len(A), len(A))
+    membership = TESTS[cls](A)
+    assert membership.holds, str(membership)
 
 
 def test_every_class_has_a_test_here():
@@ -45,14 +43,11 @@ def test_every_class_has_a_test_here():
 
 
 @pytest.mark.parametrize("cls", mine.CLASSES)
-def test_the_order_asked_for_is_the_order_drawn(cls):
-    @given(mine.matrices(cls, 3), mine.matrices(cls, st.sampled_from((2, 5))))
-    @settings(max_examples=20)
-    def has_order(A, B):
-        assert A.shape == (3, 3)
-        assert len(B) in (2, 5)
-
-    has_order()
+@given(data=st.data())
+@settings(max_examples=20)
+def test_the_order_asked_for_is_the_order_drawn(cls, data):
+    assert data.draw(mine.matrices(cls, 3)).shape == (3, 3)
+    assert len(data.draw(mine.matrices(cls, st.sampled_from((2, 5))))) in (2, 5)
 
 
 HUNTED = {
@@ -91,14 +86,11 @@ def test_lcps_have_the_matrix_asked_for(problem):
 
 
 @pytest.mark.parametrize("cls", ["any", "P0", "copositive"])
-def test_the_start_of_feasible_problems_is_strictly_feasible(cls):
-    @given(mine.feasible_lcps(cls))
-    def strictly_feasible(pair):
-        problem, x0 = pair
-        assert min(x0) > 0
-        assert min(exact_w(problem, x0)) > 0
-
-    strictly_feasible()
+@given(data=st.data())
+def test_the_start_of_feasible_problems_is_strictly_feasible(cls, data):
+    problem, x0 = data.draw(mine.feasible_lcps(cls))
+    assert min(x0) > 0
+    assert min(exact_w(problem, x0)) > 0
 
 
 @given(mine.planted_lcps("strict", "P0"))

@@ -123,14 +123,9 @@ def test_reduced_and_full_steps_agree(pair):
 
 
 @pytest.mark.parametrize("make", [YuHomotopy, XuHomotopy, WangHomotopy, KojimaMegiddoMizunoHomotopy])
-def test_reduced_and_full_steps_agree_for_the_earlier_homotopies(make):
+@share(8)
+@given(pair=feasible_lcps("PSD", st.integers(1, 3)))
+def test_reduced_and_full_steps_agree_for_the_earlier_homotopies(make, pair):
     """The same with n + 1 and 2n + 1, on positive definite matrices, where all of them arrive."""
-
-    @share(8)
-    @given(feasible_lcps("PSD", st.integers(1, 3)))
-    def agree(pair):
-        problem, x0 = pair
-        definite = LCP(problem.A + np.eye(problem.n), problem.q)
-        assert_same_path(make(definite, x0))
-
-    agree()
+    problem, x0 = pair
+    assert_same_path(make(LCP(problem.A + np.eye(problem.n), problem.q), x0))

@@ -1,12 +1,7 @@
 """What the tests of theorems have in common."""
 
 import numpy as np
-import pytest
 from hypothesis import settings
-
-from continuation import CONSERVATIVE, DEFAULT, SERIES
-
-PRESETS = pytest.mark.parametrize("preset", [DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
 
 
 def share(examples):
