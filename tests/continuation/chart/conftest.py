@@ -6,8 +6,9 @@ import continuation
 from continuation import chart
 from continuation.counts import Counts
 from continuation.predictors import Hermite
+from problems.charts.subjects import cosine
 
-from .util import boom, cosine
+from .util import boom
 
 
 def jump(problem, rung):

@@ -15,10 +15,9 @@ from continuation.counts import Counts
 from continuation.predictors import Hermite
 from problems.bifurcation import Circle, ExponentialCosine
 from problems.bifurcation.truth import circle, exponential_cosine
+from problems.charts.subjects import cosine
 
 mpl.use("Agg")
-
-from .util import cosine
 
 
 def row(results, method, rung=1e-8):

@@ -8,8 +8,7 @@ import continuation
 from continuation import chart
 from continuation.predictors import Hermite, Taylor
 from problems.bifurcation import Circle
-
-from .util import cosine
+from problems.charts.subjects import cosine
 
 
 def test_the_ladder_of_orders_sets_the_order_and_needs_a_series():

@@ -6,8 +6,9 @@ from continuation import chart
 from continuation.chart import catalogue
 from continuation.cli import charts
 from continuation.cli.parser import Parser, UsageError
+from problems.charts.subjects import cosine
 
-from ..chart.util import boom, cosine
+from ..chart.util import boom
 
 
 @pytest.fixture
