@@ -44,3 +44,13 @@ def solves(problem, x):
     """Whether x >= 0, A x + q >= 0 and all products are zero."""
     w = exact_w(problem, x)
     return min(*x, *w) >= 0 and not any(Fraction(a) * b for a, b in zip(x, w, strict=True))
+
+
+def check_farkas(problem, proof):
+    """y >= 0, A'y <= 0 and the gap q'y that is stated, at most zero."""
+    A = problem.A.toarray() if problem.sparse else problem.A
+    y = np.array(proof.y, dtype=object)
+    assert min(y) >= 0 < max(y)
+    assert max(fractions(A).T @ y) <= 0
+    assert fractions(problem.q) @ y == proof.gap <= 0
+    assert proof.no_feasible_point == (proof.gap < 0)
