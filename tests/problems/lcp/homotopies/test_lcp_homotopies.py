@@ -10,16 +10,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.jets import path_series
 from continuation.point.linearization import linearize
-from problems.lcp.data.problem import LCP
-from problems.lcp.homotopies import (
-    KKTHomotopy,
-    KojimaMegiddoMizunoHomotopy,
-    Structure,
-    WangHomotopy,
-    XuHomotopy,
-    YuHomotopy,
-    ZhaoHomotopy,
-)
+from problems import lcp
 from problems.lcp.homotopies.interior import RelativeMetric
 from problems.lcp.strategies import lcps
 from problems.paper import EXAMPLES
@@ -36,7 +27,7 @@ def linearized(homotopy, y, lam):
 
 
 def test_kkt_equations_by_hand():
-    homotopy = KKTHomotopy(LCP([[2.0]], [-3.0]), [1.0], [5.0], [7.0], [4.0])
+    homotopy = lcp.KKTHomotopy(lcp.LCP([[2.0]], [-3.0]), [1.0], [5.0], [7.0], [4.0])
     # rho = 4 - (2 - 3) = 5, c1 = 5, c2 = 28; at x = 2, z1 = 3, z2 = 6, lambda = 1/4: w = 1 + 5/4.
     expected = [0.75 * (4 * 2 - 3 - 3 - 2 * 6) + 0.25 * (2 - 1), 3 * 2 - 0.25 * 5, 6 * 2.25 - 0.25 * 28]
     assert homotopy.residual(np.array([2.0, 3.0, 6.0]), 0.25) == pytest.approx(expected, rel=1e-15)
@@ -45,15 +36,15 @@ def test_kkt_equations_by_hand():
 @pytest.mark.parametrize(
     ("make", "first"),
     [
-        (YuHomotopy, 0.75 * (1 - 6) + 0.25 * (2 - 1)),
-        (ZhaoHomotopy, 0.75 * (6 - 1) + 0.25 * (2 - 1)),
-        (XuHomotopy, 0.75 * (6 - 1) - 0.25 * (2 - 1)),
-        (WangHomotopy, 0.75 * 1 - 6 + 0.25 * 4),
-        (KojimaMegiddoMizunoHomotopy, 1 - 6 + 0.25 * (4 - (-1))),
+        (lcp.YuHomotopy, 0.75 * (1 - 6) + 0.25 * (2 - 1)),
+        (lcp.ZhaoHomotopy, 0.75 * (6 - 1) + 0.25 * (2 - 1)),
+        (lcp.XuHomotopy, 0.75 * (6 - 1) - 0.25 * (2 - 1)),
+        (lcp.WangHomotopy, 0.75 * 1 - 6 + 0.25 * 4),
+        (lcp.KojimaMegiddoMizunoHomotopy, 1 - 6 + 0.25 * (4 - (-1))),
     ],
 )
 def test_two_vector_equations_by_hand(make, first):
-    homotopy = make(LCP([[2.0]], [-3.0]), [1.0], [4.0])
+    homotopy = make(lcp.LCP([[2.0]], [-3.0]), [1.0], [4.0])
     # x = 2, y = 6, lambda = 1/4: A x + q = 1.
     assert homotopy.residual(np.array([2.0, 6.0]), 0.25) == pytest.approx([first, 2 * 6 - 0.25 * 4], rel=1e-15)
 
@@ -92,14 +83,14 @@ def test_taylor_agrees_with_jets(make, problem, seed):
 
 @pytest.mark.parametrize("order", [0, 1])
 def test_taylor_of_low_order(order):
-    homotopy = KKTHomotopy(LCP(np.eye(2), [1.0, -1.0]))
+    homotopy = lcp.KKTHomotopy(lcp.LCP(np.eye(2), [1.0, -1.0]))
     y, lam = homotopy.start()
     point = linearized(homotopy, y, lam)
     assert np.array_equal(homotopy.taylor(point, order), np.array([point.u, point.tangent])[: order + 1])
 
 
 def positives(homotopy, u):
-    if isinstance(homotopy, KKTHomotopy):
+    if isinstance(homotopy, lcp.KKTHomotopy):
         return np.append(u[:-1], homotopy.problem.w(u[: homotopy.n]) + u[-1] * homotopy.rho)
     return u[:-1]
 
@@ -122,7 +113,7 @@ def test_max_step_is_sharp(make, problem, seed):
 
 
 def test_max_step_from_the_boundary_is_zero():
-    homotopy = WangHomotopy(LCP([[1.0]], [1.0]))
+    homotopy = lcp.WangHomotopy(lcp.LCP([[1.0]], [1.0]))
     assert homotopy.max_step(np.array([0.0, 1.0, 0.5]), np.array([-1.0, 0.0, 0.0])) == 0.0
     assert homotopy.max_step(np.array([0.0, 1.0, 0.5]), np.array([1.0, 0.0, 0.0])) == np.inf
 
@@ -137,13 +128,13 @@ def test_relative_metric():
 
 
 def test_observe():
-    homotopy = KKTHomotopy(LCP([[1.0, 0.0], [0.0, 1.0]], [-1.0, 2.0]))
+    homotopy = lcp.KKTHomotopy(lcp.LCP([[1.0, 0.0], [0.0, 1.0]], [-1.0, 2.0]))
     assert homotopy.observe(np.array([1.5, 0.25, 9, 9, 9, 9.0]), 0.1) == {"natural_residual": 0.5, "gap": 1.3125}
 
 
 def test_published_products():
     """Yu: x y = lambda e."""
-    assert np.allclose(YuHomotopy(EXAMPLES[0].problem, EXAMPLES[0].x0).c, 1.0)
+    assert np.allclose(lcp.YuHomotopy(EXAMPLES[0].problem, EXAMPLES[0].x0).c, 1.0)
 
 
 @every
@@ -154,12 +145,12 @@ def test_bad_problem(make):
 
 @every
 def test_the_structure_of_a_matrix_is_shared(make):
-    structure = Structure(LCP(np.eye(4), np.ones(4)))
-    other = {"w0" if make is KKTHomotopy else "y0": np.ones(4)}
+    structure = lcp.Structure(lcp.LCP(np.eye(4), np.ones(4)))
+    other = {"w0" if make is lcp.KKTHomotopy else "y0": np.ones(4)}
     assert make(structure.problem, np.ones(4), **other, structure=structure).structure is structure
 
 
-SOLVED = [(YuHomotopy, (2, 3, 4, 5, 6)), (XuHomotopy, (2, 3, 4, 5, 6)), (WangHomotopy, (2, 3, 4, 6))]
+SOLVED = [(lcp.YuHomotopy, (2, 3, 4, 5, 6)), (lcp.XuHomotopy, (2, 3, 4, 5, 6)), (lcp.WangHomotopy, (2, 3, 4, 6))]
 
 
 @pytest.mark.parametrize(("make", "numbers"), SOLVED)

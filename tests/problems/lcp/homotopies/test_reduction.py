@@ -11,16 +11,7 @@ from hypothesis import strategies as st
 
 from continuation.linear import Banded
 from continuation.linear.symmetric import Cholesky
-from problems.lcp.data.problem import LCP
-from problems.lcp.homotopies import (
-    KKTHomotopy,
-    KojimaMegiddoMizunoHomotopy,
-    Structure,
-    WangHomotopy,
-    XuHomotopy,
-    YuHomotopy,
-    default_start,
-)
+from problems import lcp
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.strategies import lcps, matrices
 
@@ -123,7 +114,7 @@ def test_factorisation_outlives_a_change_of_its_point(make):
 def test_without_refinement_the_quick_core_answers_alone():
     rng = np.random.default_rng(1)
     problem = random_lcp(rng, 5, "symmetric psd")
-    structure, start = Structure(problem), default_start(problem)
+    structure, start = lcp.Structure(problem), lcp.default_start(problem)
     for name in ("kkt", "yu"):
         refined, alone = (HOMOTOPIES[name].at(problem, start, structure, refine) for refine in (True, False))
         y, lam = interior(rng, refined, 0.5)
@@ -135,7 +126,7 @@ def test_without_refinement_the_quick_core_answers_alone():
 
 
 def test_w_that_is_zero():
-    homotopy = KKTHomotopy(LCP([[1.0, 2.0], [0.0, 1.0]], [-3.0, 1.0]), [1.0, 1.5])
+    homotopy = lcp.KKTHomotopy(lcp.LCP([[1.0, 2.0], [0.0, 1.0]], [-3.0, 1.0]), [1.0, 1.5])
     y = np.array([1.0, 1.0, 2.0, 1.0, 1.0, 1.0])
     assert homotopy.problem.w(y[:2])[0] == 0.0
     border = np.arange(1.0, 8.0)
@@ -146,7 +137,7 @@ def test_w_that_is_zero():
 
 
 def test_singular_matrix_is_said_to_be_singular():
-    homotopy = WangHomotopy(LCP([[1.0]], [1.0]))
+    homotopy = lcp.WangHomotopy(lcp.LCP([[1.0]], [1.0]))
     with pytest.raises(ArithmeticError, match=r"singular|not finite"):
         homotopy.bordered(np.zeros(2), 0.0, np.array([1.0, 0.0, 0.0])).solve(np.ones(2), 1.0)
 
@@ -156,7 +147,7 @@ def test_singular_matrix_is_said_to_be_singular():
 def test_psd_matrix_gives_cholesky(A, seed):
     """G is positive definite wherever x, z1, z2, w > 0, whatever the rank of A."""
     rng = np.random.default_rng(seed)
-    homotopy = made(KKTHomotopy, LCP(A, np.ones(len(A))), rng)
+    homotopy = made(lcp.KKTHomotopy, lcp.LCP(A, np.ones(len(A))), rng)
     assert homotopy.structure.semidefinite
     n = len(A)
     y, lam = homotopy.start()[0], 0.9
@@ -171,7 +162,7 @@ def test_psd_matrix_gives_cholesky(A, seed):
     assert np.allclose(system.quick.core.bordered.matrix.matrix, G, rtol=1e-12)
 
 
-@pytest.mark.parametrize("make", [YuHomotopy, WangHomotopy, KojimaMegiddoMizunoHomotopy, XuHomotopy])
+@pytest.mark.parametrize("make", [lcp.YuHomotopy, lcp.WangHomotopy, lcp.KojimaMegiddoMizunoHomotopy, lcp.XuHomotopy])
 def test_symmetric_psd_matrix_gives_cholesky(make):
     rng = np.random.default_rng(0)
     homotopy = made(make, random_lcp(rng, 6, "symmetric psd"), rng)
@@ -183,11 +174,11 @@ def test_symmetric_psd_matrix_gives_cholesky(make):
 
 def test_what_is_taken_for_semidefinite():
     for A in ([[1.0, 5.0], [-5.0, 0.0]], [[1.0, -1.0], [-1.0, 1.0]], [[1e-8, 0.0], [0.0, 1e8]]):
-        assert Structure(LCP(A, [0, 0])).semidefinite
+        assert lcp.Structure(lcp.LCP(A, [0, 0])).semidefinite
     for A in ([[1.0, 2.0], [1.0, 1.0]], [[0.0, 1e-6], [0.0, 0.0]]):
-        assert not Structure(LCP(A, [0, 0])).semidefinite
+        assert not lcp.Structure(lcp.LCP(A, [0, 0])).semidefinite
     for top, expected in (([2.0, -1.0], True), ([1.0, -2.0], False)):
-        assert Structure(LCP(sp.csr_array(np.array([top, [-1.0, 2.0]])), [0, 0])).semidefinite is expected
+        assert lcp.Structure(lcp.LCP(sp.csr_array(np.array([top, [-1.0, 2.0]])), [0, 0])).semidefinite is expected
 
 
 def sparse_examples(rng):
@@ -205,7 +196,7 @@ def sparse_examples(rng):
 def test_sparse_and_banded_agree_with_dense(make, kind):
     rng = np.random.default_rng(7)
     A, q = sparse_examples(rng)[kind], rng.standard_normal(40)
-    sparse, dense = LCP(A, q), LCP(A.toarray(), q)
+    sparse, dense = lcp.LCP(A, q), lcp.LCP(A.toarray(), q)
     one, other = made(make, sparse, np.random.default_rng(1)), made(make, dense, np.random.default_rng(1))
     y, lam = interior(rng, one, 0.7)
     (system, M, rhs), (reference, expected_M, _) = (
@@ -223,7 +214,7 @@ def test_sparse_and_banded_agree_with_dense(make, kind):
 
 def test_which_form_a_sparse_matrix_gets():
     rng = np.random.default_rng(7)
-    forms = {name: Structure(LCP(A, np.ones(40))) for name, A in sparse_examples(rng).items()}
+    forms = {name: lcp.Structure(lcp.LCP(A, np.ones(40))) for name, A in sparse_examples(rng).items()}
     assert isinstance(forms["banded"].scaled(1.0, np.ones(40), np.ones(40)), Banded)
     assert isinstance(forms["banded"].normal(1.0, np.ones(40), np.ones(40)), Banded)
     assert forms["scattered"].band is None
@@ -231,11 +222,11 @@ def test_which_form_a_sparse_matrix_gets():
     assert not forms["full row"].squarable
 
 
-@pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
+@pytest.mark.parametrize("make", [lcp.KKTHomotopy, lcp.WangHomotopy])
 def test_tridiagonal_problem_costs_no_dense_array(make):
     n = 100_000
     off = np.full(n - 1, -1.0)
-    problem = LCP(sp.diags_array([off, np.full(n, 2.0), off], offsets=[-1, 0, 1]), np.sin(np.arange(n)) - 0.3)
+    problem = lcp.LCP(sp.diags_array([off, np.full(n, 2.0), off], offsets=[-1, 0, 1]), np.sin(np.arange(n)) - 0.3)
     homotopy = make(problem)
     rng = np.random.default_rng(0)
     y = homotopy.start()[0]
