@@ -206,9 +206,6 @@ def test_accepted_and_rejected_are_counted():
         assert all(attempt.contraction > 0.0 for attempt in step.rejected)
 
 
-# -- sizes ------------------------------------------------------------------------------------------------------
-
-
 def test_one_unknown_given_as_a_number():
     path = trace(from_functions(lambda y, lam: y * y * y + y - lam, start=(0.0, 0.0), target=2.0))
     assert path.status is Status.REACHED_TARGET
