@@ -71,7 +71,7 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     before: Linearization | None = None
     for step in path.steps:
         current = planes.weights(step.u, step.tangent, current)
-        here = linearize(solver.evaluator, step.u, current, current * step.tangent, 0)
+        here = linearize(solver.evaluator, step.u, current, current * step.tangent)
         if before is not None and measure is not None:
             try:
                 total += _length(solver, before, here, measure, _DIVISIONS)
@@ -259,7 +259,7 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
     for step in tracer:
         assert tracer.state is not None
         weights = tracer.state.weights
-        here = linearize(solver.evaluator, step.u, weights, weights * step.tangent, 0)
+        here = linearize(solver.evaluator, step.u, weights, weights * step.tangent)
         while before is not None and met < len(knots) and _meets(solver, knots[met], before, here):
             met, met_at = met + 1, step.arclength
         # Between two points of one path lies little more than their chord; a loop that was left out is longer.
@@ -327,6 +327,6 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     ahead = path(min(float(s) + 1e-6 * path.arclength[-1], path.arclength[-1]))
     behind = path(max(float(s) - 1e-6 * path.arclength[-1], 0.0))
     border = (ahead - behind) / np.linalg.norm(ahead - behind)
-    near = linearize(solver.evaluator, u, np.ones_like(u), border, 0)
+    near = linearize(solver.evaluator, u, np.ones_like(u), border)
     settled, _ = solver.project(near, u, border)
     return settled

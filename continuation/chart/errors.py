@@ -102,7 +102,7 @@ def _dropped(problem: Problem, points: Array) -> Array:
     found = []
     for u in points:
         try:
-            here = linearize(evaluator, u, weights, np.ones_like(u), 0)
+            here = linearize(evaluator, u, weights, np.ones_like(u))
             correction = MoorePenrose(max_contraction=10.0).correct(evaluator, here, u, here.border, _TIGHT)
         except ArithmeticError:
             found.append(np.full_like(u, np.nan))

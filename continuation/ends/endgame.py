@@ -211,7 +211,7 @@ class Endgame:
             if anchor is not None:
                 at = relinearize(evaluator, u, here.weights, anchor, here.border)
             else:
-                at = linearize(evaluator, u, here.weights, here.border, 0)
+                at = linearize(evaluator, u, here.weights, here.border)
             return at, np.maximum(noise, _round_off(evaluator, at, unit))
         except EvaluationError:
             return None

@@ -121,7 +121,7 @@ def _factored(solver: PathSolver, near: Linearization, segment: Segment, t: floa
     for beside in (t, BESIDE[0] * t + BESIDE[1]):
         u, _ = solver.project(near, segment.at(beside), border)
         try:
-            return linearize(solver.evaluator, u, near.weights, border, 0)
+            return linearize(solver.evaluator, u, near.weights, border)
         except EvaluationError:
             continue
     raise EvaluationError("no factorisation in or beside a supposed branch point")

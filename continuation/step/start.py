@@ -108,7 +108,7 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
     """
     ones = np.ones_like(u)
     try:
-        point = linearize(evaluator, u, ones, unit, 0)
+        point = linearize(evaluator, u, ones, unit)
         if _well_conditioned(point):
             return point
     except EvaluationError:
@@ -118,7 +118,7 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
     for _ in range(2):
         border = generator.standard_normal(u.size)
         try:
-            found.append(linearize(evaluator, u, ones, border / norm(ones, border), 0))
+            found.append(linearize(evaluator, u, ones, border / norm(ones, border)))
         except EvaluationError as error:
             raise SingularStartError(f"({error}.)") from error
     alignment = abs(float(np.dot(found[0].tangent, found[1].tangent)))
@@ -165,7 +165,7 @@ def point_from_tangent(
         raise ValueError(f"start: expected (u, v) of shape ({size},) each, found {u.shape} and {v.shape}")
     weights = metric.weights(u, v, None)
     try:
-        point = linearize(evaluator, u, weights, weights * (v / norm(weights, v)), 0)
+        point = linearize(evaluator, u, weights, weights * (v / norm(weights, v)))
         point, extent = measured(solver, point, metric, target, evaluator.residual(u))
     except EvaluationError as error:
         raise SingularStartError(f"({error}.)") from error

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
+from continuation import Status, trace
 from continuation.auditing import arclength, audit
 from continuation.controllers import Bounds, Geometric
 from continuation.metric import Euclidean
@@ -15,18 +15,15 @@ from continuation.step import acceptance
 from problems.bifurcation import ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
+from ..util import every_preset
+
 # n: x1 at the end, arclength, turning points of lam.
 TABLE = {
-    2: (1.1003509626909, 1.6199408163807, 0),
-    3: (0.37472756109156, 5.1124703543198, 4),
-    4: (0.42145547339476, 6.5195070281339, 4),
-    5: (1.5875828159969, 14.828190064503, 10),
-    6: (1.9949909313114, 17.260258578309, 12),
-    7: (2.3730945655736, 24.433767691728, 18),
+    2: (1.1003509626909, 1.6199408163807, 0), 3: (0.37472756109156, 5.1124703543198, 4),
+    4: (0.42145547339476, 6.5195070281339, 4), 5: (1.5875828159969, 14.828190064503, 10),
+    6: (1.9949909313114, 17.260258578309, 12), 7: (2.3730945655736, 24.433767691728, 18),
     8: (0.39859096762391, 48.712616148201, 24),
-}
-
-every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+}  # fmt: skip
 
 
 @every_preset

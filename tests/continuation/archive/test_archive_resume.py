@@ -8,18 +8,8 @@ import attrs
 import numpy as np
 import pytest
 
-from continuation import (
-    Budget,
-    Monitor,
-    Status,
-    TargetValue,
-    Tracer,
-    controllers,
-    correctors,
-    from_functions,
-    predictors,
-    trace,
-)
+import continuation
+from continuation import Budget, Monitor, Status, TargetValue, Tracer, from_functions, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpack
 from continuation.archive.resume import stored_homotopy
@@ -36,13 +26,13 @@ def parts(module, method):
     return [part() for part in found if callable(getattr(part, method, None)) and attrs.has(part)]
 
 
-WITH = {"SeriesRange": {"predictor": predictors.Taylor()}}
+WITH = {"SeriesRange": {"predictor": continuation.predictors.Taylor()}}
 """A controller that is made for one predictor is tested with it."""
 
 OPTIONS = [
-    *({"predictor": part} for part in parts(predictors, "prepare")),
-    *({"corrector": part} for part in parts(correctors, "correct")),
-    *({"controller": part, **WITH.get(type(part).__name__, {})} for part in parts(controllers, "update")),
+    *({"predictor": part} for part in parts(continuation.predictors, "prepare")),
+    *({"corrector": part} for part in parts(continuation.correctors, "correct")),
+    *({"controller": part, **WITH.get(type(part).__name__, {})} for part in parts(continuation.controllers, "update")),
     {"metric": Relative()},
 ]
 
@@ -154,7 +144,7 @@ def test_resumed_again_and_again(tmp_path):
 def test_events_and_options_come_from_the_file(tmp_path):
     options = {
         "events": [TargetValue(0.25, terminal=0), TargetValue(-0.5, terminal=2)],
-        "predictor": predictors.Secant(), "tolerance": 1e-10, "direction": 1, "target": 3.0,
+        "predictor": continuation.predictors.Secant(), "tolerance": 1e-10, "direction": 1, "target": 3.0,
     }
     path = trace(FreudensteinRoth(), **options)
     assert path.status is Status.STOPPED_AT_EVENT

@@ -13,14 +13,9 @@ from problems.bifurcation import Circle, ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
 CORRECTORS = [
-    BorderedNewton(),
-    BorderedNewton(reuse=0.0),
-    BorderedNewton(reuse=1.0, max_iterations=20),
-    Chord(),
-    Broyden(),
-    MoorePenrose(),
-    NaturalParameter(),
-]
+    BorderedNewton(), BorderedNewton(reuse=0.0), BorderedNewton(reuse=1.0, max_iterations=20), Chord(), Broyden(),
+    MoorePenrose(), NaturalParameter(),
+]  # fmt: skip
 every_corrector = pytest.mark.parametrize("corrector", CORRECTORS, ids=repr)
 TOLERANCE = Tolerance(1e-10)
 
@@ -34,7 +29,7 @@ class Setting:
         u = u if u is not None else exponential_cosine.curve(4, 0.5)
         unit = np.zeros(u.size)
         unit[-1] = 1.0
-        self.point = linearize(self.evaluator, u, np.ones(u.size), unit, 0)
+        self.point = linearize(self.evaluator, u, np.ones(u.size), unit)
         self.predicted = self.point.u + h * self.point.tangent
         self.before = self.evaluator.counts.copy()
 
@@ -76,7 +71,7 @@ def test_kellers_kind_stays_in_the_plane(corrector):
 def test_moore_penrose_lands_at_the_foot_of_the_perpendicular():
     setting = Setting()
     correction = setting.correct(MoorePenrose())
-    end = linearize(setting.evaluator, correction.u, np.ones(5), setting.point.border, 0)
+    end = linearize(setting.evaluator, correction.u, np.ones(5), setting.point.border)
     back = correction.u - setting.predicted
     # The angle between the way back and the path is a right one up to terms of the second order in the distance.
     cosine = np.dot(back, end.tangent) / np.linalg.norm(back)
