@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
 import random
@@ -164,6 +165,7 @@ def case(judge: Judge, file: Path) -> dict[str, str]:
     process = os.fork()
     if not process:
         warnings.simplefilter("error")
+        gc.freeze()  # What the parent has is not looked through again in each child.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import random
+import select
 import shutil
 import signal
 import time
@@ -34,7 +35,7 @@ from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import Cusp, ExponentialCosine
 
 HOMOTOPY = ExponentialCosine(3)
-OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.02))}
+OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.04))}
 SWEEP = [Cusp(splitting) for splitting in np.linspace(0.3, 2.0, 6)]
 
 
@@ -102,10 +103,8 @@ class Campaign:
             return f"UNREADABLE: {error}".upper()
 
     def _found(self, name: str, file: Path, target: Path) -> str:
-        if name in ("merge", "export") and target.exists():
-            with open_archive(target) as archive:
-                if not archive.closed_by_writer or not all(self._same(path) for path in archive):
-                    return "HALF-WRITTEN"
+        if name in ("merge", "export"):
+            return self._copied(file, target)
         if name in ("sweep", "pool"):
             return self._swept(file)
         if not file.exists():
@@ -115,7 +114,7 @@ class Campaign:
             if before and not self._same(archive.path(0)):
                 return "WRONG ROWS"
         least = {"resume": len(self.path) // 2, "recover": len(self.path) // 2 - 9, "trace": 0}
-        if before < least.get(name, len(self.path)):
+        if before < least[name]:
             return "LOST ROWS"
         recover(file)
         if not before:
@@ -125,6 +124,15 @@ class Campaign:
                 return "complete"
         again = resume(file, budget=Budget())
         return "resumed to the same path" if self._same(again, whole=True) else "RESUMED TO ANOTHER PATH"
+
+    def _copied(self, file: Path, target: Path) -> str:
+        if file.read_bytes() != self.whole.read_bytes():
+            return "SOURCE CHANGED"
+        if not target.exists():
+            return "no new file"
+        with open_archive(target) as archive:
+            whole = archive.closed_by_writer and all(self._same(path, whole=True) for path in archive)
+        return "complete" if whole else "HALF-WRITTEN"
 
     def _same(self, found, *, whole: bool = False) -> bool:
         path = self.path
@@ -162,11 +170,13 @@ def _in_child(work: Callable[[], object], seconds: float | None) -> bool:
             work()
         finally:
             os._exit(0)
-    end = None if seconds is None else time.monotonic() + seconds
-    while end is None or time.monotonic() < end:
-        if os.waitpid(process, 0 if end is None else os.WNOHANG)[0]:
+    ended = os.pidfd_open(process)
+    try:
+        if select.select([ended], [], [], seconds)[0]:
+            os.waitpid(process, 0)
             return False
-        time.sleep(0.0005)
+    finally:
+        os.close(ended)
     try:
         os.killpg(process, signal.SIGKILL)
     except ProcessLookupError:
