@@ -18,7 +18,7 @@ LIMIT = 1 << 28
 """Bytes that a compressed dataset may unfold to, unless the caller says more. Others are no larger than their file."""
 
 _CHUNK = 1 << 26
-"""Bytes of a chunk: HDF5 reads it whole. Ours have 512 KiB, or one row."""
+"""Bytes of a chunk, or a quarter of the limit: HDF5 unfolds it whole. Ours have 512 KiB, or one row."""
 
 _FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF)
 """Those that h5py brings itself; any other would be a library that is loaded to read the file."""
@@ -102,9 +102,7 @@ def dataset(
         code = properties.get_filter(k)[0]
         if code not in _FILTERS:
             raise StructureError(f"{name} is stored by the filter number {code}, which h5py does not bring itself")
-    if found.chunks is not None and math.prod(found.chunks) * found.dtype.itemsize > _CHUNK and math.prod(
-        found.chunks[1:]
-    ) * found.dtype.itemsize > _CHUNK >> 3:
+    if found.chunks is not None and math.prod(found.chunks) * found.dtype.itemsize > max(_CHUNK, limit >> 2):
         raise StructureError(f"{name} is stored in chunks of {found.chunks}")
     claimed = math.prod(found.shape) * found.dtype.itemsize if shape is None or None not in shape else 0
     check_size(found, claimed, limit)

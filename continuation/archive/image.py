@@ -7,6 +7,7 @@ a write fails while it closes a file. None of this can happen where Python reads
 from __future__ import annotations
 
 import os
+import resource
 import stat
 import struct
 from pathlib import Path as File
@@ -195,6 +196,18 @@ class Sink:
         if self.descriptor >= 0:
             os.close(self.descriptor)
             self.descriptor = -1
+
+
+def to_nowhere(descriptor: int) -> None:
+    """Let the descriptor of a file stand for another one, which nobody sees."""
+    # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
+    limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+    if limited or not hasattr(os, "memfd_create"):
+        nowhere = os.open(os.devnull, os.O_RDWR)
+    else:
+        nowhere = os.memfd_create("abandoned")
+    os.dup2(nowhere, descriptor, inheritable=False)
+    os.close(nowhere)
 
 
 def stated_length(head: bytes) -> int:

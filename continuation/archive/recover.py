@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
+from continuation.archive.atomic import as_file
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
 from continuation.archive.copies import everything, interrupt, put, write_copy
@@ -45,7 +46,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     ArchiveError
         If it is no archive, its structure is damaged, it is read-only, or is being written.
     """
-    name = File(file)
+    name = as_file("file", file)
     with closing(Contents(name, salvage=True)) as contents:
         lost = {table: contents.unsound(table) for table in ("point", "path")}
         damaged = any(lost.values())
