@@ -103,8 +103,11 @@ def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     Raises
     ------
     ValueError
-        If it holds anything but real numbers: a complex one would lose its imaginary part without a word.
+        If it holds anything but real numbers: a complex one would lose its imaginary part, and a masked one its mask,
+        without a word.
     """
+    if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
+        raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:
         array = np.array(value)
     except ValueError:

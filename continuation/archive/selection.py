@@ -4,17 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from numbers import Integral
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from continuation.archive import frames
+from continuation.archive.tables import Table
 from continuation.checks import complain, is_number
 from continuation.path import Path
 from continuation.status import Status
 
-if TYPE_CHECKING:
-    from continuation.archive.reader import Archive
+
+class Archive(Protocol):
+    """What is asked of `continuation.archive.Archive`, which stands above this module."""
+
+    points: Table
+    paths: Table
+    event_names: tuple[str, ...]
+    attributes: dict[str, Any]
+    layout: Any
+
+    def __len__(self) -> int:
+        """How many paths it has."""
+        ...
+
+    def path(self, index: int) -> Path:
+        """One of them."""
+        ...
 
 
 class Selection:

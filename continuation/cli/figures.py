@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -77,9 +78,16 @@ def save(file: str, draw: Callable[[Any], None], size: tuple[float, float] = (7.
     """Make a figure, draw into it and write it; no window opens, with any backend of matplotlib."""
     from matplotlib.figure import Figure
 
+    from continuation.archive.atomic import beside, publish
+
     figure = Figure(figsize=size, layout="constrained")
     draw(figure)
-    figure.savefig(file, dpi=DOTS_PER_INCH)
+    picture = BytesIO()
+    figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
+    # Beside it first: where the disk is full, what was there stays.
+    with beside(Path(file)) as part:
+        part.write_bytes(picture.getvalue())
+        publish(part, Path(file), replace=True)
 
 
 def _draw(figure: Any, path: Any, arguments: argparse.Namespace) -> None:
