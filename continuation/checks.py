@@ -10,13 +10,18 @@ from typing import Any
 import numpy as np
 from attrs import Attribute
 
+_SHOWN = 200
+"""Characters of a value in a message."""
+
 Validator = Callable[[Any, "Attribute[Any]", Any], None]
 
 
 def complain(error: type[Exception], name: str, expected: str, value: Any) -> Exception:
     """The exception about an argument; of a value of the wrong type the type is said too."""
     kind = f" ({type(value).__name__})" if error is TypeError else ""
-    return error(f"{name}: expected {expected}, found {value!r}{kind}")
+    # One line, and not a long one, whatever a value has to say of itself.
+    found = " ".join(repr(value).split())
+    return error(f"{name}: expected {expected}, found {found if len(found) < _SHOWN else found[:_SHOWN] + ' ...'}{kind}")
 
 
 def is_number(value: Any) -> bool:
@@ -113,6 +118,6 @@ def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     except ValueError:
         array = np.array(None)
     if array.dtype.kind not in "fiu":
-        found = f"{array.dtype} numbers" if array.dtype.kind == "c" else f"{value!r}"
+        found = f"{array.dtype} numbers" if array.dtype.kind == "c" else " ".join(repr(value).split())[:200]
         raise ValueError(f"{name}: expected real numbers, found {found}")
     return array.astype(float)

@@ -12,6 +12,7 @@ import stat
 import struct
 from pathlib import Path as File
 
+from continuation.archive.atomic import short
 from continuation.archive.errors import ArchiveError
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -224,7 +225,7 @@ def _opened(file: File) -> int:
     except PermissionError:
         raise ArchiveError(f"{file}: may not be read (permissions)") from None
     except (OSError, ValueError) as error:
-        raise ArchiveError(f"{file}: cannot be opened ({error})") from None
+        raise ArchiveError(f"{file}: cannot be opened ({short(error)})") from None
     mode = os.fstat(descriptor).st_mode
     if not stat.S_ISREG(mode):
         os.close(descriptor)

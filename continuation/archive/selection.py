@@ -18,6 +18,7 @@ from continuation.status import Status
 class Archive(Protocol):
     """What is asked of `continuation.archive.Archive`, which stands above this module."""
 
+    file: Any
     points: Table
     paths: Table
     event_names: tuple[str, ...]
@@ -54,9 +55,7 @@ class Selection:
     def to_xarray(self) -> Any:
         """The selected points and paths as an `xarray.Dataset`; ``path_index`` keeps the numbers of the file."""
         archive = self.archive
-        return frames.dataset(
-            self.points, self.paths, archive.event_names, archive.layout.unknowns, archive.attributes
-        )
+        return frames.dataset(self.points, self.paths, archive.event_names, archive.layout.unknowns, archive.attributes)
 
     def to_dataframe(self) -> Any:
         """The selected points as a `pandas.DataFrame`."""
@@ -95,4 +94,3 @@ def selected(archive: Archive, status: Any, kind: Any, event: Any, parameter: An
         paths = np.zeros(len(archive), dtype=bool)
         paths[archive.points["path_index"][points]] = True
     return Selection(archive, np.flatnonzero(points), np.flatnonzero(paths))
-

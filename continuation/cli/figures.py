@@ -41,8 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Read, draw, say where."""
     from continuation.archive import ArchiveError, open_archive
 
-    output = arguments.output if arguments.output is not None else str(Path(arguments.file).with_suffix(".png"))
-    check_picture("--output", output)
+    if arguments.output is not None:
+        check_picture("--output", arguments.output)
     try:
         with open_archive(arguments.file) as archive:
             if not 0 <= arguments.path < len(archive):
@@ -50,6 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
             path = archive.path(arguments.path)
     except ArchiveError as error:
         raise UsageError("FILE", error) from error
+    output = str(Path(arguments.file).with_suffix(".png")) if arguments.output is None else arguments.output
+    check_picture("--output", output)
     try:
         save(output, lambda figure: _draw(figure, path, arguments))
     except ValueError as error:

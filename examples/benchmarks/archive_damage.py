@@ -111,6 +111,9 @@ class Judge:
     def __init__(self, file: Path) -> None:
         self.content = content(file)
         self.path = trace(HOMOTOPY, **OPTIONS)
+        with open_archive(file) as archive:
+            # A few steps more than it has.
+            self.budget = Budget(steps=len(archive[-1]) + 4)
 
     def operations(self, file: Path) -> dict[str, Callable[[], bool]]:
         """Each returns whether what came out is right."""
@@ -118,7 +121,7 @@ class Judge:
         return {
             "read": lambda: self._is(content(file)),
             "describe": lambda: bool(_described(file)),
-            "resume": lambda: self._follows(resume(file, archive=again, budget=Budget(steps=70))),
+            "resume": lambda: self._follows(resume(file, archive=again, budget=self.budget)),
             "recover": lambda: self._recovered(recover(file)),
         }
 
