@@ -21,7 +21,8 @@ def complain(error: type[Exception], name: str, expected: str, value: Any) -> Ex
     kind = f" ({type(value).__name__})" if error is TypeError else ""
     # One line, and not a long one, whatever a value has to say of itself.
     found = " ".join(repr(value).split())
-    return error(f"{name}: expected {expected}, found {found if len(found) < _SHOWN else found[:_SHOWN] + ' ...'}{kind}")
+    shown = found if len(found) <= _SHOWN else f"{found[:_SHOWN]} ..."
+    return error(f"{name}: expected {expected}, found {shown}{kind}")
 
 
 def is_number(value: Any) -> bool:

@@ -19,6 +19,7 @@ from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
 from continuation.archive.salvage import nothing, salvaged
+from continuation.archive.structure import SLOTS
 from continuation.status import Status
 
 
@@ -107,8 +108,8 @@ def _legible(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def kept(checkpoint: Checkpoint | None) -> dict[int, bytes]:
-    """The checkpoint in the first slot of a new file."""
-    return {} if checkpoint is None else {0: pack(checkpoint)}
+    """The checkpoint in its slot of a new file, which is not the one that the next is written to."""
+    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
 
 
 def own(contents: Contents, file: File, *, force: bool = False) -> Lock:

@@ -215,7 +215,7 @@ class PathLog:
         if self._store is None and self._early:
             self._make(self._witness, _unknowns(self._witness), ())
         if self._store is not None:
-            if self._buffer.rows:
+            if self._buffer.rows and self._store.ours:
                 self._commit()
             self._store.close()
         self._closed = True

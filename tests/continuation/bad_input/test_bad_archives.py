@@ -1,4 +1,4 @@
-"""What cannot be meant of the functions of archives: each is refused in one line that names the argument or the file."""
+"""What cannot be meant of the functions of archives is refused in one line that names the argument or the file."""
 
 import os
 
