@@ -35,8 +35,9 @@ from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import Cusp, ExponentialCosine
 
 HOMOTOPY = ExponentialCosine(3)
-OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.04))}
+OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.06))}
 SWEEP = [Cusp(splitting) for splitting in np.linspace(0.3, 2.0, 6)]
+SHORT = {"budget": Budget(steps=12)}
 
 
 class Campaign:
@@ -45,7 +46,7 @@ class Campaign:
     def __init__(self, folder: Path, seed: int) -> None:
         self.folder, self.generator, self.tally = folder, random.Random(seed), Counter()
         self.path = trace(HOMOTOPY, **OPTIONS)
-        self.sweep = [trace(homotopy) for homotopy in SWEEP]
+        self.sweep = [trace(homotopy, **SHORT) for homotopy in SWEEP]
         self.half, self.left, self.whole = (folder / name for name in ("half.h5", "left.h5", "whole.h5"))
         steps = len(self.path) // 2
         trace(HOMOTOPY, archive=self.half, budget=Budget(steps=steps), **OPTIONS)
@@ -67,7 +68,7 @@ class Campaign:
             "recover": (self.left, lambda: recover(file)),
             "merge": (self.whole, lambda: merge([file, file], target)),
             "export": (self.whole, lambda: export(file, target)),
-            "sweep": (None, lambda: trace_many(SWEEP, archive=file)),
+            "sweep": (None, lambda: trace_many(SWEEP, archive=file, **SHORT)),
             "pool": (None, lambda: _pooled(file)),
         }
 
@@ -150,14 +151,14 @@ class Campaign:
                 for member, path in zip(archive.paths["member"], archive):
                     if path.u.tobytes() != self.sweep[member].u[: len(path)].tobytes():
                         return "WRONG ROWS"
-        with trace_many(SWEEP, archive=file) as archive:
+        with trace_many(SWEEP, archive=file, **SHORT) as archive:
             same = all(a.u.tobytes() == b.u.tobytes() for a, b in zip(archive, self.sweep))
             return "ran again" if same and len(archive) == len(SWEEP) else "RAN AGAIN OTHERWISE"
 
 
 def _pooled(file: Path) -> None:
     with ProcessPoolExecutor(2, mp_context=get_context("fork")) as executor:
-        trace_many(SWEEP, executor, file)
+        trace_many(SWEEP, executor, file, **SHORT)
 
 
 def _in_child(work: Callable[[], object], seconds: float | None) -> bool:
