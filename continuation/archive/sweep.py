@@ -29,8 +29,9 @@ from continuation.step.options import Options, check_names
 
 Progress = Callable[[int, int], None]
 _PARTS_PER_WORKER = 4
-_GRACE = 0.7
-"""Seconds that workers get to end their paths after Ctrl-C."""
+_GRACE = 0.5
+"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s, and the rest of a second is
+for the files."""
 
 
 def trace_many(
