@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -40,8 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Read, draw, say where."""
     from continuation.archive import ArchiveError, open_archive
 
-    output = arguments.output if arguments.output is not None else str(Path(arguments.file).with_suffix(".png"))
-    check_picture("--output", output)
+    if arguments.output is not None:
+        check_picture("--output", arguments.output)
     try:
         with open_archive(arguments.file) as archive:
             if not 0 <= arguments.path < len(archive):
@@ -49,6 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
             path = archive.path(arguments.path)
     except ArchiveError as error:
         raise UsageError("FILE", error) from error
+    output = str(Path(arguments.file).with_suffix(".png")) if arguments.output is None else arguments.output
+    check_picture("--output", output)
     try:
         title = f"{Path(arguments.file).name}, path {arguments.path}: {path.status.name}"
         save(output, path, title, lambda axes: _draw(axes, path, arguments))
@@ -78,6 +81,7 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
     """What `draw` draws on its axes, above the step sizes; no window opens, with any backend of matplotlib."""
     from matplotlib.figure import Figure
 
+    from continuation.archive.atomic import beside, publish
     from continuation.plot import plot_steps
 
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
@@ -85,7 +89,12 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
     draw(above)
     above.set_title(title, fontsize="medium")
     plot_steps(path, below)
-    figure.savefig(file, dpi=DOTS_PER_INCH)
+    picture = BytesIO()
+    figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
+    # Beside it first: where the disk is full, what was there stays.
+    with beside(Path(file)) as part:
+        part.write_bytes(picture.getvalue())
+        publish(part, Path(file), replace=True)
 
 
 def _draw(axes: Any, path: Any, arguments: argparse.Namespace) -> None:

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from continuation import plugins
+from continuation.cli.archives import complaints
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, parsed, positive
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def _full(described: plugins.Description) -> Iterator[str]:
 
 def _trace(arguments: argparse.Namespace) -> int:
     from continuation import presets
-    from continuation.archive import ArchiveError, PathLog
+    from continuation.archive import PathLog
     from continuation.tracing import trace
 
     homotopy, values = _homotopy(arguments)
@@ -130,10 +131,8 @@ def _trace(arguments: argparse.Namespace) -> int:
         from continuation.cli.figures import check_picture
 
         check_picture("--plot", arguments.plot)
-    try:
+    with complaints("--archive", new="--archive"):
         log = None if arguments.archive is None else PathLog(arguments.archive)
-    except ArchiveError as error:
-        raise UsageError("--archive", error) from error
     folder = None
     if arguments.chart is not None:
         from continuation.cli.charts import new_folder
@@ -141,7 +140,7 @@ def _trace(arguments: argparse.Namespace) -> int:
         folder = new_folder("--chart", arguments.chart)
     course, budget = _course(arguments), _budget(arguments)
     preset = getattr(presets, arguments.preset.upper())
-    with _refused(arguments.name):
+    with _refused(arguments.name), complaints("--archive", new="--archive"):
         path = trace(
             homotopy,
             archive=log,

@@ -27,6 +27,21 @@ class Derivative:
         return self.function(y, lam)
 
 
+def check_derivative(answer: Any, n: int) -> None:
+    """Raise unless a homotopy's answer is a pair (H_y, H_lam) of the right shapes, of real numbers."""
+    wanted = f"a pair (H_y, H_lam) of real numbers, shapes ({n}, {n}) and ({n},)"
+    if not isinstance(answer, (tuple, list)) or len(answer) != 2:
+        raise TypeError(f"jacobian: expected {wanted}, found {type(answer).__name__}")
+    parts = answer[0], np.asarray(answer[1])
+    found = [getattr(part, "shape", type(part).__name__) for part in parts]
+    if found != [(n, n), (n,)]:
+        raise ValueError(f"jacobian: expected {wanted}, found {found[0]} and {found[1]}")
+    for part in parts:
+        kind = getattr(part, "dtype", None)
+        if kind is not None and np.dtype(kind).kind not in "fiub":
+            raise TypeError(f"jacobian: expected {wanted}, found some of the type {kind}")
+
+
 def _split(full: Array) -> tuple[Array, Array]:
     return full[:, :-1], full[:, -1]
 

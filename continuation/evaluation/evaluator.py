@@ -12,7 +12,7 @@ from attrs import frozen
 from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import real_vector
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import Derivative, from_residual
+from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
@@ -102,8 +102,12 @@ class Evaluator:
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
+        for name in ("jacobian", "bordered", "differential"):
+            if not callable(getattr(homotopy, name, len)):
+                raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
         self.counts = counts
+        self._checked = False
         self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
         self.methods: set[str] = set()
@@ -127,8 +131,9 @@ class Evaluator:
         r = np.asarray(self.called(u[:-1].copy(), float(u[-1])))
         if r.shape != y0.shape:
             raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
-        if r.dtype.kind == "c":
-            raise ValueError("residual: expected real numbers, found complex ones")
+        if r.dtype.kind not in "fiub":
+            found = "complex ones" if r.dtype.kind == "c" else f"an array of the type {r.dtype}"
+            raise ValueError(f"residual: expected real numbers, found {found}")
         return u
 
     def called(self, y: Any, lam: Any) -> Any:
@@ -198,9 +203,14 @@ class Evaluator:
         """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
         try:
             with np.errstate(all="ignore"):
-                return self.derivative(u[:-1], float(u[-1]))
+                answer = self.derivative(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
             raise NotFiniteError(f"the derivative could not be evaluated: {error}") from error
+        if not self._checked:
+            # Once: whoever gets it right at the start does so later on.
+            check_derivative(answer, u.size - 1)
+            self._checked = True
+        return answer
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
         """Factor [[H_y, H_lam], [border']] at u; EvaluationError where that is impossible."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
+from continuation.cli.archives import complaints
 from problems.commands.arguments import PROBLEM_FORMATS, named
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
@@ -55,7 +56,7 @@ def run(arguments: argparse.Namespace) -> int:
     from problems.lcp.data.files import read_problem, read_vector
 
     _check_outputs(arguments)
-    with named(_ARGUMENTS):
+    with complaints("--archive", new="--archive"), named(_ARGUMENTS):
         problem = read_problem(arguments.file, arguments.q)
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
         if x0 is not None and not arguments.relaxed:

@@ -16,6 +16,8 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 
+from problems.options import sound_sparse
+
 IntRow = Sequence[int]
 Indices = tuple[int, ...]
 
@@ -70,7 +72,13 @@ class ExactMatrix:
         """
         if isinstance(A, ExactMatrix):
             return A
-        dense = np.array(A.toarray() if sp.issparse(A) else A, dtype=object)
+        if np.ma.isMaskedArray(A) and np.ma.getmaskarray(A).any():
+            raise ValueError("A: expected real numbers, found a masked array with masked entries; fill them first")
+        if sp.issparse(A):
+            # Looked at for what it refuses: floats hold no more than 53 bits of an integer.
+            sound_sparse("A", A)
+            A = (A.astype(np.int64) if A.dtype.kind in "iu" and A.dtype.itemsize < 8 else A).toarray()
+        dense = np.array(A, dtype=object)
         if dense.ndim != 2 or dense.shape[0] != dense.shape[1] or dense.size == 0:
             raise ValueError(f"A: expected a square matrix, found shape {dense.shape}")
         n = dense.shape[0]

@@ -13,7 +13,7 @@ from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, require_lcp
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.interior import RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
@@ -268,8 +268,7 @@ def KojimaMegiddoMizunoHomotopy(
 
 
 def _order(problem: LCP) -> int:
-    if not isinstance(problem, LCP):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    require_lcp(problem)
     return problem.n
 
 

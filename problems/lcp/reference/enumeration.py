@@ -13,7 +13,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from problems.lcp.classes.exact import Indices, indices, over_common_denominator
 from problems.lcp.classes.faces import FacePoint, face_point
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, require_lcp
 
 LARGEST_FACES = 14
 """Largest order: 2^14 faces (1.2 s for integers of one digit)."""
@@ -96,6 +96,7 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
     Where the principal submatrix of a face is singular, the face is a linear feasibility problem, solved exactly by the
     simplex method. There is no tolerance anywhere, and no shortcut in floats.
     """
+    require_lcp(problem)
     entries, q, scale = _integers(problem)
     on_face = {mask: face_point(entries, q, indices(mask)) for mask in range(1 << problem.n)}
     wide = [mask for mask, point in on_face.items() if point is not None and not point.only]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.sparse import diags_array
 
-from continuation import Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
+from continuation import CONSERVATIVE, Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
 from continuation.correctors import NaturalParameter
 from continuation.metric import Euclidean
 from continuation.rejection import Rejection
