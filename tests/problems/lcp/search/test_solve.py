@@ -277,7 +277,8 @@ def test_a_message_begins_with_what_the_outcome_means():
     [
         (lambda: lcp.solve([[1.0]]), TypeError, "problem"),
         (lambda: lcp.solve(PD, "newton"), ValueError, "homotopy"),
-        (lambda: lcp.solve(PD, x0=[1.0, 0.0, 1.0]), ValueError, "x0"),
+        (lambda: lcp.solve(PD, x0=[1.0, -1.0, 1.0]), ValueError, "x0"),
+        (lambda: lcp.solve(PD, "kkt", x0=[1.0, 0.0, 1.0]), ValueError, "x0"),
         (lambda: lcp.solve(PD, x0=[1.0]), ValueError, "x0"),
         (lambda: lcp.solve(PD, "kkt", colour="red"), TypeError, "colour"),
         (lambda: lcp.solve(PD, tolerance=-1.0), ValueError, "tolerance"),
