@@ -83,10 +83,12 @@ def balanced(problem: LCP) -> Scaled | None:
     Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
     Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
     """
-    rows, columns = units(problem)
+    rows, columns = problem.balance
     if not rows.any() and not columns.any():
         return None
     scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows))
+    # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
+    object.__setattr__(scaled, "balance", (np.zeros_like(rows), np.zeros_like(columns)))
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
