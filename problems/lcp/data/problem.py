@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
-from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
 from problems.options import finite_vector, real_array, sound_sparse
@@ -56,6 +55,8 @@ class LCP:
 
     A: Matrix = field(converter=_matrix)
     q: Array = field(converter=_q)
+    known: dict[str, Any] = field(factory=dict, init=False, repr=False)
+    """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
 
     @q.validator
     def _same_order(self, attribute: object, q: Array) -> None:
@@ -117,13 +118,6 @@ class LCP:
         """|A|_inf: asked for with every point that is judged."""
         return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
 
-    @cached_property
-    def balance(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The exponents of two by which rows and columns are balanced (`data.scaling`): every certificate may ask."""
-        from problems.lcp.data.scaling import units
-
-        return units(self)
-
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q; what is known of A is not found out again.
 
@@ -134,8 +128,7 @@ class LCP:
         q : array_like, shape (n,)
         """
         other = LCP(self.A, q)
-        object.__setattr__(other, "_norm", self._norm)
-        object.__setattr__(other, "balance", self.balance)
+        other.known.update(self.known)
         return other
 
     def relative_residual(self, x: Array) -> float:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
+from problems.lcp.data.scaling import units
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
@@ -161,7 +162,7 @@ def _drowned(problem: LCP, terms: Terms, off: Array) -> float:
         asked = (off > 0.0) & (off * terms.size > DROWNED * np.abs(np.ldexp(problem.q, -terms.exponents)))
     if not asked.any():
         return 0.0
-    rows, _ = problem.balance
+    rows, _ = units(problem)
     with np.errstate(over="ignore", under="ignore"):
         largest = float(np.ldexp(np.abs(problem.q), rows).max())
         worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())
