@@ -6,7 +6,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events import Event, SupportsResolution
+from continuation.events import Event
 from continuation.events.locate import locate, may_vanish
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
@@ -37,11 +37,12 @@ def scan_events(
         first = before[i] if before[i] != 0.0 else event.monitor(*arc.just_after_start)
         if first == 0.0 or not may_vanish(event, arc, first, g):
             continue
-        if isinstance(event, SupportsResolution):
+        resolution = getattr(event, "resolution", None)
+        if resolution is not None:
             if noise is None:
                 noise = solver.noise_by_component(arc.a)
             # Signs of round-off are no crossings: a component that is zero all along, to the last digits.
-            if max(abs(first), abs(g)) <= event.resolution(noise, position(arc, arc.b.u)):
+            if max(abs(first), abs(g)) <= resolution(noise, position(arc, arc.b.u)):
                 continue
         try:
             points = locate(solver, event, arc, first, g)

@@ -75,6 +75,12 @@ class Advance:
     target: Target = field(init=False)
     landing: Landing | None = field(init=False)
     examiner: Examiner = field(init=False)
+    extent: SupportsExtent | None = field(init=False)
+
+    @extent.default
+    def _extent(self) -> SupportsExtent | None:
+        # Asked once: a look for the methods of a Protocol takes as long as a residual.
+        return self.settings.metric if isinstance(self.settings.metric, SupportsExtent) else None
 
     @stepper.default
     def _stepper(self) -> Stepper:
@@ -104,8 +110,8 @@ class Advance:
             if limit is not None:
                 return Stopped(singular_end(limit), limit.u)
         h, memory = min(state.h, prediction.reach), state.controller
-        if isinstance(settings.metric, SupportsExtent):
-            h = min(h, settings.metric.longest)
+        if self.extent is not None:
+            h = min(h, self.extent.longest)
         if math.isinf(h):
             # A controller made for series with a predictor that has no range: begin with the size of the point.
             h = 1.0 + norm(point.weights, point.u)
@@ -162,10 +168,9 @@ class Advance:
 
     def _weights(self, arrival: Linearization, state: State) -> Array:
         """The metric where a step arrived."""
-        metric = self.settings.metric
-        if isinstance(metric, SupportsExtent):
-            return metric.grown(arrival.weights, state.origin.u, arrival.u)
-        return metric.weights(arrival.u, arrival.tangent, arrival.weights)
+        if self.extent is not None:
+            return self.extent.grown(arrival.weights, state.origin.u, arrival.u)
+        return self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights)
 
     def _moved(
         self,
@@ -181,7 +186,7 @@ class Advance:
         arrival, correction = ending.arc.b, attempt.correction
         monitor, infinity = divergence(state.divergence_monitor, arrival.u, state.origin, state.origin_weights)
         moved = arrival.with_weights(self._weights(arrival, state))
-        if isinstance(self.settings.metric, SupportsExtent):
+        if self.extent is not None:
             # The same step in the new metric: the path has become longer, not the step.
             h *= norm(moved.weights, arrival.tangent) / norm(arrival.weights, arrival.tangent)
         angle = attempt.angle if ending.whole else angle_between(point, arrival)
