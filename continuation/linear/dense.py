@@ -11,7 +11,7 @@ from continuation.arrays import Array, finite
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
-"""Ratio of the smallest to the largest row above which scaling changes nothing (as in LAPACK's expert drivers)."""
+"""Ratio of the smallest to the largest row or column above which scaling changes nothing (as in LAPACK)."""
 
 
 def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
@@ -40,15 +40,17 @@ class LU:
 
 @frozen(eq=False)
 class Dense:
-    """LU factors of the bordered matrix, its rows scaled to comparable size.
+    """LU factors of the bordered matrix, its rows and columns scaled to comparable size.
 
-    The scaling makes partial pivoting choose well, so that the solution is as accurate as M allows and no residual has
-    to be measured.
+    The scaling makes partial pivoting choose well, and alike in any units, so that the solution is as accurate as M
+    allows and no residual has to be measured.
     """
 
     factor: LU
     scale: Array | None
     """Powers of two, (N + 1,), by which the rows were multiplied; None for ones."""
+    columns: Array | None
+    """The same for the columns."""
 
     @property
     def sign(self) -> int:
@@ -70,6 +72,9 @@ class Dense:
             with np.errstate(over="ignore"):
                 z *= self.scale
         dgetrs(self.factor.lu, self.factor.pivots, z, overwrite_b=1)
+        if self.columns is not None:
+            with np.errstate(over="ignore"):
+                z *= self.columns
         if not finite(z):
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z
@@ -90,17 +95,21 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     whole[n] = row
     if not finite(whole.ravel("K")):
         raise SingularError("The bordered matrix cannot be factored: it has an entry that is not finite.")
-    scale, _, ratio, _, _, info = dgeequb(whole)
+    scale, columns, ratio, column_ratio, _, info = dgeequb(whole)
     if info > 0:
         raise SingularError(f"The bordered matrix is singular: its row or column {(info - 1) % (n + 1)} is zero.")
     if ratio < EQUILIBRATED:
         whole *= scale[:, None]
     else:
         scale = None
+    if column_ratio < EQUILIBRATED:
+        whole *= columns
+    else:
+        columns = None
     lu, pivots, info = dgetrf(whole, overwrite_a=1)
     if info > 0:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: pivot {info - 1} is zero.")
-    return Dense(LU(lu, pivots), scale)
+    return Dense(LU(lu, pivots), scale, columns)
 
 
 def factor_lu(matrix: Array) -> LU | None:

@@ -38,6 +38,9 @@ NEARBY = 1.0
 """A start that has no point of the path at its parameter may be brought to one at most an extent away: what is farther
 has nothing to do with what was given."""
 
+SAME_KERNEL = 1e-6
+"""Two borders give the same kernel where no component differs by more, relative to itself: six digits are right."""
+
 ALIGNED = 1.0 - 1e-6
 """The cosine between kernels found with two borders that are one: an angle of 1e-3, far from that of two at random."""
 
@@ -111,6 +114,13 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
         point = linearize(evaluator, u, ones, unit)
         if _well_conditioned(point):
             return point
+        # Units alone may make the parameter look small. A border with a part of one size in each component's direction
+        # has none; where it gives the same kernel the first border was good too.
+        v = point.tangent
+        border = np.divide(1.0, v, out=np.zeros_like(v), where=v != 0.0)
+        again = linearize(evaluator, u, ones, border / norm(ones, border))
+        if (np.abs(again.tangent - v) <= SAME_KERNEL * np.abs(v)).all():
+            return again
     except EvaluationError:
         pass
     generator = np.random.default_rng(0)

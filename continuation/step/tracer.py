@@ -158,7 +158,8 @@ class Tracer:
 
     def _run(self) -> Iterator[Step]:
         try:
-            point = self._first() if self.state is None else self._restored(self.state)
+            with np.errstate(all="ignore"):
+                point = self._first() if self.state is None else self._restored(self.state)
         except StartError as error:
             self._end(refused_start(error))
             return

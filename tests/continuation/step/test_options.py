@@ -142,7 +142,6 @@ def test_the_solver_refuses_at_once_what_its_paths_would_refuse(options, error, 
         ({"target": 1j}, TypeError, "target: expected a finite number or None, found 1j"),
         ({"target": True}, TypeError, "target: expected a finite number or None, found True"),
     ],
-    ids=repr,
 )
 def test_a_bad_option_is_named_with_what_was_found(options, error, words):
     with pytest.raises(error, match=words):
