@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import warnings
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping
@@ -23,6 +24,7 @@ import scipy.sparse as sp
 from continuation.archive.datasets import dataset, member, subgroup
 from continuation.archive.image import Image
 from continuation.arrays import Array, Matrix
+from problems.lcp.data.matlab import read_level5
 from problems.lcp.data.problem import LCP
 from problems.options import finite_vector, sound_sparse
 
@@ -211,9 +213,16 @@ def _json(file: str) -> Mapping[str, Any]:
 
 
 def _mat(file: str) -> Mapping[str, Any]:
+    raw = Path(file).read_bytes()
+    if 0 not in raw[:4]:
+        return read_level5(raw, LIMIT)
+    # Level 4, which begins with small numbers.
     _claims(8 * sum(math.prod(shape) for _, shape, kind in scipy.io.whosmat(file) if kind != "sparse"), file)
-    stored = scipy.io.loadmat(file)
-    return {name: value for name, value in stored.items() if not name.startswith("__")}
+    try:
+        with warnings.catch_warnings(action="error"):
+            return {name: value for name, value in scipy.io.loadmat(file).items() if not name.startswith("__")}
+    except UserWarning as warning:
+        raise ValueError(str(warning)) from None
 
 
 def _matrix_market(file: str) -> Mapping[str, Any]:

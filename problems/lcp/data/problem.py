@@ -143,3 +143,9 @@ class LCP:
         float
         """
         return self.natural_residual(x) / self.scale(x)
+
+
+def require_lcp(problem: Any) -> None:
+    """Raise TypeError unless the argument `problem` is an LCP."""
+    if not isinstance(problem, LCP):
+        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, require_lcp
 from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.rational import IntegerRow, Integers, integer_rows, integers, solve_exactly
 
@@ -143,6 +143,7 @@ def farkas(problem: LCP) -> Farkas | None:
     ----------
     Farkas 1902; Cottle, Pang and Stone, Theorem 2.7.9.
     """
+    require_lcp(problem)
     return _multiplier(problem, strict=True)
 
 

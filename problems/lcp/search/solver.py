@@ -16,15 +16,17 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive import PathLog
+from continuation.archive.atomic import as_file
 from continuation.arrays import Array, largest
 from continuation.budget import Budget
+from continuation.checks import instance_with
 from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, require_lcp
 from problems.lcp.data.scaling import balanced, extreme
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
@@ -114,11 +116,11 @@ def solve(
     ----------
     Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
     """
-    if not isinstance(problem, LCP):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    require_lcp(problem)
+    if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
+        given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
+        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
     automatic = homotopy == "auto"
-    if not automatic and homotopy not in HOMOTOPIES:
-        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {homotopy!r}")
     _check_arguments(tolerance, restarts, seed, finish, budget, executor, options)
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
@@ -138,7 +140,7 @@ def solve(
         Finish(Faces(structure), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
-        None if archive is None else PathLog(archive),
+        None if archive is None else PathLog(as_file("archive", archive)),
         progress,
         dict(options),
     )
@@ -165,8 +167,8 @@ def _check_arguments(
         raise ValueError(f"tolerance: expected a number between 0 and 1, found {tolerance!r}")
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
-    if executor is not None and not hasattr(executor, "submit"):
-        raise TypeError(f"executor: expected a concurrent.futures.Executor, found {executor!r}")
+    if executor is not None:
+        instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
     if not isinstance(seed, Integral) or seed < 0:
         raise ValueError(f"seed: expected an integer, at least 0, found {seed!r}")
     if not isinstance(finish, bool):
