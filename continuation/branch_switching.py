@@ -104,11 +104,11 @@ def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tup
     for v in (other, -other):
         guess = event.u + step * v
         try:
-            near = linearize(evaluator, guess, weights, v, 0)
+            near = linearize(evaluator, guess, weights, v)
             correction = BorderedNewton(max_iterations=15).correct(evaluator, near, guess, v, tolerance)
         except EvaluationError as error:
             raise ArithmeticError(f"the other branch could not be reached: {error}") from error
         if not correction.converged:
             raise ArithmeticError(f"the other branch could not be reached: {correction.rejected(step)}")
-        starts.append((correction.u, linearize(evaluator, correction.u, weights, v, 0).tangent))
+        starts.append((correction.u, linearize(evaluator, correction.u, weights, v).tangent))
     return tuple(starts)

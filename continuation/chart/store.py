@@ -56,10 +56,6 @@ def write(results: Results, file: str | PathLike[str]) -> File:
     file : path
         Must not exist.
 
-    Returns
-    -------
-    pathlib.Path
-
     Raises
     ------
     ArchiveError
@@ -123,10 +119,6 @@ def read(file: str | PathLike[str]) -> Results:
     ----------
     file : path
         Written by `write`.
-
-    Returns
-    -------
-    Results
 
     Raises
     ------

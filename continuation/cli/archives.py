@@ -26,8 +26,14 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
     parser.add_argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps")
     parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
-    parser.add_argument("--trust", action="append", default=[], type=_named, metavar="MODULE:NAME",
-                        help="a class or function that may be made, besides what is installed; can be given again")
+    parser.add_argument(
+        "--trust",
+        action="append",
+        default=[],
+        type=_named,
+        metavar="MODULE:NAME",
+        help="a class or function that may be made, besides what is installed; can be given again",
+    )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.set_defaults(run=_resume)
 

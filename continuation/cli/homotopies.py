@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from continuation import plugins
 from continuation.cli.archives import complaints
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, parsed, positive
 
 if TYPE_CHECKING:
     from continuation.budget import Budget
@@ -159,7 +159,10 @@ def _trace(arguments: argparse.Namespace) -> int:
 
         print(f"\n{cite(path)}", file=out)
     if arguments.plot is not None:
-        _draw(path, title, arguments.plot)
+        from continuation.cli.figures import save
+        from continuation.plot import plot_components
+
+        save(arguments.plot, path, f"{title}: {path.status.name}", lambda axes: plot_components(path, axes))
     arrived = path.success
     if folder is not None:
         if not arrived:
@@ -223,19 +226,6 @@ def _as_json(title: str, path: Path) -> dict[str, Any]:
         "counts": path.counts.as_dict(),
         "seconds": path.seconds,
     }
-
-
-def _draw(path: Path, title: str, file: str) -> None:
-    from continuation.cli.figures import save
-    from continuation.plot import plot_components, plot_steps
-
-    def draw(figure: Any) -> None:
-        above, below = figure.subplots(2, 1, height_ratios=(3, 1))
-        plot_components(path, above)
-        above.set_title(f"{title}: {path.status.name}", fontsize="medium")
-        plot_steps(path, below)
-
-    save(file, draw)
 
 
 # -- check ----------------------------------------------------------------------------------------------------
@@ -320,13 +310,7 @@ def _number_or_none(text: str) -> float:
     """A number; NaN stands for no target, so that it differs from an option not given."""
     if text.lower() == "none":
         return math.nan
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.inf
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a finite number or none, found {text!r}")
-    return value
+    return parsed(text, float, math.isfinite, "a finite number or none")
 
 
 def _tolerances(text: str) -> tuple[float, ...]:
@@ -334,10 +318,4 @@ def _tolerances(text: str) -> tuple[float, ...]:
 
 
 def _above_zero(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"expected a positive number, found {text!r}")
-    return value
+    return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")

@@ -147,14 +147,10 @@ def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
 
 def _draw(solution: Any, n: int, file: str) -> None:
     from continuation.cli.figures import save
-    from continuation.plot import MOST_COMPONENTS, plot_components, plot_steps
+    from continuation.plot import MOST_COMPONENTS, plot_components
 
     components = range(min(n, MOST_COMPONENTS))
     names = [f"$x_{{{i}}}$" for i in components]
 
-    def draw(figure: Any) -> None:
-        above, below = figure.subplots(2, 1, height_ratios=(3, 1))
-        plot_components(solution.path, above, names=names, components=components)
-        plot_steps(solution.path, below)
-
-    save(file, draw)
+    path = solution.path
+    save(file, path, "", lambda axes: plot_components(path, axes, names=names, components=components))

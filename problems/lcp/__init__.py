@@ -21,37 +21,15 @@ from problems.lcp.proof.farkas import Farkas, FloatFarkas, empty_interior, farka
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.reference.enumeration import Exhaustion, solve_by_enumeration
 from problems.lcp.search.outcome import Outcome, Solution
+from problems.lcp.search.sequence import Solver
 from problems.lcp.search.solver import solve
 
 __all__ = [
-    "LCP",
-    "Certificate",
-    "ExactCertificate",
-    "Exhaustion",
-    "Farkas",
-    "FloatFarkas",
-    "KKTHomotopy",
-    "KojimaMegiddoMizunoHomotopy",
-    "NoStrictlyFeasiblePoint",
-    "Outcome",
-    "Solution",
-    "Start",
-    "Structure",
-    "TwoVectorHomotopy",
-    "WangHomotopy",
-    "XuHomotopy",
-    "YuHomotopy",
-    "ZhaoHomotopy",
-    "certify",
-    "certify_exactly",
-    "classify",
-    "default_start",
-    "empty_interior",
-    "farkas",
-    "random_start",
-    "solve",
-    "solve_by_enumeration",
+    "LCP", "Certificate", "ExactCertificate", "Exhaustion", "Farkas", "FloatFarkas", "KKTHomotopy",
+    "KojimaMegiddoMizunoHomotopy", "NoStrictlyFeasiblePoint", "Outcome", "Solution", "Solver", "Start", "Structure",
+    "TwoVectorHomotopy", "WangHomotopy", "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "certify", "certify_exactly",
+    "classify", "default_start", "empty_interior", "farkas", "random_start", "solve", "solve_by_enumeration",
     "strictly_feasible_start",
-]
+]  # fmt: skip
 
 register()

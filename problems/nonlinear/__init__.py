@@ -6,11 +6,5 @@ from problems.nonlinear.fixed_point import FixedPointHomotopy, fixed_point
 from problems.nonlinear.newton import NewtonHomotopy, newton
 
 __all__ = [
-    "BrownAlmostLinear",
-    "Differentiable",
-    "FixedPointHomotopy",
-    "NewtonHomotopy",
-    "brown",
-    "fixed_point",
-    "newton",
-]
+    "BrownAlmostLinear", "Differentiable", "FixedPointHomotopy", "NewtonHomotopy", "brown", "fixed_point", "newton",
+]  # fmt: skip

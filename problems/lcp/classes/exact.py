@@ -166,10 +166,6 @@ def principal_minors(rows: Sequence[IntRow]) -> list[int]:
     complement. Where the pivot is zero, the diagonal entry is raised by one: the determinant is linear in it, so the
     minors without the index, which are known, undo the change exactly.
 
-    Parameters
-    ----------
-    rows : sequence of n sequences of n int
-
     Returns
     -------
     list of int, length 2^n
@@ -204,11 +200,6 @@ def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[in
     Fraction-free Gauss-Jordan elimination: every intermediate number is a minor, so every division is exact. At the
     orders of the class tests it is faster than `problems.lcp.proof.rational.solve_exactly` (floats: 0.9 against 2.9 ms
     at order 12), and slower beyond order 20 or so (1.07 against 0.12 s at order 60), so there are two.
-
-    Parameters
-    ----------
-    rows : sequence of m sequences of m int
-    right : sequence of m sequences of k int
     """
     work = [[*row, *b] for row, b in zip(rows, right, strict=True)]
     m, previous = len(work), 1

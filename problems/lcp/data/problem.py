@@ -14,7 +14,8 @@ from problems.options import finite_vector, real_array, sound_sparse
 
 
 def _q(value: Any) -> Array:
-    return finite_vector("q", value)
+    nothing = np.ndim(value) == 1 and np.size(value) == 0
+    return np.zeros(0) if nothing else finite_vector("q", value)
 
 
 def _matrix(value: Any) -> Matrix:
@@ -24,7 +25,7 @@ def _matrix(value: Any) -> Matrix:
         entries: Array = matrix.data
     else:
         matrix = entries = real_array("A", value)
-    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
     if not np.isfinite(entries).all():
         raise ValueError(f"A: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
@@ -40,11 +41,12 @@ class LCP:
     A : array_like or scipy sparse, shape (n, n)
         Any real matrix. Integers and float32 are converted; sparse input stays sparse (CSR).
     q : array_like, shape (n,)
+        n may be 0, as where nothing touches in a time step: such a problem is solved.
 
     Raises
     ------
     ValueError
-        If an argument is empty, not numeric, not finite, not square, or of a shape that disagrees.
+        If an argument is not numeric, not finite, not square, or of a shape that disagrees.
 
     References
     ----------
@@ -53,6 +55,8 @@ class LCP:
 
     A: Matrix = field(converter=_matrix)
     q: Array = field(converter=_q)
+    known: dict[str, Any] = field(factory=dict, init=False, repr=False)
+    """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
 
     @q.validator
     def _same_order(self, attribute: object, q: Array) -> None:
@@ -94,7 +98,7 @@ class LCP:
         -------
         float
         """
-        return float(np.abs(np.minimum(x, self.w(x))).max())
+        return float(np.abs(np.minimum(x, self.w(x))).max(initial=0.0))
 
     def scale(self, x: Array) -> float:
         """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative.
@@ -107,12 +111,25 @@ class LCP:
         -------
         float
         """
-        return 1.0 + max(float(np.abs(self.q).max()), self._norm * float(np.abs(x).max()))
+        return 1.0 + max(float(np.abs(self.q).max(initial=0.0)), self._norm * float(np.abs(x).max(initial=0.0)))
 
     @cached_property
     def _norm(self) -> float:
         """|A|_inf: asked for with every point that is judged."""
-        return float(np.max(abs(self.A).sum(axis=1)))
+        return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
+
+    def with_q(self, q: Any) -> LCP:
+        """LCP(q, A) for another q; what is known of A is not found out again.
+
+        Its rows keep their units, which another q may move by a factor for each part of A that hangs together.
+
+        Parameters
+        ----------
+        q : array_like, shape (n,)
+        """
+        other = LCP(self.A, q)
+        other.known.update(self.known)
+        return other
 
     def relative_residual(self, x: Array) -> float:
         """The natural residual divided by `scale`.

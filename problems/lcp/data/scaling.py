@@ -87,6 +87,8 @@ def balanced(problem: LCP) -> Scaled | None:
     if not rows.any() and not columns.any():
         return None
     scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows))
+    # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
+    scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
@@ -99,11 +101,18 @@ def extreme(problem: LCP) -> bool:
 
 
 def units(problem: LCP) -> tuple[Exponents, Exponents]:
-    """The exponents of two for the rows of [A, q] and the columns of A.
+    """The exponents of two for the rows of [A, q] and the columns of A; found once for a problem.
 
     Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
     they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
     """
+    if "units" not in problem.known:
+        problem.known["units"] = _units(problem)
+    found: tuple[Exponents, Exponents] = problem.known["units"]
+    return found
+
+
+def _units(problem: LCP) -> tuple[Exponents, Exponents]:
     logs, counts = _logarithms(problem.A)
     r, c = _equilibrated(logs, *_least_squares(logs, counts))
     # Negligible or not, an entry ties its row to its column: what is free is free of all of them.

@@ -44,12 +44,7 @@ class RelativeMetric:
 
 
 def longest_step(value: Array, direction: Array) -> float:
-    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components.
-
-    Parameters
-    ----------
-    value, direction : Array
-    """
+    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components."""
     falling = direction < 0.0
     if not falling.any():
         return np.inf
@@ -58,13 +53,7 @@ def longest_step(value: Array, direction: Array) -> float:
 
 
 def observed(problem: LCP, x: Array) -> dict[str, float]:
-    """The natural residual and the gap x'w, with w = A x + q.
-
-    Parameters
-    ----------
-    problem : LCP
-    x : Array of shape (n,)
-    """
+    """The natural residual and the gap x'w, with w = A x + q."""
     w = problem.w(x)
     return {"natural_residual": float(np.abs(np.minimum(x, w)).max()), "gap": float(x @ w)}
 

@@ -144,10 +144,8 @@ def YuHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Positive; ones by default.
-    y0 : array_like, shape (n,), optional
-        Positive; 1/x0 by default, which makes the second equation the published x y = l e.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; by default ones, and 1/x0, which makes the second equation the published x y = l e.
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -224,10 +222,8 @@ def WangHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Positive; ones by default.
-    y0 : array_like, shape (n,), optional
-        Positive; max(1, |q|) by default.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; by default ones, and max(1, |q|).
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -253,10 +249,8 @@ def KojimaMegiddoMizunoHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Positive; ones by default.
-    y0 : array_like, shape (n,), optional
-        Positive; max(A x0 + q, 0) + max(1, |q|) by default, so that b > 0.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; by default ones, and max(A x0 + q, 0) + max(1, |q|), so that b > 0.
     structure : Structure, optional
         That of the problem, to be shared.
 

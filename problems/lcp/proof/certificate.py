@@ -111,6 +111,9 @@ def certify(problem: LCP, x: Array, zero: float = 0.0) -> Certificate:
         If x is not a finite vector of n numbers.
     """
     require_lcp(problem)
+    if problem.n == 0:
+        nothing = np.zeros(0)
+        return Certificate(nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     x = finite_vector("x", x, problem.n)
     if zero > 0.0:
         x = np.where(np.abs(x) <= zero * natural_units(problem)[0], 0.0, x)

@@ -147,7 +147,7 @@ def farkas(problem: LCP) -> Farkas | None:
     return _multiplier(problem, strict=True)
 
 
-def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFarkas | None:
+def infeasibility(problem: LCP, seconds: float = math.inf, guess: Array | None = None) -> Farkas | FloatFarkas | None:
     """A proof that {x >= 0, A x + q >= 0} is empty: exact, else to working precision, else None.
 
     Parameters
@@ -157,12 +157,17 @@ def infeasibility(problem: LCP, seconds: float = math.inf) -> Farkas | FloatFark
         `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
     seconds : float
         For the linear program.
+    guess : Array of shape (n,), optional
+        A multiplier to be tried in place of that program's.
     """
     rows, columns = scales(problem)
     matrix, vector = scaled_data(problem, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    guess = _linear_program(matrix, vector, seconds)
-    if guess is None or not float(vector @ guess) < 0.0:
+    if guess is None:
+        guess = _linear_program(matrix, vector, seconds)
+    else:
+        guess = guess * rows / max(float((guess * rows).max()), np.finfo(float).tiny)
+    if guess is None or not float(vector @ guess) < 0.0 or float((matrix.T @ guess).max()) > _NEARLY_TIGHT:
         return None
     proof = _exact(problem, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
     return proof if proof is not None else _nearly(LCP(matrix, vector), guess, rows)
@@ -220,9 +225,7 @@ def _multiplier(problem: LCP, strict: bool) -> Farkas | None:
     return _exact(problem, matrix, guess, rows, strict, LARGEST_VERTEX)
 
 
-def _exact(
-    problem: LCP, matrix: Matrix, guess: Array, rows: Array, strict: bool, largest: int
-) -> Farkas | None:
+def _exact(problem: LCP, matrix: Matrix, guess: Array, rows: Array, strict: bool, largest: int) -> Farkas | None:
     """The first candidate near the guess that passes the check in integers."""
     # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
     conditions = _integers_of(problem)
@@ -301,9 +304,7 @@ def _integers_of(problem: LCP) -> _Conditions:
     return _Conditions(columns, integer_rows(problem.q[None, :], np.zeros(1))[0])
 
 
-def _candidates(
-    conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array, order: int
-) -> Iterator[list[int]]:
+def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array, order: int) -> Iterator[list[int]]:
     """Integer multipliers near the scaled guess: small denominators, its own floats, the vertex it approximates."""
     weights = integers(rows.max() / rows)[0]  # y of the data as given is the scaled one over the row scales
     largest = float(guess.max())

@@ -97,11 +97,8 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
     simplex method. There is no tolerance anywhere, and no shortcut in floats.
     """
     require_lcp(problem)
-    n = problem.n
-    if n > LARGEST_FACES:
-        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
     entries, q, scale = _integers(problem)
-    on_face = {mask: face_point(entries, q, indices(mask)) for mask in range(1 << n)}
+    on_face = {mask: face_point(entries, q, indices(mask)) for mask in range(1 << problem.n)}
     wide = [mask for mask, point in on_face.items() if point is not None and not point.only]
     distinct = {point.x: point for point in on_face.values() if point is not None}
     return Enumeration(tuple(_solution(point, scale, wide) for point in distinct.values()))
@@ -160,8 +157,6 @@ def exhaust(problem: LCP, seconds: float = math.inf) -> Exhaustion | None:
     ValueError
         If n is larger.
     """
-    if problem.n > LARGEST_FACES:
-        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
     entries, q, _ = _integers(problem)
     end = time.perf_counter() + seconds
     for mask in range(1 << problem.n):
@@ -174,8 +169,10 @@ def exhaust(problem: LCP, seconds: float = math.inf) -> Exhaustion | None:
 
 
 def _integers(problem: LCP) -> tuple[list[list[int]], list[int], int]:
-    """The entries of A and of q as integers over one scale."""
+    """The entries of A and of q as integers over one scale; ValueError where the faces are too many."""
     n = problem.n
+    if n > LARGEST_FACES:
+        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
     dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     flat, scale = over_common_denominator([Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())])
     return [flat[i * n : (i + 1) * n] for i in range(n)], flat[n * n :], scale

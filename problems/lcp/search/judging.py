@@ -14,7 +14,7 @@ from problems.lcp.data.problem import LCP
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
-from problems.lcp.proof.verdict import NEARLY, confirmed
+from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby
 from problems.lcp.reference.enumeration import exhaust
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
@@ -53,7 +53,9 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
     """
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
-        return Outcome.SOLVED
+        undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
+        exact = not undecided or exact_nearby(search.problem, end.certificate.x)
+        return Outcome.SOLVED if exact else Outcome.SOLVED_TO_PRECISION
     if isinstance(proof, Farkas) or (exhaustion is not None and not exhaustion.solvable):
         return Outcome.UNSOLVABLE
     if proof is not None:
@@ -117,7 +119,7 @@ def _at(found: Solution, x: Array, tolerance: float) -> Solution:
     """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
-    if found.outcome is not Outcome.SOLVED or (
+    if not found.solved or (
         certificate is not None and confirmed(found.problem, certificate, tolerance)
     ):
         return evolve(found, certificate=certificate)

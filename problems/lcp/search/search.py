@@ -17,7 +17,7 @@ from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.tracer import Observer
-from problems.lcp.active_set.face import Mask
+from problems.lcp.active_set.face import Faces, Mask
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.problem import LCP
@@ -125,6 +125,13 @@ class Search:
     def confirmed(self, certificate: Certificate) -> bool:
         """Whether a point may be called a solution."""
         return confirmed(self.problem, certificate, self.tolerance)
+
+    def make_dense(self) -> None:
+        """Store the matrix dense from here on."""
+        problem = self.problem
+        self.structure = Structure(LCP(problem.A.toarray(), problem.q))
+        if self.finish is not None:
+            self.finish.faces = Faces(self.structure)
 
     def accept(self, certificate: Certificate) -> None:
         """Take a point that no path led to into account."""

@@ -22,11 +22,13 @@ from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
+from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import exhaust
+from problems.lcp.search.pivots import LARGEST, by_lemke, by_lemke_howson
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
 from problems.lcp.search.search import Search
 
@@ -48,6 +50,17 @@ for a tridiagonal one of order 3000; a dense one of order 500, four times the li
 
 PROOF_SHARE = 0.2
 """Of the time left, where that is limited, the most that a proof takes: it is mostly far quicker than a path."""
+
+LARGEST_MADE_DENSE = 500
+"""A sparse matrix of at most this order is made dense for pivots and paths, whose matrices of order n or 2n fill: with
+5 % entries and n = 200 a path takes a tenth of the time then."""
+
+LARGEST_EARLY_FACES = 10
+"""Up to this order trying all faces takes less than two paths: 0.2 ms (n = 3), 16 ms (8), 95 ms (10), where the paths
+of feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 0.7 s (12)."""
+
+LEAST_START = 1e-3
+"""In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
 
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
@@ -140,6 +153,11 @@ class Attempt:
 # -- the attempts ---------------------------------------------------------------------------------------------
 
 
+def _made_dense(case: Case) -> bool:
+    case.search.make_dense()
+    return False
+
+
 def _zero(case: Case) -> bool:
     case.search.accept(certify(case.problem, np.zeros(case.problem.n)))
     return True
@@ -199,7 +217,10 @@ def _path(name: str = "", **options: Any) -> Callable[[Case], bool]:
 
     def run(case: Case) -> bool:
         case.followed = name or case.asked
-        homotopy = HOMOTOPIES[case.followed].make(case.problem, case.x0, structure=case.search.structure)
+        start = case.x0
+        if start is not None and not start.all():
+            start = np.where(start > 0.0, start, LEAST_START * natural_units(case.problem)[0])
+        homotopy = HOMOTOPIES[case.followed].make(case.problem, start, structure=case.search.structure)
         return case.search.follow(homotopy, **options)
 
     return run
@@ -238,6 +259,15 @@ def _wang_may_do(case: Case) -> bool:
     return not case.known.negative_diagonal
 
 
+def _pivotable(case: Case) -> bool:
+    """Where the pure path is not asked for, and a table of n^2 numbers is no burden."""
+    return case.in_budget and case.problem.n <= LARGEST and case.search.finish is not None
+
+
+def _game_perhaps(case: Case) -> bool:
+    return _pivotable(case) and case.known.nonnegative
+
+
 def _provable(case: Case) -> bool:
     n, A = case.problem.n, case.problem.A
     entries = A.nnz if case.problem.sparse else n * n
@@ -252,17 +282,23 @@ _PROVED = "A linear program gave the proof."
 _TRIED = "All complementary faces were tried in exact arithmetic."
 _FOLLOWED = "Solved by the path of the {case.followed} homotopy."
 _SETTLED = "Solved by active sets alone, before any path."
+_LEMKE_HOWSON = "By the method of Lemke and Howson, before any path."
+_LEMKE = "By Lemke's method, before any path."
 _SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
 _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("x = 0", lambda c: bool((c.problem.q >= 0.0).all()), _zero, "q >= 0, so x = 0 is a solution."),
+    Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
     Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
     Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
-    Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
+    Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
+    Attempt("Lemke and Howson", _game_perhaps, lambda c: by_lemke_howson(c.search), _LEMKE_HOWSON),
+    Attempt("Lemke", _pivotable, lambda c: by_lemke(c.search, c.seed), _LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
+    Attempt("few faces", lambda c: _pivotable(c) and c.problem.n <= LARGEST_EARLY_FACES, _all_faces, _TRIED),
 )
 """What is cheap and cannot mislead."""
 
