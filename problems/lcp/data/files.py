@@ -34,6 +34,9 @@ ALONE = ""
 LIMIT = 1 << 32
 """Bytes that a compressed file may unfold to; one that is not compressed is as large as it is."""
 
+ROWS = 1 << 22
+"""Rows of a sparse matrix, or as many as its file has bytes: each takes memory, also where it has no entry."""
+
 _UNREADABLE = (
     OSError, ValueError, TypeError, KeyError, EOFError, RecursionError, NotImplementedError, OverflowError,
     MemoryError, RuntimeError, AttributeError, IndexError, zipfile.BadZipFile, zlib.error, scipy.io.matlab.MatReadError,
@@ -126,9 +129,7 @@ def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
 
 def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
     """The named arrays of a file."""
-    text = fspath(path)
-    grouped = _HDF5_GROUP.fullmatch(text)
-    file, group = (grouped["file"], grouped["group"]) if grouped else (text, None)
+    file, group = _parted(path)
     suffix = Path(file).suffix.lower()
     if not Path(file).exists():
         raise InputError(argument, f"expected a file, found nothing at {_shown(file)}")
@@ -138,11 +139,20 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
         known = ", ".join(_READERS)
         raise InputError(argument, f"expected one of {known}, found {suffix or 'no extension'} in {_shown(file)}")
     try:
-        return _hdf5(file, group) if suffix in (".h5", ".hdf5") else _READERS[suffix](file)
+        # Sizes that a head claims overflow when they are multiplied.
+        with np.errstate(over="ignore"):
+            return _hdf5(file, group) if suffix in (".h5", ".hdf5") else _READERS[suffix](file)
     except _UNREADABLE as error:
         reason = str(error) or type(error).__name__
         complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
         raise InputError(argument, complaint) from None
+
+
+def _parted(path: str | PathLike[str]) -> tuple[str, str | None]:
+    """The file, and the group in it."""
+    text = fspath(path)
+    grouped = _HDF5_GROUP.fullmatch(text)
+    return (grouped["file"], grouped["group"]) if grouped else (text, None)
 
 
 def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | PathLike[str]) -> Matrix:
@@ -153,6 +163,8 @@ def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | Pa
     value = contents.get(name, contents.get(ALONE))
     try:
         if sp.issparse(value):
+            if max(value.shape) > max(ROWS, Path(_parted(path)[0]).stat().st_size):
+                raise ValueError(f"it claims the shape {value.shape}, and is too small for that")
             return sound_sparse(name, value)
         array = np.asarray(value)
         return array.astype(float) if array.dtype == object else array
@@ -217,9 +229,9 @@ def _mat(file: str) -> Mapping[str, Any]:
     if 0 not in raw[:4]:
         return read_level5(raw, LIMIT)
     # Level 4, which begins with small numbers.
-    _claims(8 * sum(math.prod(shape) for _, shape, kind in scipy.io.whosmat(file) if kind != "sparse"), file)
     try:
         with warnings.catch_warnings(action="error"):
+            _claims(8 * sum(math.prod(shape) for _, shape, kind in scipy.io.whosmat(file) if kind != "sparse"), file)
             return {name: value for name, value in scipy.io.loadmat(file).items() if not name.startswith("__")}
     except UserWarning as warning:
         raise ValueError(str(warning)) from None

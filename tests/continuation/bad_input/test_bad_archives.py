@@ -20,7 +20,7 @@ def folder(tmp_path_factory):
     """A file that has ended, one out of its budget, and some that are no archives."""
     place = tmp_path_factory.mktemp("bad")
     trace(CUSP, archive=place / "good.h5")
-    trace(CUSP, archive=place / "half.h5", budget=Budget(steps=10))
+    trace(CUSP, archive=place / "half.h5", budget=Budget(steps=3))
     (place / "junk.h5").write_bytes(b"junk" * 100)
     (place / "empty.h5").touch()
     (place / "folder.h5").mkdir()

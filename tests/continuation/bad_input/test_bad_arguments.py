@@ -69,9 +69,9 @@ PARTS = [
 ] + [
     (Budget, {"factorizations": value}, "factorizations") for value in (0, -3, NAN)
 ] + [
-    (Tolerance, {"absolute": value}, "absolute") for value in (0, NAN, INF, "a", -1)
+    (Tolerance, {"residual": value}, "residual") for value in (0, NAN, "a", -1)
 ] + [
-    (Tolerance, {"relative": value}, "relative") for value in (-1, NAN, "a")
+    (Tolerance, {"relative": value}, "relative") for value in (0, -1, NAN, INF, "a")
 ] + [
     (TurningPoint, {"component": 1.5}, "component"),
     (TurningPoint, {"terminal": -1}, "terminal"),

@@ -51,7 +51,7 @@ def place(tmp_path_factory):
         (folder / name).write_text(text)
     (folder / "good.json").write_text(json.dumps({"A": A.tolist(), "q": Q.tolist()}))
     trace(Cusp(), archive=folder / "ended.h5")
-    trace(Cusp(), archive=folder / "half.h5", budget=Budget(steps=10))
+    trace(Cusp(), archive=folder / "half.h5", budget=Budget(steps=3))
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.syspath_prepend(str(folder))

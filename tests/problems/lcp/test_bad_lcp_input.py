@@ -28,11 +28,11 @@ def refused(argument, call):
 
 MATRICES = (
     [[NAN, 1], [1, 2]], [[INF, 1], [1, 2]], np.array(A) + 1j, [["a", "b"], ["c", "d"]], None, [[None, 1], [1, 2]],
-    [[1, 2], [3]], [1, 2], 5, np.ones((2, 2, 2)), np.ones((2, 3)), [], np.zeros((0, 0)), {"a": 1}, {1, 2}, len,
+    [[1, 2], [3]], [1, 2], 5, np.ones((2, 2, 2)), np.ones((2, 3)), [], {"a": 1}, {1, 2}, len,
     np.ndarray, (row for row in A), np.zeros((2, 2), "M8[s]"), b"abcd", np.zeros((2, 2), [("a", "f8")]), PROBLEM,
     [[10**400, 1], [1, 2]], np.ma.masked_array(A, [[0, 1], [0, 0]]), sp.linalg.aslinearoperator(np.array(A)),
     sp.csr_array(np.array([[NAN, 1], [1, 2]])), sp.csr_array(np.array(A) + 1j), sp.csr_array(np.ones((2, 3))),
-    sp.coo_array(np.ones(2)), sp.csr_array((0, 0)), sp.coo_array(([1e308, 1e308], ([0, 0], [0, 0])), shape=(2, 2)),
+    sp.coo_array(np.ones(2)), sp.coo_array(([1e308, 1e308], ([0, 0], [0, 0])), shape=(2, 2)),
 )  # fmt: skip
 VECTORS = (
     [NAN, 1], [INF, 1], [1j, 1], ["a", "b"], None, [None, 1], [1], [1, 2, 3], [[1, 2]], 3.0, [], [True, False],
@@ -57,7 +57,7 @@ OPTIONS = {
     "restarts": (-1, 2.5, "3", NAN, INF, np.array([3])),
     "seed": (None, "a", -1, 1.5, NAN, np.array([1])),
     "budget": (5, {"steps": 5}, Budget, "5", NAN),
-    "x0": ([NAN, 1], [0, 1], [-1, 1], [1], ["a", "b"], [INF, 1], [1j, 1], [[1, 1]], 1.0, [True, True], {}),
+    "x0": ([NAN, 1], [-1, 1], [1], ["a", "b"], [INF, 1], [1j, 1], [[1, 1]], 1.0, [True, True], {}),
     "archive": (5, ["a.h5"], b"a.h5"),
     "finish": ("no", None, 1),
     "executor": (5, "threads"),
