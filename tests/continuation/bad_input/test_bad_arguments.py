@@ -51,7 +51,7 @@ OPTIONS = {
 }
 
 
-@pytest.mark.parametrize(("name", "value"), [(name, value) for name in OPTIONS for value in OPTIONS[name]], ids=repr)
+@pytest.mark.parametrize(("name", "value"), [(name, value) for name in OPTIONS for value in OPTIONS[name]])
 def test_an_option(name, value):
     refused(name, lambda: trace(CUSP, **{name: value}))
 
