@@ -79,7 +79,7 @@ def _limit(distances: tuple[float, float, float], lams: tuple[float, float, floa
 
     (first, second, third), (least, most) = lams, ORDERS
     ratio = (third - second) / (second - first) if second != first else 0.0
-    if distances[0] == 0.0 or not decay(1.0 / least) < ratio < decay(1.0 / most):
+    if distances[0] == 0.0 or abs(third - second) <= FROZEN * way or not decay(1.0 / least) < ratio < decay(1.0 / most):
         return f"An asymptote: the parameter tends to {rounded(third)} and stands still while the unknowns grow."
     power = float(brentq(lambda p: decay(p) - ratio, 1.0 / most, 1.0 / least))
     a, b = (distances[1] / distances[0]) ** -power, (distances[2] / distances[0]) ** -power

@@ -114,6 +114,13 @@ def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[
     return found[best], float(STEPS[best])
 
 
+def _rounding(residual: Callable[..., Any], u: Array, w: Array, h: float) -> Array:
+    """What a difference along w cannot tell from zero: u + h w is rounded, and the function's slope there shows it."""
+    with np.errstate(all="ignore"):
+        here, ahead, behind = (np.array(residual(at[:-1], float(at[-1]))) for at in (u, u + h * w, u - h * w))
+    return np.asarray(ULPS * np.finfo(float).eps * (np.abs(ahead - here) + np.abs(behind - here)) / h**2, dtype=float)
+
+
 def sizes(u: Array) -> Array:
     """What the steps of differences are measured by: a component's size, or 1."""
     return np.where(u != 0.0, np.abs(u), 1.0)
@@ -141,6 +148,9 @@ def by_differences(residual: Callable[..., Any], u0: Array) -> Callable[[Array, 
 
     return function
 
+
+ULPS = 8.0
+"""Units in the last place by which the ends of a difference may be off, in all."""
 
 AGREEMENT = 1e-3
 """Of a derivative with a difference, beside the sum of its terms: what is wrong is wrong by more."""
@@ -172,9 +182,10 @@ def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> D
         if found.shape != (y.size, u.size):
             continue
         if reference is None:
-            reference = difference_along(residual, u, w)[0]
+            reference, step = difference_along(residual, u, w)
+            rounding = _rounding(residual, u, w, step)
         allowed = AGREEMENT * np.abs(found) @ np.abs(w)
-        allowed = np.maximum(allowed, AGREEMENT * float(allowed.max()))
+        allowed = np.maximum(allowed, AGREEMENT * float(allowed.max())) + rounding
         if (np.abs(found @ w - reference) <= allowed).all():
             return Derivative(function, name, (source,))
     return Derivative(by_differences(residual, u), "differences")
