@@ -2,7 +2,7 @@
 
 from problems.hypothesis_hook import register
 from problems.lcp.classes import classify
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import (
     KKTHomotopy,
     KojimaMegiddoMizunoHomotopy,
@@ -32,6 +32,7 @@ __all__ = [
     "FloatFarkas",
     "KKTHomotopy",
     "KojimaMegiddoMizunoHomotopy",
+    "MixedLCP",
     "NoStrictlyFeasiblePoint",
     "Outcome",
     "Solution",

@@ -1,4 +1,4 @@
-"""The equations of one complementary face, x_i = 0 off a set and w_i = 0 on it, solved as the matrix is stored."""
+"""The equations of one complementary face, x_i at a bound off a set and w_i = 0 on it, solved as A is stored."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from continuation.linear.refine import Factored
 from continuation.linear.sparse import factor_superlu
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import accurate_w
 
 Mask = NDArray[np.bool_]
@@ -44,9 +44,11 @@ class Face:
 
     Attributes
     ----------
-    problem : LCP
+    problem : MixedLCP
+    state : State
+        Where x is.
     active : Mask
-        Where w_i = 0 is asked for.
+        Where that is between the bounds, so that w_i = 0 is asked for.
     inverse : callable
         Right-hand side on the active set to the solution there, of the equations or of shifted ones.
     exact : bool
@@ -58,7 +60,8 @@ class Face:
         The problem's own, or in its place that of a proximal problem.
     """
 
-    problem: LCP
+    problem: MixedLCP
+    state: State
     active: Mask
     inverse: Callable[[Array], Array]
     exact: bool
@@ -70,11 +73,14 @@ class Face:
 
         Where the face holds many points this is, about, the one nearest to `near`.
         """
-        x = np.zeros_like(near) if self.exact else np.where(self.active, near, 0.0)
+        standard = self.problem.standard
+        x = np.zeros_like(near) if standard else self.problem.at(self.state)
+        if not self.exact:
+            x = np.where(self.active, near, x)
         with np.errstate(over="ignore", invalid="ignore"):
-            # From zero, where w = q, one solve is all that exact factors need.
+            # One solve is all that exact factors need; from zero, w = q.
             for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
-                x = self._corrected(x, self.q if self.exact else self.w(x))
+                x = self._corrected(x, self.q if self.exact and standard else self.w(x))
             w = self.w(x)
         if not (np.isfinite(x).all() and np.isfinite(w).all()):
             return None
@@ -111,16 +117,16 @@ class Faces:
     structure: Structure
 
     @property
-    def problem(self) -> LCP:
+    def problem(self) -> MixedLCP:
         """The problem."""
         return self.structure.problem
 
-    def face(self, active: Mask, shift: float = 0.0, centre: Array | None = None) -> Face | None:
-        """The face of an active set, factored; None where that is impossible.
+    def face(self, state: State, shift: float = 0.0, centre: Array | None = None) -> Face | None:
+        """The face of a state, factored; None where that is impossible.
 
         Parameters
         ----------
-        active : Mask
+        state : State
         shift : float
             Added to the diagonal of A.
         centre : Array, optional
@@ -128,15 +134,18 @@ class Faces:
         """
         problem = self.problem
         q = problem.q if centre is None else problem.q - shift * centre
+        active = state == BETWEEN
         inside = np.flatnonzero(active)
         if inside.size == 0:
-            return Face(problem, active, lambda right: right, True, shift, q)
+            return Face(problem, state, active, lambda right: right, True, shift, q)
         if self.structure.band is not None:
             inverse = self._banded(active, shift)
-            return None if inverse is None else Face(problem, active, inverse, True, shift, q)
+            return None if inverse is None else Face(problem, state, active, inverse, True, shift, q)
         block = problem.A[inside][:, inside]
         factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
-        return None if factor is None else Face(problem, active, factor.solve, exact or centre is not None, shift, q)
+        if factor is None:
+            return None
+        return Face(problem, state, active, factor.solve, exact or centre is not None, shift, q)
 
     def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
         # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.

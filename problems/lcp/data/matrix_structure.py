@@ -14,7 +14,7 @@ from scipy.linalg.lapack import dpotrf
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import Banded
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP
 
 WIDEST_BAND = 16
 """A sparse matrix with at most so many diagonals, the gaps between them counted, is treated as banded."""
@@ -78,10 +78,10 @@ class Structure:
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     """
 
-    problem: LCP
+    problem: MixedLCP | LCP
 
     @property
     def n(self) -> int:

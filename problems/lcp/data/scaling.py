@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP
 
 Exponents = NDArray[np.int64]
 
@@ -54,14 +54,14 @@ class Scaled:
 
     Attributes
     ----------
-    problem : LCP
+    problem : MixedLCP
     rows, columns : integer arrays of shape (n,)
         R = diag(2^rows) and C = diag(2^columns).
     exact : bool
         Whether no entry was rounded: one below 1e-290 of the others may be, or vanish.
     """
 
-    problem: LCP
+    problem: MixedLCP
     rows: Exponents
     columns: Exponents
     exact: bool
@@ -75,7 +75,7 @@ class Scaled:
         return _times(x, -self.columns)
 
 
-def balanced(problem: LCP) -> Scaled | None:
+def balanced(problem: MixedLCP) -> Scaled | None:
     """The problem in units of its own, or None where these are the units in which it is given.
 
     References
@@ -86,11 +86,17 @@ def balanced(problem: LCP) -> Scaled | None:
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
         return None
-    scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows))
-    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
+    A, q = _scaled(problem.A, rows, columns), _times(problem.q, rows)
+    exact = _smallest(problem, rows, columns) > SMALLEST
+    if problem.standard:
+        return Scaled(LCP(A, q), rows, columns, exact)
+    bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
+    kept = all(np.array_equal(_times(new, columns), old) for new, old in zip(bounds, (problem.lower, problem.upper)))
+    # One bound that vanishes or overflows would change the problem: rather unscaled than another one.
+    return Scaled(MixedLCP(A, q, *bounds), rows, columns, exact) if kept else None
 
 
-def extreme(problem: LCP) -> bool:
+def extreme(problem: MixedLCP) -> bool:
     """Whether entries are so large, or so small, that products of three of them may overflow or vanish."""
     values = problem.A.data if sp.issparse(problem.A) else problem.A
     size = np.append(np.abs(values).ravel(), np.abs(problem.q))
@@ -98,7 +104,7 @@ def extreme(problem: LCP) -> bool:
     return bool(size.size and (size.max() > EXTREME or size.min() < 1.0 / EXTREME))
 
 
-def units(problem: LCP) -> tuple[Exponents, Exponents]:
+def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     """The exponents of two for the rows of [A, q] and the columns of A.
 
     Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
@@ -245,7 +251,7 @@ def _scaled(A: Matrix, rows: Exponents, columns: Exponents) -> Matrix:
     return sp.csr_array((_times(stored.data, exponents), stored.indices, stored.indptr), shape=A.shape)
 
 
-def _smallest(problem: LCP, rows: Exponents, columns: Exponents) -> int:
+def _smallest(problem: MixedLCP, rows: Exponents, columns: Exponents) -> int:
     """The base-2 logarithm of the smallest entry that is not zero, once scaled; at most zero."""
     if sp.issparse(problem.A):
         entries = sp.coo_array(problem.A)

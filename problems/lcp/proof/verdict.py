@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import Certificate, certify_exactly
 
@@ -27,7 +27,7 @@ NEARLY = 1e-5
 """An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
 
 
-def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
+def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
     """Whether the point may be called a solution.
 
     One that passes `Certificate.solves`; but of a small problem, where that is cheap, exact arithmetic has to agree
@@ -35,7 +35,7 @@ def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     certificate : Certificate
         Of the point.
     tolerance : float
@@ -48,13 +48,13 @@ def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
     return certify_exactly(problem, certificate.x).solves
 
 
-def stationary(problem: LCP, y: Array) -> bool:
+def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
     That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0: relative to the sizes of x,
     w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference.
     """
-    if y.size != 3 * problem.n:
+    if y.size != 3 * problem.n or not problem.standard:
         return False
     x, z1, z2 = np.split(y, 3)
     w = problem.w(x)

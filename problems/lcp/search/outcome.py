@@ -12,7 +12,7 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.certificate import Certificate
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.reference.enumeration import Exhaustion
@@ -62,7 +62,7 @@ class Solution:
 
     Attributes
     ----------
-    problem : LCP
+    problem : MixedLCP
     outcome : Outcome
     message : str
         What was done, in what order and why, and what the outcome means.
@@ -84,7 +84,7 @@ class Solution:
         The vector y of INFEASIBLE_TO_PRECISION.
     """
 
-    problem: LCP
+    problem: MixedLCP
     outcome: Outcome
     message: str
     certificate: Certificate | None

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Any
 
-import numpy as np
 from attrs import define, field, frozen
 
 from continuation.archive import PathLog
@@ -17,10 +16,9 @@ from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.tracer import Observer
-from problems.lcp.active_set.face import Mask
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import LCPHomotopy
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
@@ -98,7 +96,7 @@ class Search:
     _kept: int = field(default=0, init=False)
 
     @property
-    def problem(self) -> LCP:
+    def problem(self) -> MixedLCP:
         """The problem."""
         return self.structure.problem
 
@@ -130,13 +128,13 @@ class Search:
         """Take a point that no path led to into account."""
         self.ends.append(Candidate(certificate, -1, False))
 
-    def settle(self, active: Mask, policy: Policy) -> bool:
+    def settle(self, state: State, policy: Policy) -> bool:
         """Try active sets from a guess; whether that led to a solution."""
-        return self._finished(lambda finish: finish.settle(active, policy))
+        return self._finished(lambda finish: finish.settle(state, policy))
 
-    def settle_proximally(self, active: Mask | None = None) -> bool:
+    def settle_proximally(self, state: State | None = None) -> bool:
         """The same by the proximal method, from a guess or from the last active set tried."""
-        return self._finished(lambda finish: finish.proximal_active_set(active))
+        return self._finished(lambda finish: finish.proximal_active_set(state))
 
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.finish is None:
@@ -168,7 +166,7 @@ class Search:
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
         """The certificate of a path's end, which the finish brings to round-off where it can."""
-        x = np.maximum(path.endpoint.y[: self.problem.n], 0.0)
+        x = self.problem.clipped(path.endpoint.y[: self.problem.n])
         end = certify(self.problem, x)
         if arrived and not self.confirmed(end):
             zeros = certify(self.problem, x, self.tolerance)
@@ -176,7 +174,7 @@ class Search:
         if self.finish is None or not arrived or end.relative_residual <= ROUND_OFF:
             return end
         before = self.finish.counts.factorizations
-        polished = self.finish.settle(x > end.w, Policy(steps=0), x)
+        polished = self.finish.settle(self.problem.states(x, end.w), Policy(steps=0), x)
         self.counts.factorizations += self.finish.counts.factorizations - before
         return self.finish.certificate if polished is not None and self.finish.certificate is not None else end
 

@@ -20,13 +20,13 @@ from problems.lcp.active_set.finish import PATIENCE
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP, State
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import LARGEST_DECIDED
-from problems.lcp.reference.enumeration import exhaust
+from problems.lcp.reference.enumeration import decidable, exhaust
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
 from problems.lcp.search.search import Search
 
@@ -48,6 +48,13 @@ for a tridiagonal one of order 3000; a dense one of order 500, four times the li
 
 PROOF_SHARE = 0.2
 """Of the time left, where that is limited, the most that a proof takes: it is mostly far quicker than a path."""
+
+WITH_BOUNDS = "kmm"
+"""The path that takes the place of that of the KKT homotopy where there are bounds."""
+
+FEW_PIECES = 10
+"""With bounds, so many pieces as an LCP of this order has faces are tried before any path: a tenth of a second, where a
+path that leads nowhere takes one."""
 
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
@@ -92,7 +99,7 @@ class Case:
     reason: str = field(default="", init=False)
 
     @property
-    def problem(self) -> LCP:
+    def problem(self) -> MixedLCP:
         """The problem in the units of the search."""
         return self.search.problem
 
@@ -102,6 +109,12 @@ class Case:
         if self.facts is None:
             self.facts = entry_facts(self.search.structure)
         return self.facts
+
+    @property
+    def first_state(self) -> State:
+        """The state that the point nearest to zero asks for."""
+        x = self.problem.near_zero
+        return self.problem.states(x, self.problem.w(x))
 
     @property
     def semidefinite(self) -> bool:
@@ -141,26 +154,26 @@ class Attempt:
 
 
 def _zero(case: Case) -> bool:
-    case.search.accept(certify(case.problem, np.zeros(case.problem.n)))
-    return True
+    case.search.accept(certify(case.problem, case.problem.near_zero))
+    return case.search.solved
 
 
 def _from_coarser_problems(case: Case) -> bool:
-    return case.search.settle(guess(case.problem) > 0.0, FIRST)
+    return case.search.settle(case.problem.states(guess(case.problem), np.zeros(case.problem.n)), FIRST)
 
 
 def _proximally_from_zero(case: Case) -> bool:
-    return case.search.settle_proximally(case.problem.q < 0.0)
+    return case.search.settle_proximally(case.first_state)
 
 
 def _from_zero(case: Case) -> bool:
     policy = Policy(steps=min(case.problem.n, MOST_Z_STEPS)) if case.known.z_matrix else FROM_ZERO
-    return case.search.settle(case.problem.q < 0.0, policy)
+    return case.search.settle(case.first_state, policy)
 
 
 def _from_x0(case: Case) -> bool:
     assert case.x0 is not None
-    return case.search.settle(case.x0 > case.problem.w(case.x0), FIRST)
+    return case.search.settle(case.problem.states(case.x0, case.problem.w(case.x0)), FIRST)
 
 
 def _proximally_from_last(case: Case) -> bool:
@@ -185,6 +198,7 @@ def _all_faces(case: Case) -> bool:
 def _feasible_start(case: Case) -> bool:
     """Find x0; where it is proved that there is none, that proof may settle the problem."""
     try:
+        assert isinstance(case.problem, LCP)
         case.x0 = strictly_feasible_start(case.problem)
     except NoStrictlyFeasiblePoint as error:
         case.reason = str(error)
@@ -199,6 +213,8 @@ def _path(name: str = "", **options: Any) -> Callable[[Case], bool]:
 
     def run(case: Case) -> bool:
         case.followed = name or case.asked
+        if not (case.problem.standard or HOMOTOPIES[case.followed].bounds):
+            case.followed = WITH_BOUNDS
         homotopy = HOMOTOPIES[case.followed].make(case.problem, case.x0, structure=case.search.structure)
         return case.search.follow(homotopy, **options)
 
@@ -234,14 +250,22 @@ def _monotone(case: Case) -> bool:
 
 
 def _wang_may_do(case: Case) -> bool:
-    """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges."""
-    return not case.known.negative_diagonal
+    """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges; in a box it cannot."""
+    return not case.problem.standard or not case.known.negative_diagonal
 
 
 def _provable(case: Case) -> bool:
     n, A = case.problem.n, case.problem.A
     entries = A.nnz if case.problem.sparse else n * n
     return bool(n * entries <= LARGEST_PROOF or case.search.seconds_left < math.inf)
+
+
+def _zero_solves(case: Case) -> bool:
+    return case.problem.natural_residual(case.problem.near_zero) == 0.0
+
+
+def _has_few_pieces(case: Case) -> bool:
+    return not case.problem.standard and decidable(case.problem, FEW_PIECES)
 
 
 def _lacks_feasible_start(case: Case) -> bool:
@@ -256,13 +280,15 @@ _SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
 _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
-    Attempt("x = 0", lambda c: bool((c.problem.q >= 0.0).all()), _zero, "q >= 0, so x = 0 is a solution."),
+    Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
+    Attempt("the point nearest to zero", _zero_solves, _zero, "The point nearest to zero is a solution."),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
     Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
     Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
+    Attempt("all pieces, early", _has_few_pieces, _all_faces, _TRIED),
 )
 """What is cheap and cannot mislead."""
 
@@ -272,7 +298,7 @@ PATHS: tuple[Attempt, ...] = (
     Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
     Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, _PROVED),
     Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
-    Attempt("all faces", lambda c: c.in_budget and c.problem.n <= LARGEST_DECIDED, _all_faces, _TRIED),
+    Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, _TRIED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, _RESTARTED),
 )
 """Any of these may cost the whole budget."""
