@@ -5,8 +5,8 @@
     python examples/benchmarks/lcp/units.py truth  [NUMBER] [SEED]   every claim against exact enumeration
 
 Prints what was claimed, and everything that is wrong; the exit status is 1 if anything is. Units that are not powers of
-two round the entries, and so can spoil an exact proof, or give a problem without solution one at 1e16: such answers are
-counted by themselves ("decided by rounding"), and powers of two are held to the same outcome.
+two round the entries, and so can spoil an exact proof or an exact solution, or give a problem without solution one at
+1e16: such answers are counted by themselves ("decided by rounding"), and powers of two are held to the same outcome.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import time
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from fractions import Fraction
 
 import numpy as np
 
@@ -33,6 +34,9 @@ FACTORS = tuple(10.0**k for k in (-300, -200, -100, -30, -12, -8, -4, 0, 4, 8, 1
 
 SLOW = 20.0
 """Seconds of a solve that count as a failure."""
+
+FARTHEST = 1e-10
+"""The relative residual that `solve` allows where it is asked for nothing else."""
 
 BUDGET = Budget(seconds=60.0)
 
@@ -122,7 +126,9 @@ def solved(A: Array, q: Array) -> lcp.Solution:
 
 def same_outcome(one: lcp.Solution, other: lcp.Solution, exact: bool) -> bool:
     """Whether both say the same, or, of data that were rounded, what only rounding can tell apart."""
-    return one.outcome is other.outcome or (not exact and all(map(without_solution, (one, other))))
+    return one.outcome is other.outcome or (
+        not exact and (all(map(without_solution, (one, other))) or (one.solved and other.solved))
+    )
 
 
 def without_solution(found: lcp.Solution) -> bool:
@@ -186,6 +192,15 @@ def hostile(k: int, r: np.random.Generator) -> Data:
     return A, q
 
 
+def exactly_off(A: Array, q: Array, x: Array) -> float:
+    """The relative residual of x >= 0 in rational arithmetic: see `lcp.Certificate`."""
+    terms = [[Fraction(a) * Fraction(b) for a, b in zip(row, x.tolist())] for row in A.tolist()]
+    sizes = [sum(map(abs, row), abs(Fraction(c))) for row, c in zip(terms, q.tolist())]
+    w = [sum(row, Fraction(c)) / (size or 1) for row, c, size in zip(terms, q.tolist(), sizes)]
+    shares = [max(abs(row[j]) / (size or 1) for row, size in zip(terms, sizes)) for j in range(len(q))]
+    return max(float(abs(min(share, value))) if value > 0 else float(-value) for share, value in zip(shares, w))
+
+
 def truth(number: int, seed: int) -> int:
     """SOLVED and UNSOLVABLE against enumeration; no exception, no warning, nothing slow."""
     seen: Counter[str] = Counter()
@@ -209,6 +224,9 @@ def truth(number: int, seed: int) -> int:
         if found.outcome in (Outcome.SOLVED, Outcome.UNSOLVABLE) and exists is not found.solved:
             seen["DIFFERS: false claim"] += 1
             print(f"FALSE {found.outcome.name} at {k}, off by {found.relative_residual:.1e}: {found.message}")
+        if found.solved and exactly_off(A, q, found.x) > FARTHEST:
+            seen["DIFFERS: x is no solution"] += 1
+            print(f"OFF by {exactly_off(A, q, found.x):.1e} at {k}: {found.message}")
         if found.outcome not in (Outcome.SOLVED, Outcome.UNSOLVABLE):
             seen[f"undecided, solvable: {exists}: {found.outcome.name}"] += 1
     return report(f"{number} small problems against enumeration, seed {seed}, slowest {slowest:.1f} s", seen)

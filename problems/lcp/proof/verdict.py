@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy.sparse as sp
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import Certificate, certify_exactly
+from problems.lcp.proof.compensated import accurate_w
 
 LARGEST_DECIDED = 12
 """Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
@@ -46,6 +48,57 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
     if certificate.relative_residual <= ENTRIES or problem.n > LARGEST_DECIDED:
         return True
     return certify_exactly(problem, certificate.x).solves
+
+
+def exact_nearby(problem: MixedLCP, x: Array) -> bool:
+    """Whether the problem has a solution, exactly, on the face of x or on one that x touches.
+
+    Where rounding cannot matter floats prove it; in doubt the equations are solved in rationals.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+        Small: dense matrices are made.
+    x : ndarray, shape (n,)
+        A point that is `confirmed`.
+
+    References
+    ----------
+    Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
+    """
+    return (problem.standard and _clearly_exact(problem, x)) or certify_exactly(problem, x).solves
+
+
+def _clearly_exact(problem: MixedLCP, x: Array) -> bool:
+    """Whether floats prove it: the equations of the face, in units of x, have a solution near 1 with w > 0 elsewhere.
+
+    With an approximate inverse R of the block B and |I - R B| <= d < 1, B is not singular, and B u = r has
+    |u| <= |R| |r| / (1 - d) in the largest norm.
+    """
+    on = x > 0.0
+    if not on.any():
+        return bool((problem.q >= 0.0).all())
+    A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
+    w, bound = accurate_w(problem, x)
+    terms = A[:, on] * x[on]
+    sizes = np.abs(terms)
+    largest = sizes[on].max(axis=1)
+    if not largest.min() > np.finfo(float).tiny / np.finfo(float).eps:
+        return False  # products may have lost digits to underflow
+    block = terms[on] / largest[:, None]
+    try:
+        inverse = np.linalg.inv(block)
+    except np.linalg.LinAlgError:
+        return False
+    k = len(block)
+    # What rounding of the block and of the product below may hide (Higham, section 3.5), twice.
+    rounding = 2.0 * (k + 4) * float(np.finfo(float).eps)
+    size = np.abs(inverse)
+    defect = float((np.abs(inverse @ block - np.eye(k)) + rounding * (size @ np.abs(block))).sum(axis=1).max())
+    if not defect < 0.5:
+        return False
+    off = float((size @ ((np.abs(w) + bound)[on] / largest)).max()) * (1.0 + rounding) / (1.0 - defect)
+    return bool(off < 0.5 and (w - bound > 2.0 * off * sizes.sum(axis=1))[~on].all())
 
 
 def stationary(problem: MixedLCP, y: Array) -> bool:

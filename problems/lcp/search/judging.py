@@ -16,7 +16,7 @@ from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
-from problems.lcp.proof.verdict import NEARLY, confirmed
+from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby
 from problems.lcp.reference.enumeration import exhaust
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
@@ -58,7 +58,9 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
     """
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
-        return Outcome.SOLVED
+        undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
+        exact = not undecided or exact_nearby(search.problem, end.certificate.x)
+        return Outcome.SOLVED if exact else Outcome.SOLVED_TO_PRECISION
     if isinstance(proof, Farkas) or (exhaustion is not None and not exhaustion.solvable):
         return Outcome.UNSOLVABLE
     if proof is not None:
@@ -131,7 +133,14 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
     if found.outcome is Outcome.UNSOLVABLE and found.farkas is None and not exhausted:
         message = f"{Outcome.NOT_FOUND} Its proof fails for the rounding of what fixed unknowns add. {found.message}"
         found = evolve(found, outcome=Outcome.NOT_FOUND, message=message)
-    return found if rest.x is None else _at(found, small.x(rest.x), tolerance)
+    if rest.x is None:
+        return found
+    found = _at(found, small.x(rest.x), tolerance)
+    # The equations of what is left have a q that was rounded.
+    if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
+        exact = exact_nearby(problem, found.x)
+        found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
+    return found
 
 
 def _listed(indices: NDArray[np.intp]) -> str:
@@ -164,7 +173,7 @@ def _at(found: Solution, x: Array, tolerance: float) -> Solution:
     """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
-    if found.outcome is not Outcome.SOLVED or (
+    if not found.solved or (
         certificate is not None and confirmed(found.problem, certificate, tolerance)
     ):
         return evolve(found, certificate=certificate)

@@ -26,6 +26,7 @@ class Outcome(IntEnum):
     UNSOLVABLE = 2
     NOT_FOUND = 3
     INFEASIBLE_TO_PRECISION = 4
+    SOLVED_TO_PRECISION = 5
 
     def __str__(self) -> str:
         return _SENTENCES[self]
@@ -35,8 +36,8 @@ class Outcome(IntEnum):
 
     @property
     def success(self) -> bool:
-        """Whether a solution was found: SOLVED alone, since a proof that there is none gives no x."""
-        return self is Outcome.SOLVED
+        """Whether a solution was found, if only to working precision; a proof that there is none gives no x."""
+        return self in (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION)
 
 
 _SENTENCES = {
@@ -48,6 +49,8 @@ _SENTENCES = {
     Outcome.NOT_FOUND: "No solution was found, and none is excluded.",
     Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x >= 0 has w >= 0: a vector y >= 0 has q'y < 0, and "
     "A'y <= 0 but for rounding. A change of A in its last digits makes that a proof.",
+    Outcome.SOLVED_TO_PRECISION: "Solved to working precision: x solves an LCP whose entries differ from these in "
+    "their last digits; in exact arithmetic the face of x holds no solution, so the data as given may have none.",
 }
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
@@ -111,7 +114,7 @@ class Solution:
 
     @property
     def success(self) -> bool:
-        """Whether the outcome is SOLVED."""
+        """Whether the outcome is SOLVED or SOLVED_TO_PRECISION."""
         return self.outcome.success
 
     @property

@@ -6,7 +6,8 @@ from problems import lcp
 
 
 def test_an_outcome_is_true_exactly_where_a_solution_was_found():
-    assert [bool(outcome) for outcome in lcp.Outcome] == [outcome is lcp.Outcome.SOLVED for outcome in lcp.Outcome]
+    found = (lcp.Outcome.SOLVED, lcp.Outcome.SOLVED_TO_PRECISION)
+    assert [bool(outcome) for outcome in lcp.Outcome] == [outcome in found for outcome in lcp.Outcome]
 
 
 def test_a_solution_in_one_line():

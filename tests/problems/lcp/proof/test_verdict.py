@@ -1,0 +1,58 @@
+"""What may be called a solution, and what only solves a problem whose last digits differ."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from problems import lcp
+from problems.lcp import LCP
+from problems.lcp.proof.verdict import _clearly_exact, exact_nearby
+from problems.lcp.reference.enumeration import solve_by_enumeration
+
+Outcome = lcp.Outcome
+LAST = float(np.finfo(float).eps)
+
+
+def test_what_the_last_digit_decides_is_solved_to_precision_alone():
+    A = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    assert lcp.solve(LCP(A, [-1.0, 1.0])).outcome is Outcome.SOLVED
+    # w_1 + w_2 = q_1 + q_2 < 0: nothing is feasible, by the last digit of q_2.
+    off = lcp.solve(LCP(A, [-1.0, 1.0 - LAST]))
+    assert not solve_by_enumeration(off.problem).solvable
+    assert off.outcome is Outcome.SOLVED_TO_PRECISION
+    assert off.success
+    assert off.relative_residual <= LAST
+    assert "in exact arithmetic" in off.message
+    # Beyond order 12 exact arithmetic is not asked.
+    wide = np.eye(13)
+    wide[:2, :2] = A
+    assert lcp.solve(LCP(wide, [-1.0, 1.0 - LAST, *[-1.0] * 11])).outcome is Outcome.SOLVED
+
+
+def test_floats_prove_what_is_clear_and_rationals_the_rest():
+    clear = LCP([[2.0, 1.0], [1.0, 3.0]], [-1.0, 4.0])
+    assert _clearly_exact(clear, np.array([0.5, 0.0]))
+    degenerate = LCP([[2.0, 1.0], [1.0, 3.0]], [-1.0, -0.5])
+    assert not _clearly_exact(degenerate, np.array([0.5, 0.0]))
+    assert exact_nearby(degenerate, np.array([0.5, 0.0]))
+    singular = LCP([[1.0, -1.0], [-1.0, 1.0]], [-1.0, 1.0])
+    assert not _clearly_exact(singular, np.array([2.0, 1.0]))
+    assert exact_nearby(singular, np.array([2.0, 1.0]))
+    inconsistent = LCP([[1.0, -1.0], [-1.0, 1.0]], [-1.0, 1.0 - LAST])
+    assert not exact_nearby(inconsistent, np.array([2.0, 1.0]))
+
+
+@pytest.mark.parametrize("make", [np.asarray, sp.csr_array])
+def test_what_floats_prove_is_true(make):
+    r = np.random.default_rng(3)
+    proved = 0
+    for _ in range(200):
+        n = int(r.integers(1, 4))
+        A = r.integers(-3, 4, (n, n)) * 2.0 ** r.integers(-30, 30, n)
+        x = np.where(r.random(n) < 0.6, r.integers(1, 5, n) * 2.0 ** r.integers(-20, 20, n), 0.0)
+        q = np.where(x > 0.0, 0.0, r.integers(-1, 3, n)) - A @ x + r.choice([0.0, 1e-14, -1e-9], n)
+        problem = LCP(make(A), q)
+        if _clearly_exact(problem, x):
+            proved += 1
+            assert any(np.allclose(x, s.point, rtol=0.6) for s in solve_by_enumeration(problem).solutions)
+    assert proved > 20
