@@ -3,6 +3,7 @@
 from problems.hypothesis_hook import register
 from problems.lcp.classes import classify
 from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.lcp.homotopies import (
     KKTHomotopy,
     KojimaMegiddoMizunoHomotopy,
@@ -33,6 +34,9 @@ __all__ = [
     "KKTHomotopy",
     "KojimaMegiddoMizunoHomotopy",
     "MixedLCP",
+    "Program",
+    "from_lp",
+    "from_qp",
     "NoStrictlyFeasiblePoint",
     "Outcome",
     "Solution",

@@ -121,7 +121,9 @@ class Finish:
         if state is None:
             return None
         x = self.problem.near_zero
-        unit = float(np.mean(self.problem.A.diagonal()))
+        A = self.problem.A
+        # Of a linear program the diagonal is zero.
+        unit = float(np.mean(A.diagonal())) or float(np.mean(abs(A).max(axis=1)))
         for shift in PROXIMAL_SHIFTS:
             moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift * unit, counts=self.counts)
             if moved.ended in (Ended.SINGULAR, Ended.CYCLING):

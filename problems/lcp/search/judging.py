@@ -13,6 +13,7 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 from problems.lcp.data.fixed import WithoutFixed
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
@@ -141,6 +142,24 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
         exact = exact_nearby(problem, found.x)
         found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
     return found
+
+
+def of_program(program: Program, found: Solution) -> Solution:
+    """The answer to a program from that to its optimality conditions.
+
+    Parameters
+    ----------
+    program : Program
+    found : Solution
+    """
+    parts = [found.message]
+    if found.success and not program.convex:
+        parts.append("P is not positive semidefinite: this is a KKT point, and need not be a minimum.")
+    if found.farkas is not None:
+        parts.append(program.reading(np.array([value != 0 for value in found.farkas.y])))
+    elif found.float_farkas is not None:
+        parts.append(program.reading(found.float_farkas.y))
+    return evolve(found, program=program, message=" ".join(part for part in parts if part))
 
 
 def _listed(indices: NDArray[np.intp]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from enum import IntEnum
 
 import numpy as np
@@ -13,6 +14,7 @@ from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.data.program import Program
 from problems.lcp.proof.certificate import Certificate
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.reference.enumeration import Exhaustion
@@ -85,6 +87,8 @@ class Solution:
         What trying all faces in exact arithmetic came to, where that was done: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
         The vector y of INFEASIBLE_TO_PRECISION.
+    program : Program or None
+        What the problem was made of, where that is a quadratic program: `named` and `objective` read it.
     """
 
     problem: MixedLCP
@@ -98,6 +102,7 @@ class Solution:
     farkas: Farkas | None = None
     exhaustion: Exhaustion | None = None
     float_farkas: FloatFarkas | None = None
+    program: Program | None = None
 
     @property
     def proof(self) -> str:
@@ -133,8 +138,25 @@ class Solution:
         return None if self.certificate is None else self.certificate.w
 
     @property
+    def named(self) -> Mapping[str, Array]:
+        """The unknowns by name: of a program x, `equations`, `rows` and `bounds` (see `Program`), else x and w.
+
+        Empty without a point.
+        """
+        if self.x is None or self.w is None:
+            return {}
+        return {"x": self.x, "w": self.w} if self.program is None else self.program.named(self.x, self.w)
+
+    @property
+    def objective(self) -> float:
+        """Of the program at x; NaN where there is no program, or no point."""
+        if self.program is None or self.x is None:
+            return math.nan
+        return self.program.objective(self.x[: self.program.n])
+
+    @property
     def residual(self) -> float:
-        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point."""
+        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point. See `Certificate`."""
         return math.inf if self.certificate is None else self.certificate.residual
 
     @property

@@ -24,13 +24,14 @@ from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import balanced, extreme
 from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
-from problems.lcp.search.judging import answer, beyond_floats, unscaled, with_fixed
+from problems.lcp.search.judging import answer, beyond_floats, of_program, unscaled, with_fixed
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.search import Search
 from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
@@ -42,7 +43,7 @@ OWNED = ("target", "direction", "start", "state", "observers")
 
 @documented
 def solve(
-    problem: MixedLCP,
+    problem: MixedLCP | Program,
     homotopy: str = "auto",
     *,
     x0: Any = None,
@@ -57,11 +58,11 @@ def solve(
     executor: Executor | None = None,
     **options: Unpack[PartOptions],
 ) -> Solution:
-    """Solve an LCP(q, A), or a problem with bounds.
+    """Solve an LCP(q, A), a problem with bounds, or a quadratic program.
 
     Parameters
     ----------
-    problem : LCP or MixedLCP
+    problem : LCP, MixedLCP or Program
     homotopy : str
         "auto": what is cheap and cannot mislead first, then Wang's path, then the KKT path, then all complementary
         faces up to order 12, then restarts (`search.strategy` has the order). Or one of "kkt", "wang", "yu", "xu",
@@ -107,6 +108,12 @@ def solve(
     ----------
     Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
     """
+    if isinstance(problem, Program):
+        found = solve(
+            problem.problem, homotopy, x0=x0, finish=finish, path=path, restarts=restarts, seed=seed, budget=budget,
+            tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
+        )  # fmt: skip
+        return of_program(problem, found)
     if not isinstance(problem, MixedLCP):
         raise TypeError(f"problem: expected an LCP or a MixedLCP, found {type(problem).__name__}")
     if problem.standard and not isinstance(problem, LCP):
