@@ -226,6 +226,20 @@ class MixedLCP:
         """
         return np.where(state == LOWER, self.lower, np.where(state == UPPER, self.upper, 0.0))
 
+    def settled(self, x: Array, w: Array) -> Array:
+        """The point with x at its bounds where the piece of the natural map on which it is puts it there.
+
+        Parameters
+        ----------
+        x, w : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        state = self.states(x, w)
+        return np.where(state == BETWEEN, x, self.at(state))
+
     def natural_residual(self, x: Array) -> float:
         """max_i |x - mid(lower, x - w, upper)|_i, absolute.
 

@@ -171,6 +171,10 @@ class Search:
         if arrived and not self.confirmed(end):
             zeros = certify(self.problem, x, self.tolerance)
             end = zeros if zeros.relative_residual < end.relative_residual else end
+        if arrived and not self.problem.standard:
+            # What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
+            exact = certify(self.problem, self.problem.settled(end.x, end.w))
+            end = exact if exact.relative_residual < end.relative_residual else end
         if self.finish is None or not arrived or end.relative_residual <= ROUND_OFF:
             return end
         before = self.finish.counts.factorizations
