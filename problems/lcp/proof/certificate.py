@@ -119,6 +119,8 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
         near = zero * natural_units(problem)[0]
         x = np.where(np.abs(x - problem.lower) <= near, problem.lower, x)
         x = np.where(np.abs(x - problem.upper) <= near, problem.upper, x)
+        unbounded = np.isinf(problem.lower) & np.isinf(problem.upper)
+        x = np.where(unbounded & (np.abs(x) <= near), 0.0, x)
     terms = row_terms(problem, x)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         w = np.ldexp(terms.w, terms.exponents)

@@ -35,6 +35,11 @@ IN_FLIGHT = 64
 A constant, since restart k goes on from restart k - IN_FLIGHT: the answer must not depend on the number of workers.
 """
 
+ZEROS = (0.0, 1e-14, 1e-12)
+"""What is taken for zero at the end of a path with bounds, in natural units: the first that leaves the least residual.
+
+The end of a linear program is degenerate, and a row of zeros is exact only where they are."""
+
 LARGEST_KEPT = 4_000_000
 """Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
 
@@ -173,8 +178,9 @@ class Search:
             end = zeros if zeros.relative_residual < end.relative_residual else end
         if arrived and not self.problem.standard:
             # What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
-            exact = certify(self.problem, self.problem.settled(end.x, end.w))
-            end = exact if exact.relative_residual < end.relative_residual else end
+            settled = self.problem.settled(end.x, end.w)
+            exact = (certify(self.problem, settled, zero) for zero in (*ZEROS, self.tolerance))
+            end = min(end, *exact, key=lambda one: one.relative_residual)
         if self.finish is None or not arrived or end.relative_residual <= ROUND_OFF:
             return end
         before = self.finish.counts.factorizations
