@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from attrs import define, field
 
-from continuation.arrays import Array
+from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
 from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
@@ -52,6 +53,9 @@ PROXIMAL_SHIFTS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 On those 24 all five take 291 factorisations, every second one of them 289, the first alone 296: the small ones are for
 matrices whose least singular values a large shift would drown.
 """
+
+DESCENT_ROUNDS = 200
+"""Of the proximal method where A is not semidefinite."""
 
 PROXIMAL_ROUND = Policy(steps=24, patience=5)
 """In one of its rounds, more patient: what is solved there has one solution, and mostly a way to it."""
@@ -134,6 +138,34 @@ class Finish:
                 return solved
         return None
 
+    def descend(self, state: State) -> Array | None:
+        """A KKT point of min 1/2 x'A x + q'x over a box, A symmetric but not semidefinite; None without one.
+
+        Each round is a step of the proximal method with a shift that makes A definite, so that the objective falls;
+        where that is too small for the active sets to settle, it is doubled.
+
+        Parameters
+        ----------
+        state : State
+            The guess.
+
+        References
+        ----------
+        Kaplan and Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998).
+        """
+        problem = self.problem
+        x, shift = problem.near_zero, 1.1 * _below(problem.A)
+        for _ in range(DESCENT_ROUNDS):
+            moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift, counts=self.counts)
+            if moved.ended is not Ended.SETTLED:
+                shift *= 2.0
+                continue
+            state, x = moved.state, problem.clipped(moved.x)
+            solved = self.settle(state, Policy(steps=1), x)
+            if solved is not None:
+                return solved
+        return None
+
     def _judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
         """The point, clipped to the bounds and certified; corrected in twice the precision until that is round-off."""
         # A certificate is worth its cost where the signs are right to about the tolerance.
@@ -167,6 +199,13 @@ class Finish:
             return True
         size = float(np.abs(x).max())
         return low_x >= -self.tolerance * size and low_w >= -self.tolerance * (problem.scale(x) - 1.0)
+
+
+def _below(A: Matrix) -> float:
+    """How far below zero an eigenvalue of a symmetric matrix is at most: exactly, or of a sparse one by its rows."""
+    if sp.issparse(A):
+        return float((abs(A).sum(axis=1) - A.diagonal()).max())
+    return float(max(-np.linalg.eigvalsh(A)[0], np.finfo(float).tiny))
 
 
 @define(eq=False)

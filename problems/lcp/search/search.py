@@ -141,6 +141,10 @@ class Search:
         """The same by the proximal method, from a guess or from the last active set tried."""
         return self._finished(lambda finish: finish.proximal_active_set(state))
 
+    def descend(self, state: State) -> bool:
+        """Whether descent in a box, from a guess, led to a solution."""
+        return self._finished(lambda finish: finish.descend(state))
+
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.finish is None:
             return False

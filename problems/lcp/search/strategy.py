@@ -180,6 +180,10 @@ def _proximally_from_last(case: Case) -> bool:
     return case.search.settle_proximally()
 
 
+def _descent(case: Case) -> bool:
+    return case.search.descend(case.first_state)
+
+
 def _proof(case: Case) -> bool:
     case.proof_sought = True
     case.search.proof = infeasibility(case.problem, PROOF_SHARE * case.search.seconds_left)
@@ -264,6 +268,12 @@ def _zero_solves(case: Case) -> bool:
     return case.problem.natural_residual(case.problem.near_zero) == 0.0
 
 
+def _in_a_box(case: Case) -> bool:
+    """Whether the problem is that of the KKT points of a quadratic function, which a box always has."""
+    ends = case.problem.lower, case.problem.upper
+    return case.known.symmetric and all(bool(np.isfinite(end).all()) for end in ends)
+
+
 def _has_few_pieces(case: Case) -> bool:
     return not case.problem.standard and decidable(case.problem, FEW_PIECES)
 
@@ -277,6 +287,7 @@ _TRIED = "All complementary faces were tried in exact arithmetic."
 _FOLLOWED = "Solved by the path of the {case.followed} homotopy."
 _SETTLED = "Solved by active sets alone, before any path."
 _SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
+_DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
@@ -287,6 +298,7 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
+    Attempt("descent in a box", _in_a_box, _descent, _DESCENDED),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
     Attempt("all pieces, early", _has_few_pieces, _all_faces, _TRIED),
 )
