@@ -73,7 +73,8 @@ class MixedComplementarity:
         object.__setattr__(self, "upper", like.upper)
         if like.fixed.any():
             i = int(np.argmax(like.fixed))
-            raise ValueError(f"lower: expected less than upper, found both {like.lower[i]} at index {i}; leave x[{i}] out")
+            found = f"found both {like.lower[i]} at index {i}; leave x[{i}] out"
+            raise ValueError(f"lower: expected less than upper, {found}")
         require_callable("F", self.F)
         x = inside_start(like)
         value_at(self.F, x)

@@ -113,7 +113,7 @@ def from_qp(
     *,
     rows_lower: Any = None,
 ) -> Program:
-    """min 1/2 x'P x + c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
+    """Min 1/2 x'P x + c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
 
     Nothing is split: a variable without bounds stays one unknown, and a box asks for no multiplier. Of a P that is not
     positive semidefinite `solve` finds a KKT point, which need not be a minimum, and says so.
@@ -192,7 +192,7 @@ def from_lp(
     *,
     rows_lower: Any = None,
 ) -> Program:
-    """min c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper: `from_qp` with P = 0.
+    """Min c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper: `from_qp` with P = 0.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def _matrix(name: str, value: Any, columns: int) -> Matrix:
     matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
-    entries = matrix.data if sp.issparse(matrix) else matrix
+    entries: Array = matrix.data if sp.issparse(matrix) else matrix
     if not np.isfinite(entries).all():
         raise ValueError(f"{name}: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
     return matrix

@@ -49,7 +49,7 @@ def answer(search: Search, message: str) -> Solution:
         search.exhaustion,
         proof if isinstance(proof, FloatFarkas) else None,
     )
-    return evolve(found, message=" ".join(part for part in (str(found.outcome), found.proof, message) if part))
+    return evolve(found, message=" ".join(part for part in (found.sentence, found.proof, message) if part))
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:

@@ -54,6 +54,17 @@ _SENTENCES = {
     Outcome.SOLVED_TO_PRECISION: "Solved to working precision: x solves an LCP whose entries differ from these in "
     "their last digits; in exact arithmetic the face of x holds no solution, so the data as given may have none.",
 }
+_WITH_BOUNDS = {
+    Outcome.SOLVED: "Solved: x is between its bounds, and w has the signs that these ask for, to the tolerance, each row "
+    "relative to its own terms, verified in twice the working precision.",
+    Outcome.UNSOLVABLE: "The problem has no solution, which is proved exactly.",
+    Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x between the bounds gives w the signs that a solution "
+    "has, complementary or not: a multiplier says so but for rounding.",
+}
+_PROOFS_WITH_BOUNDS = {
+    "farkas": "A Farkas vector, verified exactly, proves that no x between the bounds gives w the signs of a solution.",
+    "exhaustion": "None of the complementary pieces holds a solution: all were tried in exact arithmetic.",
+}
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
     "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried in exact arithmetic.",
@@ -111,7 +122,14 @@ class Solution:
             return _PROOFS["unrepresented"]
         if self.outcome is not Outcome.UNSOLVABLE:
             return ""
-        return _PROOFS["farkas" if self.farkas is not None else "exhaustion"]
+        return (_PROOFS if self.problem.standard else _PROOFS_WITH_BOUNDS)[
+            "farkas" if self.farkas is not None else "exhaustion"
+        ]
+
+    @property
+    def sentence(self) -> str:
+        """What the outcome means for this problem."""
+        return str(self.outcome) if self.problem.standard else _WITH_BOUNDS.get(self.outcome, str(self.outcome))
 
     def __repr__(self) -> str:
         found = "no point" if self.certificate is None else f"residual {self.residual:.1e}"
