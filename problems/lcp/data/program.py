@@ -220,7 +220,7 @@ def _matrix(name: str, value: Any, columns: int) -> Matrix:
     matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
-    entries: Array = matrix.data if sp.issparse(matrix) else matrix
+    entries = np.asarray(matrix.data if sp.issparse(matrix) else matrix)
     if not np.isfinite(entries).all():
         raise ValueError(f"{name}: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
     return matrix

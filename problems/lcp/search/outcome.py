@@ -55,8 +55,8 @@ _SENTENCES = {
     "their last digits; in exact arithmetic the face of x holds no solution, so the data as given may have none.",
 }
 _WITH_BOUNDS = {
-    Outcome.SOLVED: "Solved: x is between its bounds, and w has the signs that these ask for, to the tolerance, each row "
-    "relative to its own terms, verified in twice the working precision.",
+    Outcome.SOLVED: "Solved: x is between its bounds, and w has the signs that these ask for, to the tolerance, each "
+    "row relative to its own terms, verified in twice the working precision.",
     Outcome.UNSOLVABLE: "The problem has no solution, which is proved exactly.",
     Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x between the bounds gives w the signs that a solution "
     "has, complementary or not: a multiplier says so but for rounding.",
