@@ -205,7 +205,10 @@ def _sparse(block: Matrix, shift: float) -> tuple[Factored | None, bool]:
     ordering = {"permc_spec": "MMD_AT_PLUS_A"}
     eye = sp.eye_array(block.shape[0])
     block = sp.csc_array(block + shift * eye if shift else block)
-    factor = factor_superlu(block, **ordering)
+    try:
+        factor = factor_superlu(block, **ordering)
+    except RuntimeError:  # SuperLU's own, not of a zero pivot: the pattern itself is singular
+        factor = None
     if factor is not None:
         return factor, True
     return factor_superlu(sp.csc_array(block + SINGULAR_SHIFT * max(_norm(block), 1e-300) * eye), **ordering), False

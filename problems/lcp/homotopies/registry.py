@@ -6,10 +6,12 @@ from collections.abc import Callable, Mapping
 
 from attrs import evolve, frozen
 
+from continuation.arrays import Array
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies.kkt import KKTHomotopy
 from problems.lcp.homotopies.starts import Start
+from problems.lcp.homotopies.stationarity import stationary_homotopy
 from problems.lcp.homotopies.two_vector import (
     KojimaMegiddoMizunoHomotopy,
     TwoVectorHomotopy,
@@ -52,6 +54,20 @@ class Registered:
     example: int = 2
     bounds: bool = False
 
+    def from_x0(self, problem: MixedLCP, x0: Array | None, structure: Structure) -> LCPHomotopy:
+        """The homotopy from x0, or its own start; that of "kkt" with bounds is one in (x, z).
+
+        Parameters
+        ----------
+        problem : MixedLCP
+        x0 : ndarray or None
+        structure : Structure
+            Of the problem.
+        """
+        if self.make is KKTHomotopy and not problem.standard:
+            return stationary_homotopy(problem, x0)
+        return self.make(problem, x0, structure=structure)
+
     def at(self, problem: MixedLCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:
         """The homotopy at a start of all four vectors, feasible or not.
 
@@ -65,6 +81,8 @@ class Registered:
         refine : bool
             Whether its bordered solves are corrected to round-off.
         """
+        if self.make is KKTHomotopy and not isinstance(problem, LCP):
+            return stationary_homotopy(problem, start.x0)
         if self.make is KKTHomotopy and isinstance(problem, LCP):
             return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=structure, refine=refine)
         return evolve(self.make(problem, start.x0, start.w0, structure=structure), refine=refine)
@@ -74,7 +92,8 @@ HOMOTOPIES: Mapping[str, Registered] = {
     one.name: one
     for one in (
         Registered(
-            "kkt", "KKT", "The KKT homotopy of Dutta, Das and Jana, for any A, from any positive start.", KKTHomotopy
+            "kkt", "KKT", "The KKT homotopy of Dutta, Das and Jana, for any A, from any positive start.", KKTHomotopy,
+            bounds=True,
         ),
         Registered(
             "wang", "Wang", "Wang's homotopy, for P*-matrices, from any positive start.", WangHomotopy, bounds=True

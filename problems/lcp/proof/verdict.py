@@ -8,6 +8,7 @@ import scipy.sparse as sp
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.starts import natural_units
+from problems.lcp.homotopies.stationarity import is_stationary
 from problems.lcp.proof.certificate import Certificate, certify_exactly
 from problems.lcp.proof.compensated import accurate_w
 
@@ -107,7 +108,9 @@ def stationary(problem: MixedLCP, y: Array) -> bool:
     That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0: relative to the sizes of x,
     w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference.
     """
-    if y.size != 3 * problem.n or not problem.standard:
+    if not problem.standard:
+        return is_stationary(problem, y) <= STATIONARY
+    if y.size != 3 * problem.n:
         return False
     x, z1, z2 = np.split(y, 3)
     w = problem.w(x)

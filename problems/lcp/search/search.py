@@ -259,10 +259,10 @@ class Search:
     def record(self, path: Path, homotopy: LCPHomotopy) -> None:
         """Put a path into the archive, if there is one, that was not traced here."""
         if self.log is not None:
-            show(path, homotopy, Padded(self.log, 3 * self.problem.n))
+            show(path, homotopy, Padded(self.log, (3 if self.problem.standard else 6) * self.problem.n))
 
     def _observers(self) -> tuple[Observer, ...]:
-        archive = () if self.log is None else (Padded(self.log, 3 * self.problem.n),)
+        archive = () if self.log is None else (Padded(self.log, (3 if self.problem.standard else 6) * self.problem.n),)
         if not self.progress:
             return archive
         from continuation.progress import Progress

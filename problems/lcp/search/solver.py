@@ -66,7 +66,7 @@ def solve(
     homotopy : str
         "auto": what is cheap and cannot mislead first, then Wang's path, then the KKT path, then all complementary
         faces up to order 12, then restarts (`search.strategy` has the order). Or one of "kkt", "wang", "yu", "xu",
-        "zhao", "kmm"; with bounds "wang", "yu" or "kmm".
+        "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
         A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start.
     finish : bool

@@ -49,9 +49,6 @@ for a tridiagonal one of order 3000; a dense one of order 500, four times the li
 PROOF_SHARE = 0.2
 """Of the time left, where that is limited, the most that a proof takes: it is mostly far quicker than a path."""
 
-WITH_BOUNDS = "kmm"
-"""The path that takes the place of that of the KKT homotopy where there are bounds."""
-
 FEW_PIECES = 10
 """With bounds, so many pieces as an LCP of this order has faces are tried before any path: a tenth of a second, where a
 path that leads nowhere takes one."""
@@ -217,9 +214,7 @@ def _path(name: str = "", **options: Any) -> Callable[[Case], bool]:
 
     def run(case: Case) -> bool:
         case.followed = name or case.asked
-        if not (case.problem.standard or HOMOTOPIES[case.followed].bounds):
-            case.followed = WITH_BOUNDS
-        homotopy = HOMOTOPIES[case.followed].make(case.problem, case.x0, structure=case.search.structure)
+        homotopy = HOMOTOPIES[case.followed].from_x0(case.problem, case.x0, case.search.structure)
         return case.search.follow(homotopy, **options)
 
     return run
