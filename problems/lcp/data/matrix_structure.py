@@ -47,6 +47,8 @@ def semidefinite(symmetric: Array) -> bool:
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
+    if (diagonal > 0.0).all() and dpotrf(symmetric, lower=1)[1] == 0:
+        return True
     scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     scaled = symmetric * scale * scale[:, None]
     scaled[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n

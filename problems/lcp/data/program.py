@@ -227,6 +227,8 @@ def _matrix(name: str, value: Any, columns: int) -> Matrix:
 
 
 def _check_symmetric(P: Matrix) -> None:
+    if not sp.issparse(P) and np.array_equal(P, P.T):
+        return
     difference = sp.coo_array(P - P.T)
     if difference.nnz and difference.data.any():
         k = int(np.argmax(np.abs(difference.data)))
