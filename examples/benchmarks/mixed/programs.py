@@ -2,8 +2,8 @@
 
     python examples/benchmarks/mixed/programs.py [chart.png]
 
-The rivals are piqp, clarabel, highspy and scipy (L-BFGS-B); those that are not installed are left out. Each is asked for
-its tightest sensible accuracy, and timed over its whole call, the least of three.
+The rivals are piqp, clarabel, highspy and scipy (L-BFGS-B); those that are not installed are left out. Each is timed
+over its whole call, the least of three.
 """
 
 import sys
@@ -146,7 +146,8 @@ def draw(points, file):
             for k, name in enumerate(names):
                 at = [(s, r) for kind_, n_, name_, s, r in points if (kind_, n_, name_) == (kind, n, name)]
                 if at:
-                    ax.loglog(at[0][0], max(at[0][1], 1e-17), "o" if k else "*", color=f"C{k}", ms=8 if k else 13, label=name)
+                    marker, size = ("o", 8) if k else ("*", 13)
+                    ax.loglog(at[0][0], max(at[0][1], 1e-17), marker, color=f"C{k}", ms=size, label=name)
             ax.set_title(f"{kind}, n = {n}")
             ax.grid(alpha=0.3)
     for ax in axes[-1]:
