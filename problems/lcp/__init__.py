@@ -22,6 +22,7 @@ from problems.lcp.proof.farkas import Farkas, FloatFarkas, empty_interior, farka
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.reference.enumeration import Exhaustion, solve_by_enumeration
 from problems.lcp.search.outcome import Outcome, Solution
+from problems.lcp.search.sequence import Solver
 from problems.lcp.search.solver import solve
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "Outcome",
     "Program",
     "Solution",
+    "Solver",
     "Start",
     "Structure",
     "TwoVectorHomotopy",

@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import frozen
+from attrs import evolve, frozen
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon
+from scipy.sparse.csgraph import structural_rank
 
 from continuation.arrays import Array, Matrix
 from continuation.linear.banded import factor_band
@@ -33,6 +34,9 @@ SINGULAR_SHIFT = 1e-8
 
 The root of the machine precision: a smaller shift loses more digits to rounding, a larger one needs more corrections.
 """
+
+KEPT = 8
+"""Faces whose factors are kept for the next q: what moves to and fro goes through a few."""
 
 SHIFTED_CORRECTIONS = 4
 """Corrections of the solution by a shifted matrix: each gains the ratio of the shift to the least singular value."""
@@ -112,14 +116,20 @@ class Faces:
     ----------
     structure : Structure
         Of the problem.
+    current : MixedLCP, optional
+        The problem, where it has another q than that of the structure.
+    kept : dict, optional
+        Where the last `KEPT` faces stay, by their active sets, for other q.
     """
 
     structure: Structure
+    current: MixedLCP | None = None
+    kept: dict[bytes, Face] | None = None
 
     @property
     def problem(self) -> MixedLCP:
         """The problem."""
-        return self.structure.problem
+        return self.structure.problem if self.current is None else self.current
 
     def face(self, state: State, shift: float = 0.0, centre: Array | None = None) -> Face | None:
         """The face of a state, factored; None where that is impossible.
@@ -132,6 +142,18 @@ class Faces:
         centre : Array, optional
             Of a proximal problem, whose q is ``q - shift centre``.
         """
+        if self.kept is None or shift or centre is not None:
+            return self._made(state, shift, centre)
+        key = state.tobytes()
+        face = self.kept.pop(key, None) or self._made(state, shift, centre)
+        if face is None:
+            return None
+        self.kept[key] = face
+        if len(self.kept) > KEPT:
+            self.kept.pop(next(iter(self.kept)))
+        return evolve(face, problem=self.problem, q=self.problem.q)
+
+    def _made(self, state: State, shift: float, centre: Array | None) -> Face | None:
         problem = self.problem
         q = problem.q if centre is None else problem.q - shift * centre
         active = state == BETWEEN
@@ -205,10 +227,9 @@ def _sparse(block: Matrix, shift: float) -> tuple[Factored | None, bool]:
     ordering = {"permc_spec": "MMD_AT_PLUS_A"}
     eye = sp.eye_array(block.shape[0])
     block = sp.csc_array(block + shift * eye if shift else block)
-    try:
-        factor = factor_superlu(block, **ordering)
-    except RuntimeError:  # SuperLU's own, not of a zero pivot: the pattern itself is singular
-        factor = None
+    # On a structurally singular matrix SuperLU prints, and raises what it does not raise for a zero pivot.
+    full = bool(block.diagonal().all()) or structural_rank(block) == block.shape[0]
+    factor = factor_superlu(block, **ordering) if full else None
     if factor is not None:
         return factor, True
     return factor_superlu(sp.csc_array(block + SINGULAR_SHIFT * max(_norm(block), 1e-300) * eye), **ordering), False

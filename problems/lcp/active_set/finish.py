@@ -182,6 +182,14 @@ class Finish:
             certificate = certify(self.problem, self.problem.clipped(x))
             if certificate.relative_residual < best.relative_residual:
                 best = certificate
+        if not best.solves(self.tolerance):
+            # What is zero in truth, as where nothing touches, may be most of the terms of a row.
+            if self.problem.standard:
+                zeros = np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0)
+            else:
+                zeros = self.problem.settled(best.x, best.w)
+            if (zeros != best.x).any():
+                best = certify(self.problem, zeros)
         if confirmed(self.problem, best, self.tolerance):
             self.certificate = best
             return best.x, best.w, True

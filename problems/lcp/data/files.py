@@ -94,9 +94,12 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
     else:
         vector = _named(_contents("q", q), "q", "q", q)
     try:
+        problem: MixedLCP = LCP(A, _flat(vector))
         if any(name in contents for name in _BOUNDS):
-            return MixedLCP(A, _flat(vector), *(_bound(contents, name, path) for name in _BOUNDS))
-        return LCP(A, _flat(vector))
+            problem = MixedLCP(A, _flat(vector), *(_bound(contents, name, path) for name in _BOUNDS))
+        if problem.n == 0:
+            raise ValueError("A: expected a square matrix, found shape (0, 0)")
+        return problem
     except (ValueError, TypeError, OverflowError) as error:
         at_q = q is not None and str(error).startswith("q:")
         argument, file = ("q", q) if at_q else ("path", path)

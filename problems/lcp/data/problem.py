@@ -15,6 +15,7 @@ from attrs import Attribute, Factory, field, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
+from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import finite_vector, real_array, sound_sparse
 
 State = NDArray[np.int8]
@@ -24,7 +25,8 @@ LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
 
 def _q(value: Any) -> Array:
-    return finite_vector("q", value)
+    nothing = np.ndim(value) == 1 and np.size(value) == 0
+    return np.zeros(0) if nothing else finite_vector("q", value)
 
 
 def _matrix(value: Any) -> Matrix:
@@ -34,53 +36,11 @@ def _matrix(value: Any) -> Matrix:
         entries: Array = matrix.data
     else:
         matrix = entries = real_array("A", value)
-    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
     if not np.isfinite(entries).all():
         raise ValueError(f"A: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
     return matrix
-
-
-def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
-    """Bounds as a vector of floats, of which one of the two infinities, `default`, is allowed.
-
-    Parameters
-    ----------
-    name : str
-        The argument, for the message.
-    value : array_like of shape (size,), a number, or None
-        One number is that of all indices; None is `default` for all.
-    size : int
-    default : float
-        -inf for lower bounds, inf for upper ones.
-
-    Raises
-    ------
-    ValueError
-        If it is sparse (is what is not stored zero, or no bound?), not real, of another length, NaN, or the wrong
-        infinity; the message names the index.
-    """
-    if value is None:
-        return np.full(size, default)
-    if sp.issparse(value):
-        raise ValueError(f"{name}: expected a dense vector, found a sparse one; give toarray(), in which 0 is a bound")
-    bounds = real_array(name, value)
-    if bounds.ndim == 0:
-        bounds = np.full(size, float(bounds))
-    if bounds.shape != (size,):
-        raise ValueError(f"{name}: expected {size} numbers, one an unknown, found shape {bounds.shape}")
-    wrong = np.isnan(bounds) | (bounds == -default)
-    if wrong.any():
-        i = int(np.argmax(wrong))
-        raise ValueError(f"{name}: expected numbers or {default}, found {bounds[i]} at index {i}")
-    return bounds
-
-
-def ordered_bounds(lower: Array, upper: Array) -> None:
-    """Raise ValueError, naming the first index, where a lower bound is above the upper one."""
-    if (lower > upper).any():
-        i = int(np.argmax(lower > upper))
-        raise ValueError(f"lower: expected at most upper, found lower[{i}] = {lower[i]} > upper[{i}] = {upper[i]}")
 
 
 @frozen(eq=False)
@@ -101,8 +61,8 @@ class MixedLCP:
     Raises
     ------
     ValueError
-        If an argument is empty, not numeric, not finite, not square, of a shape that disagrees, or a lower bound is
-        above its upper one.
+        If an argument is not numeric, not finite, not square, of a shape that disagrees, or a lower bound is above its
+        upper one.
 
     References
     ----------
@@ -251,7 +211,7 @@ class MixedLCP:
         -------
         float
         """
-        return float(np.abs(self.natural_map(x, self.w(x))).max())
+        return float(np.abs(self.natural_map(x, self.w(x))).max(initial=0.0))
 
     def scale(self, x: Array) -> float:
         """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative.
@@ -264,12 +224,19 @@ class MixedLCP:
         -------
         float
         """
-        return 1.0 + max(float(np.abs(self.q).max()), self._norm * float(np.abs(x).max()))
+        return 1.0 + max(float(np.abs(self.q).max(initial=0.0)), self._norm * float(np.abs(x).max(initial=0.0)))
 
     @cached_property
     def _norm(self) -> float:
         """|A|_inf: asked for with every point that is judged."""
-        return float(np.max(abs(self.A).sum(axis=1)))
+        return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
+
+    @cached_property
+    def row_units(self) -> NDArray[np.int64]:
+        """The exponents of two by which its rows are balanced (`data.scaling.units`): every certificate may ask."""
+        from problems.lcp.data.scaling import units
+
+        return units(self)[0]
 
     def relative_residual(self, x: Array) -> float:
         """The natural residual divided by `scale`.
@@ -283,6 +250,16 @@ class MixedLCP:
         float
         """
         return self.natural_residual(x) / self.scale(x)
+
+
+def active_state(active: NDArray[np.bool_]) -> State:
+    """The state of an LCP in which w_i = 0 is asked for on an active set.
+
+    Parameters
+    ----------
+    active : ndarray of bool
+    """
+    return np.where(active, BETWEEN, LOWER)
 
 
 def _stated(low: NDArray[np.bool_], high: NDArray[np.bool_]) -> State:
@@ -299,11 +276,12 @@ class LCP(MixedLCP):
     A : array_like or scipy sparse, shape (n, n)
         Any real matrix. Integers and float32 are converted; sparse input stays sparse (CSR).
     q : array_like, shape (n,)
+        n may be 0, as where nothing touches in a time step: such a problem is solved.
 
     Raises
     ------
     ValueError
-        If an argument is empty, not numeric, not finite, not square, or of a shape that disagrees.
+        If an argument is not numeric, not finite, not square, or of a shape that disagrees.
 
     References
     ----------
@@ -321,6 +299,20 @@ class LCP(MixedLCP):
     def standard(self) -> bool:
         """True."""
         return True
+
+    def with_q(self, q: Any) -> LCP:
+        """LCP(q, A) for another q; what is known of A is not found out again.
+
+        Its rows keep their units, which another q may move by a factor for each part of A that hangs together.
+
+        Parameters
+        ----------
+        q : array_like, shape (n,)
+        """
+        other = LCP(self.A, q)
+        for known in ("_norm", "row_units"):
+            object.__setattr__(other, known, getattr(self, known))
+        return other
 
 
 def _all(value: float, q: Array) -> Array:

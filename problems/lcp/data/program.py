@@ -12,8 +12,9 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
+from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.lcp.data.matrix_structure import semidefinite
-from problems.lcp.data.problem import MixedLCP, bound_vector, ordered_bounds
+from problems.lcp.data.problem import MixedLCP
 from problems.options import finite_vector, real_array, sound_sparse
 
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
-from problems.lcp.data.scaling import units
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
@@ -114,6 +113,9 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     ValueError
         If x is not a finite vector of n numbers.
     """
+    if problem.n == 0:
+        nothing = np.zeros(0)
+        return Certificate(nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     x = finite_vector("x", x, problem.n)
     if zero > 0.0:
         near = zero * natural_units(problem)[0]
@@ -183,7 +185,7 @@ def _drowned(problem: MixedLCP, terms: Terms, off: Array) -> float:
         asked = (off > 0.0) & (off * terms.size > DROWNED * np.abs(np.ldexp(problem.q, -terms.exponents)))
     if not asked.any():
         return 0.0
-    rows, _ = units(problem)
+    rows = problem.row_units
     with np.errstate(over="ignore", under="ignore"):
         largest = float(np.ldexp(np.abs(problem.q), rows).max())
         worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())

@@ -150,7 +150,9 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     return _multiplier(problem, strict=True)
 
 
-def infeasibility(problem: MixedLCP, seconds: float = math.inf) -> Farkas | FloatFarkas | None:
+def infeasibility(
+    problem: MixedLCP, seconds: float = math.inf, guess: Array | None = None
+) -> Farkas | FloatFarkas | None:
     """A proof that {x >= 0, A x + q >= 0} is empty: exact, else to working precision, else None.
 
     Parameters
@@ -160,6 +162,8 @@ def infeasibility(problem: MixedLCP, seconds: float = math.inf) -> Farkas | Floa
         `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
     seconds : float
         For the linear program.
+    guess : Array of shape (n,), optional
+        A multiplier to be tried in place of that program's.
     """
     system = inequalities(problem)
     if (system.q >= 0.0).all():
@@ -167,8 +171,11 @@ def infeasibility(problem: MixedLCP, seconds: float = math.inf) -> Farkas | Floa
     rows, columns = scales(system)
     matrix, vector = scaled_data(system, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    guess = _linear_program(matrix, vector, seconds)
-    if guess is None or not float(vector @ guess) < 0.0:
+    if guess is None:
+        guess = _linear_program(matrix, vector, seconds)
+    else:
+        guess = guess * rows / max(float((guess * rows).max()), np.finfo(float).tiny)
+    if guess is None or not float(vector @ guess) < 0.0 or float((matrix.T @ guess).max()) > _NEARLY_TIGHT:
         return None
     proof = _exact(problem, system, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
     return proof if proof is not None else _nearly(Inequalities(matrix, vector), guess, rows, system, problem.n)
@@ -239,9 +246,7 @@ def _exact(
     return None
 
 
-def _nearly(
-    scaled: Inequalities, guess: Array, rows: Array, system: Inequalities, n: int
-) -> FloatFarkas | None:
+def _nearly(scaled: Inequalities, guess: Array, rows: Array, system: Inequalities, n: int) -> FloatFarkas | None:
     """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
     y = np.where(guess > _SUPPORT, guess, 0.0)
     conditions = Inequalities(_transposed(scaled.A), np.zeros(scaled.A.shape[1]))
@@ -288,9 +293,7 @@ def _linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | No
     return solution
 
 
-def _candidates(
-    conditions: Conditions, matrix: Matrix, guess: Array, rows: Array, order: int
-) -> Iterator[list[int]]:
+def _candidates(conditions: Conditions, matrix: Matrix, guess: Array, rows: Array, order: int) -> Iterator[list[int]]:
     """Integer multipliers near the scaled guess: small denominators, its own floats, the vertex it approximates."""
     weights = integers(rows.max() / rows)[0]  # y of the data as given is the scaled one over the row scales
     largest = float(guess.max())

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Any
 
-from attrs import define, field, frozen
+from attrs import define, evolve, field, frozen
 
 from continuation.archive import PathLog
 from continuation.arrays import Array
@@ -16,6 +16,7 @@ from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.tracer import Observer
+from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.problem import MixedLCP, State
@@ -128,6 +129,13 @@ class Search:
     def confirmed(self, certificate: Certificate) -> bool:
         """Whether a point may be called a solution."""
         return confirmed(self.problem, certificate, self.tolerance)
+
+    def make_dense(self) -> None:
+        """Store the matrix dense from here on."""
+        problem = self.problem
+        self.structure = Structure(evolve(problem, A=problem.A.toarray()))
+        if self.finish is not None:
+            self.finish.faces = Faces(self.structure)
 
     def accept(self, certificate: Certificate) -> None:
         """Take a point that no path led to into account."""

@@ -13,10 +13,12 @@ from os import PathLike
 from typing import Any, Unpack
 
 import numpy as np
+from attrs import evolve
 
 from continuation.archive import PathLog
-from continuation.arrays import largest
+from continuation.arrays import Array, largest
 from continuation.budget import Budget
+from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
@@ -28,17 +30,24 @@ from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import balanced, extreme
 from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
 from problems.lcp.homotopies.registry import HOMOTOPIES
-from problems.lcp.homotopies.starts import inside_vector
+from problems.lcp.homotopies.starts import inside_vector, positive_vector
+from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
+from problems.lcp.search.case import Case
 from problems.lcp.search.judging import answer, beyond_floats, of_program, unscaled, with_fixed
-from problems.lcp.search.outcome import Solution
+from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Search
-from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
+from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, settled_by
 from problems.lcp.search.work import default_budget
+from problems.options import finite_vector
 
 OWNED = ("target", "direction", "start", "state", "observers")
 """What may be said of a path, but not of those that `solve` traces."""
+
+
+MOST_RESTARTS = 1000
+"""So that a search ends whose budget has no limit; the default one allows fewer from order 13 on, where they begin."""
 
 
 @documented
@@ -68,14 +77,15 @@ def solve(
         faces up to order 12, then restarts (`search.strategy` has the order). Or one of "kkt", "wang", "yu", "xu",
         "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
-        A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start.
+        A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start. For
+        "auto" zeros are welcome, as in the solution of a problem nearby: where x0 > A x0 + q is tried first.
     finish : bool
         Whether active sets are tried, before the path and along it. Without it `path` is the pure homotopy.
     path : bool
         Trace a path even where "auto" needs none, to look at it.
     restarts : int, optional
-        Paths from random starts after the first has failed. Default: 0 for a named homotopy, min(10 n, 1000) for
-        "auto".
+        Paths from random starts after the first has failed. Default: 0 for a named homotopy, and as many as the budget
+        allows, up to 1000, for "auto".
     seed : int
         Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
         restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
@@ -126,8 +136,10 @@ def solve(
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
     _check_arguments(tolerance, restarts, seed, finish, budget, executor, options)
     if restarts is None:
-        restarts = min(10 * problem.n, 1000) if automatic else 0
-    start = None if x0 is None else inside_vector("x0", x0, _unfixed(problem))
+        restarts = MOST_RESTARTS if automatic else 0
+    if problem.n == 0:
+        return _nothing(problem, archive)
+    start = None if x0 is None else _start(x0, problem, automatic)
     if problem.fixed.any():
         small = without_fixed(problem)
         if start is not None:
@@ -164,7 +176,7 @@ def solve(
         else:
             settled = settled_by(case, strategy)
             found = answer(search, _account(case, settled))
-            found = found if scaled is None else unscaled(problem, scaled, found, tolerance)
+            found = evolve(found, problem=problem) if scaled is None else unscaled(problem, scaled, found, tolerance)
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)
         return found
@@ -197,6 +209,27 @@ def _check_arguments(
     known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
     check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
     checked(options)
+
+
+def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
+    """A start of a path is positive; for "auto" it may have zeros, in place of which paths take small numbers."""
+    if not problem.standard:
+        return inside_vector("x0", x0, _unfixed(problem))
+    if not automatic:
+        return positive_vector("x0", x0, problem.n)
+    start = finite_vector("x0", x0, problem.n)
+    if (start < 0.0).any():
+        i = int(np.argmax(start < 0.0))
+        raise ValueError(f"x0: expected nonnegative numbers, found {start[i]} at index {i}")
+    return start
+
+
+def _nothing(problem: MixedLCP, archive: Any) -> Solution:
+    """The answer to a problem without unknowns."""
+    if archive is not None:
+        raise ValueError("archive: expected None for a problem without unknowns, of which there is no path")
+    message = f"{Outcome.SOLVED} There are no unknowns."
+    return Solution(problem, Outcome.SOLVED, message, certify(problem, np.zeros(0)), (), -1, Counts(), 0.0)
 
 
 def _account(case: Case, settled: Attempt | None) -> str:

@@ -154,14 +154,16 @@ def test_a_path_to_infinity_along_a_solution_of_the_homogeneous_problem_is_no_so
 
 def test_the_budget_ends_the_search():
     problem = COUNTEREXAMPLES[0].problem
-    solution = lcp.solve(problem, budget=continuation.Budget(steps=5), restarts=50)
+    # The pure path alone: with the finish all faces of so small a problem are tried first.
+    solution = lcp.solve(problem, budget=continuation.Budget(steps=5), restarts=50, finish=False)
     assert solution.outcome is Outcome.NOT_FOUND
     assert "budget" in solution.message.lower()
     assert len(solution.paths) == 1
 
 
 def test_counts_add_up():
-    solution = lcp.solve(COUNTEREXAMPLES[0].problem, restarts=3)
+    solution = lcp.solve(COUNTEREXAMPLES[0].problem, restarts=3, path=True)
+    assert solution.paths
     assert solution.counts.accepted == sum(path.counts.accepted for path in solution.paths)
     assert solution.counts.factorizations >= sum(path.counts.factorizations for path in solution.paths)
 
@@ -277,7 +279,8 @@ def test_a_message_begins_with_what_the_outcome_means():
     [
         (lambda: lcp.solve([[1.0]]), TypeError, "problem"),
         (lambda: lcp.solve(PD, "newton"), ValueError, "homotopy"),
-        (lambda: lcp.solve(PD, x0=[1.0, 0.0, 1.0]), ValueError, "x0"),
+        (lambda: lcp.solve(PD, x0=[1.0, -1.0, 1.0]), ValueError, "x0"),
+        (lambda: lcp.solve(PD, "kkt", x0=[1.0, 0.0, 1.0]), ValueError, "x0"),
         (lambda: lcp.solve(PD, x0=[1.0]), ValueError, "x0"),
         (lambda: lcp.solve(PD, "kkt", colour="red"), TypeError, "colour"),
         (lambda: lcp.solve(PD, tolerance=-1.0), ValueError, "tolerance"),

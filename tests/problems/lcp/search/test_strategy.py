@@ -39,16 +39,18 @@ def tried(one, order):
 def test_the_order_depends_on_the_matrix():
     skew = np.array([[1.0, 2.0, 0.0], [-2.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     q = [-1.0, 1.0, 0.0]
-    expected = [ZERO, "active sets of A + shift I, from the last", "proof, early"]
+    expected = [ZERO, "active sets of A + shift I, from the last", "Lemke", "proof, early", "few faces"]
     expected += ["Wang's path", "proof", "KKT path", "all faces", "restarts"]
     assert tried(case(lcp.LCP(skew, q)), AUTOMATIC) == expected
     negative = lcp.LCP(-np.eye(3) + np.ones((3, 3)) * [[0.0], [-3.0], [1.0]], q)
-    expected = [ZERO, "proof, early", "KKT path, first", "proof", "all faces", "restarts"]
+    expected = [ZERO, "Lemke", "proof, early", "few faces", "KKT path, first", "proof", "all faces", "restarts"]
     assert tried(case(negative), AUTOMATIC) == expected
     definite = lcp.LCP(np.full((3, 3), 1.0) + np.eye(3), q)
     assert tried(case(definite), AUTOMATIC)[:2] == ["active sets of A + shift I, from x = 0", ZERO]
     assert tried(case(lcp.LCP(skew, np.ones(3))), AUTOMATIC)[0] == "x = 0"
-    assert "active sets, from x0" in tried(case(lcp.LCP(skew, q), x0=np.ones(3)), AUTOMATIC)
+    assert tried(case(lcp.LCP(skew, q), x0=np.ones(3)), AUTOMATIC)[0] == "active sets, from x0"
+    game = lcp.LCP([[0.0, 1.0], [2.0, 0.0]], [-1.0, -1.0])
+    assert "Lemke and Howson" in tried(case(game), AUTOMATIC)
     membrane = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(300, 300), dtype=float)
     assert tried(case(lcp.LCP(membrane, -np.ones(300))), AUTOMATIC)[0] == "active sets, from coarser problems"
 
@@ -74,6 +76,8 @@ def test_a_large_proof_is_looked_for_only_within_a_limit_of_seconds():
 
 def test_all_faces_are_tried_where_they_are_few():
     assert "all faces" in tried(case(lcp.LCP(np.eye(12), -np.ones(12))), AUTOMATIC)
+    assert "few faces" in tried(case(lcp.LCP(np.eye(10), -np.ones(10))), AUTOMATIC)
+    assert "few faces" not in tried(case(lcp.LCP(np.eye(11), -np.ones(11))), AUTOMATIC)
     assert "all faces" not in tried(case(lcp.LCP(np.eye(13), -np.ones(13))), AUTOMATIC)
     assert "all faces" not in tried(case(INFEASIBLE), NAMED)
 
@@ -98,13 +102,14 @@ def test_another_attempt_is_one_more_entry():
 @pytest.mark.parametrize(
     ("problem", "options", "expected"),
     [
-        (INFEASIBLE, {}, 1),
+        # The ray of Lemke's method has the proof already.
+        (INFEASIBLE, {}, 0),
         (INFEASIBLE, {"path": True}, 1),
         (INFEASIBLE, {"homotopy": "kkt"}, 1),
         # Phase I has the proof already.
         (INFEASIBLE, {"homotopy": "zhao"}, 0),
         # Scaled: the proof is moved to the problem as given.
-        (lcp.LCP([[0.0, 1e9], [-1e-9, 0.0]], [-1e9, -1.0]), {}, 1),
+        (lcp.LCP([[0.0, 1e9], [-1e-9, 0.0]], [-1e9, -1.0]), {}, 0),
     ],
 )
 def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, options, expected, monkeypatch):

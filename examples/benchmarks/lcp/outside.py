@@ -1,0 +1,253 @@
+"""Families that the solver was not tuned on: what outsiders' problems cost, in processor seconds a problem.
+
+    python examples/benchmarks/lcp/outside.py [FAMILY ...] [--seed S] [--limit SECONDS]
+
+Prints outcomes, the median and the largest time. The steps of a stack are solved by `lcp.Solver` where there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import time
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.optimize import linprog
+
+from continuation import Budget
+from continuation.arrays import Array
+from problems import lcp
+
+Data = tuple[Array, Array]
+Bodies = list[tuple[float, float, float, float]]
+"""Mass, moment of inertia, and place of each."""
+
+Contact = tuple[int, int, float, float, float, float]
+"""Body, body or -1 for the ground, place, and normal."""
+
+
+def box_qp(seed: int) -> Iterator[Data]:
+    """The optimality conditions of min x'Qx/2 + c'x over 0 <= x <= 1, Q with integers up to 50, indefinite."""
+    for k in range(20):
+        r = np.random.default_rng([seed, k])
+        n, density = ((20, 1.0), (30, 0.6), (50, 0.5), (100, 0.25))[k % 4]
+        Q = np.triu(r.integers(-50, 51, (n, n)) * (r.random((n, n)) < density)).astype(float)
+        Q += np.triu(Q, 1).T
+        one = np.eye(n)
+        yield np.block([[Q, one], [-one, 0.0 * one]]), np.append(r.integers(-50, 51, n), np.ones(n))
+
+
+def collapse(seed: int) -> Iterator[Data]:
+    """Elastic, perfectly plastic trusses, loaded beyond what they can carry: multipliers of both yield limits."""
+    for k in range(30):
+        r = np.random.default_rng([seed, k])
+        bars = (6, 10, 16, 25)[k % 4]
+        B, E = r.standard_normal((bars // 2, bars)), np.diag(r.uniform(1.0, 3.0, bars))
+        load, limit = r.standard_normal(bars // 2), r.uniform(0.5, 1.5, bars)
+        elastic = E @ B.T @ np.linalg.inv(B @ E @ B.T)
+        S = E - elastic @ B @ E
+        # The largest multiple of the load with stresses in equilibrium within the limits.
+        program = linprog(np.append(np.zeros(bars), -1.0), A_eq=np.column_stack([B, -load]), b_eq=np.zeros(bars // 2),
+                          bounds=[*zip(-limit, limit), (0.0, None)])  # fmt: skip
+        N = np.column_stack([np.eye(bars), -np.eye(bars)])
+        factor = program.x[-1] * (1.02, 1.5)[k % 2]
+        yield N.T @ S @ N, np.append(limit, limit) - N.T @ (elastic @ load) * factor
+
+
+def time_step(bodies: Bodies, contacts: list[Contact], mu: float) -> tuple[Array, Array, Array]:
+    """Stewart and Trinkle's matrix, J and 1 / mass."""
+    inverse = np.concatenate([[1.0 / m, 1.0 / m, 1.0 / i] for m, i, _, _ in bodies])
+    J = np.zeros((2 * len(contacts), inverse.size))
+    for c, (a, b, px, py, nx, ny) in enumerate(contacts):
+        for body, sign in ((a, 1.0), (b, -1.0)):
+            if body >= 0:
+                dx, dy = px - bodies[body][2], py - bodies[body][3]
+                part = slice(3 * body, 3 * body + 3)
+                J[2 * c, part] += sign * np.array([nx, ny, dx * ny - dy * nx])
+                J[2 * c + 1, part] += sign * np.array([-ny, nx, dx * nx + dy * ny])
+    W, one = (J * inverse) @ J.T, np.eye(len(contacts))
+    NN, NT, TN, TT = W[::2, ::2], W[::2, 1::2], W[1::2, ::2], W[1::2, 1::2]
+    zero = 0.0 * one
+    A = np.block([[NN, NT, -NT, zero], [TN, TT, -TT, one], [-TN, -TT, TT, one], [mu * one, -one, -one, zero]])
+    return A, J, inverse
+
+
+def contact(seed: int) -> Iterator[Data]:
+    """A time step of bodies piled at random, with friction, from small velocities."""
+    for k in range(100):
+        r = np.random.default_rng([seed, k])
+        number, mu = (3, 5, 10, 15)[k % 4], (0.3, 0.7, 1.5)[k % 3]
+        bodies = [(r.uniform(0.5, 2.0), r.uniform(0.05, 0.3), *r.uniform(0.0, 5.0, 2)) for _ in range(number)]
+        contacts = []
+        for a in range(number):
+            for b in (-1, int(r.integers(number))):
+                b = -1 if a == b else b
+                angle = r.uniform(0.3 * np.pi, 0.7 * np.pi) if b < 0 else r.uniform(0.0, 2.0 * np.pi)
+                n, reach = np.array([np.cos(angle), np.sin(angle)]), r.uniform(0.2, 0.6)
+                contacts.append((a, b, *(np.array(bodies[a][2:]) - reach * n), *n))
+        A, J, inverse = time_step(bodies, contacts, mu)
+        force = np.concatenate([[0.0, -9.81 * m, 0.0] for m, _, _, _ in bodies])
+        u = J @ (r.normal(0.0, 0.3, inverse.size) + 0.01 * inverse * force)
+        yield A, np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(len(contacts))])
+
+
+def unsolvable(seed: int) -> Iterator[Data]:
+    """Feasible, without a solution, n <= 12: two unknowns that have none beside others that do, in random order."""
+    r = np.random.default_rng(seed)
+    found: list[Data] = []
+    while len(found) < 50:
+        A, q = r.integers(-2, 3, (2, 2)).astype(float), r.integers(-2, 3, 2).astype(float)
+        feasible = linprog(np.zeros(2), A_ub=-A, b_ub=q).status == 0
+        if not feasible or lcp.solve_by_enumeration(lcp.LCP(A, q)).solvable:
+            continue
+        n = int(r.integers(3, 13))
+        G, order = r.standard_normal((n - 2, n - 2)), r.permutation(n)
+        whole = np.zeros((n, n))
+        whole[:2, :2], whole[2:, 2:] = A, G @ G.T / n + 0.5 * np.eye(n - 2)
+        found.append((whole[np.ix_(order, order)], np.append(q, r.standard_normal(n - 2))[order]))
+    yield from found
+
+
+def game(C: Array, D: Array) -> Data:
+    """The LCP of a game with these costs."""
+    m = len(C)
+    zero = np.zeros((m, m))
+    return np.block([[zero, C - C.min() + 1.0], [(D - D.min() + 1.0).T, zero]]), -np.ones(2 * m)
+
+
+def games(seed: int) -> Iterator[Data]:
+    """Seven kinds of games, n = 40, 100, 300: normal, 0-1, covariant, zero-sum, unit vectors, dual cyclic."""
+    for k in range(63):
+        r = np.random.default_rng([seed, k])
+        m, kind = (20, 50, 150)[k // 21], k % 7
+        X, Y = r.standard_normal((2, m, m))
+        if kind == 1:
+            X, Y = (X < 0.0).astype(float), (Y < 0.0).astype(float)
+        elif kind in (2, 3):
+            rho = (-0.9, 0.5)[kind - 2]
+            Y = rho * X + math.sqrt(1.0 - rho * rho) * Y
+        elif kind == 4:
+            Y = -X
+        elif kind == 5:
+            X, Y = np.zeros((m, m)), -r.random((m, m))
+            X[r.integers(0, m, m), np.arange(m)] = -1.0
+        elif kind == 6:
+            V = np.vander(np.linspace(-1.0, 1.0, 2 * m), m + 1, increasing=True)[:, 1:]
+            V = V - V.mean(axis=0)
+            X, Y = -V[m:], -V[:m][r.permutation(m)].T
+        yield game(X, Y)
+
+
+def planted(A: Array, r: np.random.Generator) -> Data:
+    """A q with a solution."""
+    n = A.shape[0]
+    x, w = r.uniform(0.1, 2.0, (2, n))
+    support = r.random(n) < 0.5
+    q: Array = np.where(support, 0.0, w) - A @ np.where(support, x, 0.0)
+    return A, q
+
+
+def nonmonotone_sparse(seed: int) -> Iterator[Data]:
+    """n = 200, one entry in twenty, normal, stored sparse."""
+    for k in range(5):
+        r = np.random.default_rng([seed, k])
+        yield planted(sp.random_array((200, 200), density=0.05, rng=r, data_sampler=r.standard_normal).tocsr(), r)
+
+
+def nonmonotone_dense(seed: int) -> Iterator[Data]:
+    """n = 200, normal."""
+    for k in range(5):
+        r = np.random.default_rng([seed, k])
+        yield planted(r.standard_normal((200, 200)), r)
+
+
+def monotone(seed: int) -> Iterator[Data]:
+    """n = 20 to 200: definite, not symmetric or symmetric, or of half the rank."""
+    for k in range(30):
+        r = np.random.default_rng([seed, k])
+        n = (20, 60, 200)[k % 3]
+        M, S = r.standard_normal((2, n, n))
+        A = M @ M.T / n + (S - S.T) / math.sqrt(n) if k % 2 else M[:, : n // 2] @ M[:, : n // 2].T / n
+        yield planted(A, r)
+
+
+def small(seed: int) -> Iterator[Data]:
+    """n = 1 to 8, integers."""
+    for k in range(200):
+        r = np.random.default_rng([seed, k])
+        n = int(r.integers(1, 9))
+        yield r.integers(-5, 6, (n, n)).astype(float), r.integers(-5, 6, n).astype(float)
+
+
+def grids(seed: int) -> Iterator[Data]:
+    """Membranes over an obstacle, 12 x 12 to 30 x 30 points, and strings, sparse."""
+    for k in range(12):
+        r = np.random.default_rng([seed, k])
+        m = (12, 20, 30)[k % 3]
+        line = sp.diags_array([-np.ones(m - 1), 2.0 * np.ones(m), -np.ones(m - 1)], offsets=[-1, 0, 1])
+        A = sp.kronsum(line, line, format="csr") if k % 2 else line.tocsr()
+        yield A, r.normal(0.0, 0.1, A.shape[0]) - A @ r.uniform(0.0, 1.0, A.shape[0])
+
+
+FAMILIES = (
+    box_qp, collapse, contact, unsolvable, games, nonmonotone_sparse, nonmonotone_dense, monotone, small, grids,
+)  # fmt: skip
+
+
+def stack(steps: int = 100) -> list[float]:
+    """Seconds for each step of 25 boxes on each other, n = 200, pushed by a growing force."""
+    boxes, h = 25, 0.01
+    bodies: Bodies = [(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(boxes)]
+    contacts = [(k, k - 1, side, float(k), 0.0, 1.0) for k in range(boxes) for side in (-0.5, 0.5)]
+    A, J, inverse = time_step(bodies, contacts, 0.5)
+    solver = lcp.Solver(A) if hasattr(lcp, "Solver") else None
+    v, active, taken, wrong = np.zeros(inverse.size), None, [], 0
+    for k in range(steps):
+        force = np.tile([0.2 * math.sin(k / 8.0), -9.81, 0.0], boxes)
+        force[-3] += 0.08 * k
+        free = v + h * inverse * force
+        u = J @ free
+        q = np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(len(contacts))])
+        began = time.process_time()
+        found = lcp.solve(lcp.LCP(A, q)) if solver is None else solver.solve(q, active=active)
+        taken.append(time.process_time() - began)
+        wrong += not found.solved
+        x = found.x
+        active = x
+        c = len(contacts)
+        impulse = np.empty(2 * c)
+        impulse[::2], impulse[1::2] = x[:c], x[c : 2 * c] - x[2 * c : 3 * c]
+        v = free + inverse * (J.T @ impulse)
+    print(f"stack, {steps} steps of n = {len(q)}: median {1e3 * np.median(taken):.2f} ms, largest "
+          f"{1e3 * max(taken):.2f} ms, not solved {wrong}", flush=True)  # fmt: skip
+    return taken
+
+
+def main() -> None:
+    """Run the families asked for."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("families", nargs="*", default=[])
+    parser.add_argument("--seed", type=int, default=2026)
+    parser.add_argument("--limit", type=float, default=10.0)
+    arguments = parser.parse_args()
+    lcp.solve(lcp.LCP(np.eye(2), -np.ones(2)))
+    for family in FAMILIES:
+        if arguments.families and family.__name__ not in arguments.families:
+            continue
+        name, taken, seen = family.__name__, [], Counter[str]()
+        for A, q in family(arguments.seed):
+            budget = Budget(steps=math.inf, seconds=arguments.limit)
+            began = time.process_time()
+            found = lcp.solve(lcp.LCP(A, q), budget=budget)
+            taken.append(time.process_time() - began)
+            seen[found.outcome.name] += 1
+        print(f"{name}: {dict(seen)}, median {np.median(taken):.4f} s, largest {max(taken):.3f} s", flush=True)
+    if not arguments.families or "stack" in arguments.families:
+        stack()
+
+
+if __name__ == "__main__":
+    main()

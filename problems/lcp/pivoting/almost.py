@@ -1,0 +1,122 @@
+"""Almost complementary paths: from basis to basis, each pivot's leaving variable followed by its complement."""
+
+from __future__ import annotations
+
+import time
+from enum import Enum
+
+import numpy as np
+from attrs import define, field
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.pivoting.dictionary import Dictionary
+
+REBUILT_AFTER = 100
+"""Pivots, and the order more, after which a table is computed afresh: that costs about as much as they did."""
+
+LOST = -1e-7
+"""A basic variable that is this negative once the table is exact, relative to the largest: the path was left."""
+
+
+class Ended(Enum):
+    """How a path ended."""
+
+    REACHED = "the basis is complementary"
+    RAY = "a variable grows without bound"
+    PIVOTS = "all pivots are used up"
+    TIME = "time is up"
+    LOST = "rounding has led off the path"
+
+
+@define(eq=False)
+class AlmostComplementary:
+    """A path through bases with one variable of each pair, but of one both or none; w_i is variable i, x_i is n + i.
+
+    Attributes
+    ----------
+    n : int
+        Of the pairs.
+    dictionaries : tuple of Dictionary
+        Of variables that do not meet: one, or two for a game.
+    entering : int
+        The variable that grows next.
+    stop : set of int
+        The path ends where one of these leaves the basis.
+    pivots : int
+        So far.
+    ended : Ended or None
+        Why it has ended, if it has.
+    """
+
+    n: int
+    dictionaries: tuple[Dictionary, ...]
+    entering: int
+    stop: frozenset[int]
+    pivots: int = 0
+    ended: Ended | None = None
+    _since: int = field(default=0, init=False)
+
+    def step(self) -> None:
+        """One pivot."""
+        now, column = next(
+            (one, column) for one in self.dictionaries if (column := one.column(self.entering)) is not None
+        )
+        row = now.first_zero(column, self.stop)
+        if row is None:
+            self.ended = Ended.RAY
+            return
+        self.left(now.pivot(row, column))
+        self._since += 1
+        if self._since >= REBUILT_AFTER + self.n:
+            self._since = 0
+            if not min(one.rebuilt() for one in self.dictionaries) >= LOST:
+                self.ended = Ended.LOST
+
+    def left(self, leaving: int) -> None:
+        """Go on from a variable that has left the basis: with its complement, unless the path ends with it.
+
+        Parameters
+        ----------
+        leaving : int
+        """
+        self.pivots += 1
+        if leaving in self.stop:
+            self.ended = Ended.REACHED
+        else:
+            self.entering = leaving + self.n if leaving < self.n else leaving - self.n
+
+    def run(self, most: int, seconds: float = np.inf) -> Ended:
+        """To the end, or until so many pivots, or seconds, are used up.
+
+        Parameters
+        ----------
+        most : int
+        seconds : float
+        """
+        end = time.perf_counter() + seconds
+        while self.ended is None:
+            if self.pivots >= most:
+                return Ended.PIVOTS
+            if time.perf_counter() > end:
+                return Ended.TIME
+            self.step()
+        return self.ended
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Which x_i are basic, shape (n,)."""
+        basic = np.concatenate([one.basic for one in self.dictionaries])
+        mask = np.zeros(self.n, dtype=bool)
+        mask[basic[(basic >= self.n) & (basic < 2 * self.n)] - self.n] = True
+        return mask
+
+    def ray(self) -> Array:
+        """How x changes along the ray on which the path ended, shape (n,)."""
+        direction = np.zeros(2 * self.n + 1)
+        for one in self.dictionaries:
+            column = one.column(self.entering)
+            if column is not None:
+                direction[one.basic] = one.table[:, column]
+        direction[self.entering] = 1.0
+        return direction[self.n : 2 * self.n]

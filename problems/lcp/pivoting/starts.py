@@ -1,0 +1,121 @@
+"""Where almost complementary paths of an LCP begin: on a ray, at the solution for another q, in a corner of a game."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import LCP
+from problems.lcp.pivoting.almost import LOST, AlmostComplementary, Ended
+from problems.lcp.pivoting.dictionary import Dictionary
+
+
+def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
+    """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from t = infinity, or from a solution at some t.
+
+    Parameters
+    ----------
+    problem : LCP
+        A sparse matrix is made dense.
+    d : ndarray, shape (n,)
+        Positive where the path begins on the ray t -> infinity.
+    active : ndarray of bool, shape (n,), optional
+        Where x may be positive at the t where it begins; nowhere by default.
+
+    Returns
+    -------
+    AlmostComplementary or None
+        None if the equations of the active set are singular, or its basis is no solution for any t.
+
+    References
+    ----------
+    Lemke, "Bimatrix equilibrium points and mathematical programming", Management Science 11, 1965; Cottle, Pang and
+    Stone, Algorithm 4.4.5, section 4.5 (parametric) and section 4.9 (lexicographic rule).
+    """
+    n = problem.n
+    t = 2 * n
+    dense = problem.A.toarray() if problem.sparse else problem.A
+    first = np.column_stack([dense, d, problem.q])
+    dictionary = Dictionary(first, np.arange(n), np.arange(n, 2 * n + 1))
+    if active is not None and active.any():
+        dictionary.basic = np.where(active, np.arange(n, 2 * n), np.arange(n))
+        dictionary.nonbasic = np.append(np.where(active, np.arange(n), np.arange(n, 2 * n)), t)
+        if np.isnan(dictionary.rebuilt()):
+            return None
+    column = dictionary.column(t)
+    assert column is not None
+    path = AlmostComplementary(n, (dictionary,), t, frozenset({t}))
+    constants = dictionary.table[:, -1]
+    if constants.min() >= 0.0:
+        path.ended = Ended.REACHED
+        return path
+    row = dictionary.last_zero(column)
+    if row is None:
+        return None
+    path.left(dictionary.pivot(row, column))
+    constants = dictionary.table[:, -1]
+    return path if constants.min() >= LOST * np.abs(constants).max() else None
+
+
+@frozen(eq=False)
+class Game:
+    """A bimatrix game as an LCP: ``A = [[0, C], [D', 0]]`` with positive costs C and D, and q < 0.
+
+    Attributes
+    ----------
+    problem : LCP
+    actions : int
+        Of the first player.
+    """
+
+    problem: LCP
+    actions: int
+
+    @classmethod
+    def of(cls, problem: LCP) -> Game | None:
+        """The game that a dense LCP is, or None.
+
+        Parameters
+        ----------
+        problem : LCP
+        """
+        A, n = problem.A, problem.n
+        if problem.sparse or n < 2 or not (problem.q < 0.0).all() or A[0, 0] != 0.0:
+            return None
+        m = int(np.argmax(A[0] != 0.0))
+        if m == 0 or A[:m, :m].any() or A[m:, m:].any() or not ((A[:m, m:] > 0.0).all() and (A[m:, :m] > 0.0).all()):
+            return None
+        return cls(problem, m)
+
+    def path(self, label: int) -> AlmostComplementary:
+        """The path of Lemke and Howson on which one label may be missing.
+
+        Parameters
+        ----------
+        label : int
+            An action, of either player: 0 to n - 1.
+
+        References
+        ----------
+        Lemke and Howson, "Equilibrium points of bimatrix games", SIAM J. Appl. Math. 12, 1964.
+        """
+        A, q, n, m = self.problem.A, self.problem.q, self.problem.n, self.actions
+        players = np.arange(m), np.arange(m, n)
+        if label >= m:
+            players = players[::-1]
+        own, other = players
+        # The first player's x makes the second one's w: one dictionary each.
+        tables = tuple(
+            Dictionary(np.column_stack([A[np.ix_(theirs, mine)], q[theirs]]), theirs, mine + n)
+            for mine, theirs in ((own, other), (other, own))
+        )
+        path = AlmostComplementary(n, tables, label + n, frozenset({label, label + n}))
+        for table in tables:
+            column = table.column(path.entering)
+            row = None if column is None else table.last_zero(column)
+            assert column is not None
+            assert row is not None  # costs are positive
+            path.left(table.pivot(row, column))
+        return path

@@ -1,0 +1,119 @@
+"""Pivoting as an attempt of `solve`: Lemke's method and that of Lemke and Howson, certified and limited in pivots."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from problems.lcp.active_set.face import Mask
+from problems.lcp.active_set.iteration import Policy
+from problems.lcp.data.problem import LCP, active_state
+from problems.lcp.pivoting.almost import AlmostComplementary, Ended
+from problems.lcp.pivoting.starts import Game, covering
+from problems.lcp.proof.farkas import infeasibility
+from problems.lcp.search.search import Search
+
+LARGEST = 1000
+"""A larger order is not pivoted: a table is n^2 numbers, and a pivot goes through all of them."""
+
+AT_ORDER = 10
+"""So many pivots times the order are done at most,"""
+
+WORK = 1_000_000
+"""and so many over the order, which is less from order 316 on: a second, where a path of order 1000 takes ten."""
+
+COVERINGS = 5
+"""Covering vectors that are tried on a quadratic program, with twice the pivots each,"""
+
+SPREAD = (-3.0, 0.0)
+"""and the decimal logarithms of their entries. On 40 indefinite box QPs (n = 40 to 200): 5 suffice, the first mostly,
+with 20 n pivots; with 10 n up to 6 are needed; entries from 0.1 to 3 need up to 51 with 10 n, 4 with 20 n."""
+
+LABELS = (0, -1)
+"""One of each player: where a path from one is long those from the others are (covariant games of order 300)."""
+
+AT_END = Policy(steps=2)
+"""Corrections of the active set of the last basis, which is right but for rounding."""
+
+
+def most_pivots(n: int) -> int:
+    """How many pivots are worth their time before a path.
+
+    Parameters
+    ----------
+    n : int
+    """
+    return min(AT_ORDER * n, WORK // n)
+
+
+def by_lemke(search: Search, seed: int) -> bool:
+    """Lemke's method; whether it led to a solution, or its ray to a proof that there is none.
+
+    Parameters
+    ----------
+    search : Search
+        Takes up what is found.
+    seed : int
+        Of covering vectors.
+    """
+    problem = search.problem
+    assert isinstance(problem, LCP)
+    most = most_pivots(problem.n)
+    bounds = constraints(problem)
+    if bounds.any():
+        random = np.random.default_rng(seed)
+        for _ in range(COVERINGS):
+            path = covering(problem, np.where(bounds, 0.0, 10.0 ** random.uniform(*SPREAD, problem.n)))
+            if path is not None and _reached(search, path, path.run(2 * most, search.seconds_left)):
+                return True
+    path = covering(problem, np.ones(problem.n))
+    if path is None:
+        return False
+    ended = path.run(most, search.seconds_left)
+    if ended is Ended.RAY:
+        search.proof = infeasibility(problem, guess=path.ray())
+        return search.proof is not None
+    return _reached(search, path, ended)
+
+
+def constraints(problem: LCP) -> Mask:
+    """The rows b - B x >= 0, b >= 0, of a quadratic program's optimality conditions: those without a share of t.
+
+    ``A = [[Q, B'], [-B, 0]]`` but for units and order. With t in the rows of Q alone LCP(q + t d, A) is the program
+    with the cost c + t d. For large t, and bounded x, its only stationary point is x = 0: no other ray comes back.
+
+    Parameters
+    ----------
+    problem : LCP
+
+    References
+    ----------
+    Eaves, "On quadratic programming", Management Science 17, 1971.
+    """
+    dense = problem.A.toarray() if problem.sparse else problem.A
+    signs = np.sign(dense)
+    rows = (problem.q >= 0.0) & (signs == -signs.T).all(axis=1) & signs.any(axis=1)
+    none: Mask = np.zeros(problem.n, dtype=bool)
+    return rows if not dense[np.ix_(rows, rows)].any() else none
+
+
+def by_lemke_howson(search: Search) -> bool:
+    """The method of Lemke and Howson from `LABELS`; whether it led to a solution.
+
+    Parameters
+    ----------
+    search : Search
+        Takes up what is found.
+    """
+    assert isinstance(search.problem, LCP)
+    game = Game.of(search.problem)
+    if game is None:
+        return False
+    for label in LABELS:
+        path = game.path(label % search.problem.n)
+        if _reached(search, path, path.run(AT_ORDER * search.problem.n, search.seconds_left)):
+            return True
+    return False
+
+
+def _reached(search: Search, path: AlmostComplementary, ended: Ended) -> bool:
+    return ended is Ended.REACHED and search.settle(active_state(path.active), AT_END)

@@ -1,0 +1,162 @@
+"""`Solver`: LCP(q, A) for one A and many q, as in time stepping; what was found for one q is where the next begins."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from attrs import define, field
+
+from continuation.arrays import Array, Matrix
+from continuation.budget import Budget
+from problems.lcp.active_set.face import Face, Faces, Mask
+from problems.lcp.active_set.finish import PATIENCE, Finish
+from problems.lcp.active_set.iteration import Policy
+from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.data.problem import BETWEEN, LCP, active_state
+from problems.lcp.data.scaling import SMALLEST, Scaled, balanced
+from problems.lcp.pivoting.almost import Ended
+from problems.lcp.pivoting.starts import covering
+from problems.lcp.search.judging import answer, unscaled
+from problems.lcp.search.outcome import Solution
+from problems.lcp.search.pivots import AT_END, LARGEST, most_pivots
+from problems.lcp.search.search import Search
+from problems.lcp.search.solver import solve
+
+WARM = Policy(steps=10, patience=PATIENCE)
+"""Corrections of the active set of the problem before, each mostly with factors that are there."""
+
+
+def _checked(A: Any) -> Matrix:
+    """The matrix as an LCP holds it."""
+    return LCP(A, np.zeros(np.shape(A)[0] if np.ndim(A) else 0)).A
+
+
+@define(eq=False)
+class Solver:
+    """Solves LCP(q, A) for one matrix and one q after another.
+
+    Each q is tried first on the active set given, or on that of the q before, and a few corrections of it; then along
+    the piecewise linear path from the q before to this one, by pivots; then by `solve`. Factors of the last active
+    sets, and the scaling of A, are kept. Every answer is certified as that of `solve` is.
+
+    Parameters
+    ----------
+    A : array_like or scipy sparse, shape (n, n)
+    tolerance : float, default 1e-10
+        As for `solve`.
+
+    Raises
+    ------
+    ValueError
+        If A is not a finite square matrix.
+
+    References
+    ----------
+    Cottle, Pang and Stone, section 4.5 (the parametric problem LCP(q + t d, A)).
+    """
+
+    A: Matrix = field(converter=_checked)
+    tolerance: float = 1e-10
+    _scaled: Scaled | None = field(default=None, init=False)
+    _first: LCP | None = field(default=None, init=False)
+    _structure: Structure | None = field(default=None, init=False)
+    _kept: dict[bytes, Face] = field(factory=dict, init=False)
+    _active: Mask | None = field(default=None, init=False)
+    _basis: Mask | None = field(default=None, init=False)
+    _solved: Array | None = field(default=None, init=False)
+
+    def solve(self, q: Any, active: Any = None, **options: Any) -> Solution:
+        """Solve LCP(q, A).
+
+        Parameters
+        ----------
+        q : array_like, shape (n,)
+        active : array_like, shape (n,), optional
+            Where x may be positive: booleans, or a solution nearby, whose zeros are zeros. That of the q before by
+            default.
+        **options
+            As for `solve`, if it comes to that.
+
+        Returns
+        -------
+        Solution
+
+        Raises
+        ------
+        ValueError
+            For bad input, naming the argument.
+        """
+        problem = LCP(self.A, q) if self._first is None else self._first.with_q(q)
+        guess = self._active if active is None else _mask(active, problem.n)
+        with np.errstate(all="ignore"):
+            found = None if problem.n == 0 else self._nearby(problem, guess)
+        if found is None:
+            found = solve(problem, tolerance=self.tolerance, **options)
+            if found.solved and found.x is not None:
+                self._active = found.x > 0.0
+        return found
+
+    def _nearby(self, problem: LCP, guess: Mask | None) -> Solution | None:
+        """The certified solution from an active set, or by pivots; None without one."""
+        if self._structure is None:
+            self._learn(problem)
+        assert self._structure is not None
+        scaled, current = self._scaled, problem
+        if scaled is not None:
+            moved = np.ldexp(problem.q, scaled.rows)
+            if not np.isfinite(moved).all() or (np.frexp(moved)[1][problem.q != 0.0] <= SMALLEST).any():
+                return None
+            current = self._scaled_lcp().with_q(moved)
+        finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
+        search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf), None, False, {})
+        message = "Solved by the active set of a problem nearby, corrected."
+        if not search.settle(active_state(current.q < 0.0 if guess is None else guess), WARM):
+            if not self._pivoted(search):
+                return None
+            message = "Solved by pivots along a path from a problem nearby."
+        found = answer(search, message)
+        found = found if scaled is None else unscaled(problem, scaled, found, self.tolerance)
+        if not found.solved:
+            return None
+        assert finish.tried.last is not None
+        self._active = finish.tried.last == BETWEEN
+        return found
+
+    def _scaled_lcp(self) -> LCP:
+        assert self._structure is not None
+        assert isinstance(self._structure.problem, LCP)
+        return self._structure.problem
+
+    def _pivoted(self, search: Search) -> bool:
+        """Follow LCP(q + t (q before - q), A) from t = 1 to 0, else Lemke's path; whether that led to a solution."""
+        problem = search.problem
+        assert isinstance(problem, LCP)
+        if problem.n > LARGEST:
+            return False
+        begins: list[tuple[Array, Mask | None]] = [(np.ones(problem.n), None)]
+        if self._solved is not None:
+            begins.insert(0, (self._solved - problem.q, self._basis))
+        for d, basis in begins:
+            path = covering(problem, d, basis)
+            if path is not None and path.run(most_pivots(problem.n)) is Ended.REACHED:
+                self._basis, self._solved = path.active, problem.q
+                if search.settle(active_state(path.active), AT_END):
+                    return True
+        return False
+
+    def _learn(self, problem: LCP) -> None:
+        """Scale A, in the units in which the first q is about 1."""
+        self._first, scaled = problem, balanced(problem)
+        self._scaled = scaled if scaled is not None and scaled.exact else None
+        self._structure = Structure(problem if self._scaled is None else self._scaled.problem)
+
+
+def _mask(active: Any, n: int) -> Mask:
+    """Where x may be positive."""
+    given = np.asarray(active)
+    if given.shape != (n,) or given.dtype.kind not in "biuf":
+        raise ValueError(f"active: expected {n} booleans or numbers, found shape {given.shape} of dtype {given.dtype}")
+    mask: Mask = given if given.dtype == bool else given > 0.0
+    return mask

@@ -1,0 +1,156 @@
+"""Pivoting: paths from basis to basis against an independent Lemke, against closed forms, and through ties."""
+
+import numpy as np
+import pytest
+
+from problems import lcp
+from problems.lcp import LCP
+from problems.lcp.pivoting.almost import Ended
+from problems.lcp.pivoting.dictionary import Dictionary
+from problems.lcp.pivoting.starts import Game, covering
+from problems.lcp.reference.lemke import lemke
+from problems.lcp.search.pivots import constraints
+
+
+def on_face(problem, active):
+    """The point with w = 0 on the active set and x = 0 off it."""
+    x = np.zeros(problem.n)
+    inside = np.flatnonzero(active)
+    x[inside] = np.linalg.solve(problem.A[np.ix_(inside, inside)], -problem.q[inside])
+    return x
+
+
+def random_problem(k):
+    """Normal data, or small integers, which make ties; nonnegative or semidefinite, where no ray is."""
+    r = np.random.default_rng([26, k])
+    n = int(r.integers(1, 9))
+    A = r.standard_normal((n, n)) if k % 4 == 0 else r.integers(-3, 4, (n, n)).astype(float)
+    if k % 4 == 2:
+        A = A @ A.T + np.eye(n)
+    elif k % 4 == 3:
+        A = np.abs(A) + np.eye(n)
+    return LCP(A, r.standard_normal(n) if k % 4 == 0 else r.integers(-3, 3, n).astype(float))
+
+
+def test_the_same_pivots_as_another_lemke():
+    solved = 0
+    for k in range(400):
+        problem = random_problem(k)
+        path = covering(problem, np.ones(problem.n))
+        ended, expected = path.run(1000), lemke(problem)
+        assert (ended is Ended.REACHED) == expected.solved
+        assert path.pivots == expected.iterations
+        if ended is Ended.REACHED:
+            solved += 1
+            assert problem.natural_residual(on_face(problem, path.active)) < 1e-9
+        else:
+            assert ended is Ended.RAY
+    assert solved > 200
+
+
+@pytest.mark.parametrize("n", range(2, 9))
+def test_murty_s_path_has_all_its_kinks(n):
+    A = np.eye(n) + np.tril(np.full((n, n), 2.0), -1)
+    q = -np.cumsum(2.0 ** np.arange(n - 1, -1, -1))
+    path = covering(LCP(A, q), np.ones(n))
+    assert path.run(5000) is Ended.REACHED
+    # A pivot at each of the 2^n - 1 kinks, and one where t leaves.
+    assert path.pivots == 2**n
+
+
+def test_a_rebuilt_table_is_the_pivoted_one():
+    r = np.random.default_rng(1)
+    problem = LCP(r.standard_normal((12, 12)), r.standard_normal(12))
+    path = covering(problem, np.ones(12))
+    for _ in range(7):
+        path.step()
+    (dictionary,) = path.dictionaries
+    rows, columns, table = dictionary.basic.copy(), dictionary.nonbasic.copy(), dictionary.table.copy()
+    assert dictionary.rebuilt() > -1e-10
+    again = dictionary.table[np.argsort(dictionary.basic)]
+    order = np.append(np.argsort(dictionary.nonbasic), 13)
+    expected = table[np.argsort(rows)][:, np.append(np.argsort(columns), 13)]
+    np.testing.assert_allclose(again[:, order], expected, rtol=1e-9, atol=1e-9)
+
+
+def test_a_singular_basis_is_noticed():
+    dictionary = Dictionary(np.array([[1.0, 1.0, 1.0], [1.0, 1.0, 2.0]]), np.arange(2), np.arange(2, 4))
+    dictionary.basic, dictionary.nonbasic = np.array([2, 3]), np.array([0, 1])
+    assert np.isnan(dictionary.rebuilt())
+
+
+def test_from_the_solution_for_another_q():
+    r = np.random.default_rng(5)
+    M = r.standard_normal((30, 30))
+    A = M @ M.T / 30 + 0.1 * np.eye(30)
+    before, now = r.standard_normal((2, 30))
+    active = lcp.solve(LCP(A, before)).x > 0.0
+    path = covering(LCP(A, now), before - now, active)
+    assert path.run(200) is Ended.REACHED
+    assert LCP(A, now).natural_residual(on_face(LCP(A, now), path.active)) < 1e-12
+    # Where nothing changes there is nothing to do; from what is no solution there is no path.
+    assert covering(LCP(A, before), np.zeros(30), active).ended is Ended.REACHED
+    assert covering(LCP(A, now), before - now, ~active) is None
+
+
+def test_all_pivots_are_counted_and_limited():
+    problem = LCP(np.eye(4), -np.ones(4))
+    path = covering(problem, np.array([1.0, 2.0, 3.0, 4.0]))
+    assert path.run(2) is Ended.PIVOTS
+    assert path.pivots == 2
+    assert path.run(100, seconds=-1.0) is Ended.TIME
+    assert path.run(100) is Ended.REACHED
+
+
+def test_lemke_and_howson_from_every_label():
+    # Bach and Stravinsky: two pure equilibria and a mixed one.
+    C, D = 3.0 - np.array([[2.0, 0.0], [0.0, 1.0]]), 3.0 - np.array([[1.0, 0.0], [0.0, 2.0]])
+    problem = LCP(np.block([[np.zeros((2, 2)), C], [D.T, np.zeros((2, 2))]]), -np.ones(4))
+    game = Game.of(problem)
+    assert game.actions == 2
+    ends = set()
+    for label in range(4):
+        path = game.path(label)
+        assert path.run(50) is Ended.REACHED
+        assert problem.natural_residual(on_face(problem, path.active)) < 1e-14
+        ends.add(tuple(path.active))
+    assert ends == {(True, False, True, False), (False, True, False, True)}
+
+
+def test_what_is_no_game():
+    assert Game.of(LCP(np.eye(2), -np.ones(2))) is None
+    assert Game.of(LCP([[0.0, 1.0], [1.0, 0.0]], [-1.0, 1.0])) is None
+    assert Game.of(LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])) is None
+    assert Game.of(LCP(np.zeros((2, 2)), [-1.0, -1.0])) is None
+
+
+def test_a_bounded_program_has_no_other_ray():
+    r = np.random.default_rng(8)
+    n = 12
+    Q = r.integers(-50, 51, (n, n)).astype(float)
+    Q = Q + Q.T
+    np.fill_diagonal(Q, -7.0)
+    A = np.block([[Q, np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
+    problem = LCP(A, np.append(r.integers(-50, 51, n), np.ones(n)))
+    bounds = constraints(problem)
+    np.testing.assert_array_equal(bounds, np.arange(2 * n) >= n)
+    for _ in range(20):
+        d = np.where(bounds, 0.0, 10.0 ** r.uniform(-3.0, 0.0, 2 * n))
+        assert covering(problem, d).run(2000) is Ended.REACHED
+    assert covering(problem, np.ones(2 * n)).run(2000) is Ended.RAY
+    found = lcp.solve(problem)
+    assert found.solved
+    assert "Lemke" in found.message
+
+
+def test_the_ray_of_a_semidefinite_matrix_proves_that_nothing_is_feasible():
+    r = np.random.default_rng(4)
+    y = r.uniform(0.5, 1.5, 20)
+    basis = np.linalg.qr(np.column_stack([y, r.standard_normal((20, 19))]))[0][:, 1:]
+    A = basis @ np.diag(r.uniform(0.5, 2.0, 19)) @ basis.T
+    q = r.standard_normal(20)
+    q -= y * (q @ y + 1.0) / (y @ y)
+    found = lcp.solve(LCP((A + A.T) / 2.0, q))
+    assert found.outcome is lcp.Outcome.INFEASIBLE_TO_PRECISION
+    assert "Lemke" in found.message
+    np.testing.assert_allclose(found.float_farkas.y, y / y.max(), rtol=1e-9)

@@ -1,0 +1,113 @@
+"""`Solver`: one matrix and many q, each begun from what is known."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from problems import lcp
+from problems.lcp.active_set.face import KEPT, Faces
+
+
+def definite(n, seed):
+    r = np.random.default_rng(seed)
+    M, S = r.standard_normal((2, n, n))
+    return M @ M.T / n + 0.1 * np.eye(n) + (S - S.T) / n, r
+
+
+@pytest.mark.parametrize("units", [1.0, 1e-7])
+@pytest.mark.parametrize("make", [np.asarray, sp.csr_array])
+def test_the_answers_are_those_of_solve(make, units):
+    A, r = definite(40, 1)
+    solver = lcp.Solver(make(units * A))
+    q, drift = r.standard_normal((2, 40))
+    for k in range(10):
+        found = solver.solve(units * (q + 0.05 * k * drift))
+        assert found.solved
+        np.testing.assert_allclose(found.x, lcp.solve(lcp.LCP(A, q + 0.05 * k * drift)).x, rtol=1e-9, atol=1e-12)
+        np.testing.assert_array_equal(found.problem.q, units * (q + 0.05 * k * drift))
+
+
+def test_factors_are_kept(monkeypatch):
+    made = []
+    monkeypatch.setattr(Faces, "_made", lambda *a, real=Faces._made: made.append(1) or real(*a))
+    A, r = definite(30, 2)
+    q = r.standard_normal(30)
+    solver = lcp.Solver(A)
+    solver.solve(q)
+    made.clear()
+    assert solver.solve(q * 1.001).solved
+    assert not made
+    for k in range(3 * KEPT):
+        solver.solve(r.standard_normal(30) + k)
+    assert len(solver._kept) <= KEPT
+
+
+def test_a_solution_with_zeros_is_a_start():
+    A, r = definite(30, 3)
+    q = r.standard_normal(30)
+    x = lcp.solve(lcp.LCP(A, q)).x
+    assert (x == 0.0).any()
+    for active in (x, x > 0.0, (x > 0.0).tolist()):
+        found = lcp.Solver(A).solve(q, active=active)
+        assert found.counts.factorizations == 1
+        np.testing.assert_allclose(found.x, x, rtol=1e-12)
+    assert lcp.solve(lcp.LCP(A, q), x0=x).counts.factorizations == 1
+
+
+def test_pivots_where_active_sets_cycle():
+    # Frictional contact of a block that begins to slide: active sets of such matrices are mostly singular.
+    W = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, -1.0, 1.0], [0.0, -1.0, 1.0, 1.0], [0.5, -1.0, -1.0, 0.0]])
+    A = np.kron(np.eye(3), W)
+    solver = lcp.Solver(A)
+    for k in range(8):
+        q = np.concatenate([[-0.1, 0.02 * k + 0.01 * j, -0.02 * k - 0.01 * j, 0.0] for j in range(3)])
+        found = solver.solve(q)
+        assert found.outcome is lcp.Outcome.SOLVED
+        # The normal force is 0.1, the tangential one 0.02 k + 0.01 j up to the limit of friction.
+        np.testing.assert_allclose(found.x.reshape(3, 4)[:, 0], 0.1)
+        tangential = found.x.reshape(3, 4)[:, 2] - found.x.reshape(3, 4)[:, 1]
+        np.testing.assert_allclose(tangential, np.minimum(0.02 * k + 0.01 * np.arange(3), 0.05), atol=1e-15)
+
+
+def test_what_is_unsolvable_is_said_so():
+    solver = lcp.Solver([[0.0, 1.0], [-1.0, 0.0]])
+    assert solver.solve([1.0, 1.0]).solved
+    assert solver.solve([-1.0, -1.0]).outcome is lcp.Outcome.UNSOLVABLE
+    assert solver.solve([-1.0, 1.0]).solved
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        (lambda: lcp.Solver([[1.0, 2.0]]), "A"),
+        (lambda: lcp.Solver([[np.nan]]), "A"),
+        (lambda: lcp.Solver(np.eye(2)).solve([1.0]), "q"),
+        (lambda: lcp.Solver(np.eye(2)).solve([-1.0, 1.0], active=[True]), "active"),
+    ],
+)
+def test_bad_input_is_refused_by_name(call, name):
+    with pytest.raises(ValueError, match=name):
+        call()
+
+
+def test_a_problem_without_unknowns():
+    nothing = lcp.LCP(np.zeros((0, 0)), [])
+    found = lcp.solve(nothing)
+    assert found.outcome is lcp.Outcome.SOLVED
+    assert found.x.shape == (0,)
+    assert found.residual == 0.0
+    assert nothing.natural_residual(np.zeros(0)) == 0.0
+    assert lcp.Solver(np.zeros((0, 0))).solve([]).solved
+    assert lcp.solve(lcp.LCP(sp.csr_array((0, 0)), np.zeros(0))).solved
+    with pytest.raises(ValueError, match="A: expected a square matrix"):
+        lcp.LCP([], [])
+    with pytest.raises(ValueError, match="archive"):
+        lcp.solve(nothing, archive="nothing.h5")
+
+
+def test_nothing_is_printed_where_a_sparse_face_is_singular(capfd):
+    r = np.random.default_rng(7)
+    A = sp.random_array((60, 60), density=0.03, rng=r, data_sampler=r.standard_normal).tocsr()
+    for _ in range(5):
+        lcp.solve(lcp.LCP(A, r.standard_normal(60)), restarts=0)
+    assert capfd.readouterr() == ("", "")
