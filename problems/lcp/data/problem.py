@@ -232,11 +232,11 @@ class MixedLCP:
         return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
 
     @cached_property
-    def row_units(self) -> NDArray[np.int64]:
-        """The exponents of two by which its rows are balanced (`data.scaling.units`): every certificate may ask."""
+    def balance(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The exponents of two by which rows and columns are balanced (`data.scaling`): every certificate may ask."""
         from problems.lcp.data.scaling import units
 
-        return units(self)[0]
+        return units(self)
 
     def relative_residual(self, x: Array) -> float:
         """The natural residual divided by `scale`.
@@ -310,8 +310,8 @@ class LCP(MixedLCP):
         q : array_like, shape (n,)
         """
         other = LCP(self.A, q)
-        for known in ("_norm", "row_units"):
-            object.__setattr__(other, known, getattr(self, known))
+        object.__setattr__(other, "_norm", self._norm)
+        object.__setattr__(other, "balance", self.balance)
         return other
 
 

@@ -89,17 +89,22 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     """
     if not problem.standard and _level(problem):
         return None
-    rows, columns = units(problem)
+    rows, columns = problem.balance
     if not rows.any() and not columns.any():
         return None
     A, q = _scaled(problem.A, rows, columns), _times(problem.q, rows)
-    exact = _smallest(problem, rows, columns) > SMALLEST
+    scaled: MixedLCP
     if problem.standard:
-        return Scaled(LCP(A, q), rows, columns, exact)
-    bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
-    kept = all(np.array_equal(_times(new, columns), old) for new, old in zip(bounds, (problem.lower, problem.upper)))
-    # One bound that vanishes or overflows would change the problem: rather unscaled than another one.
-    return Scaled(MixedLCP(A, q, *bounds), rows, columns, exact) if kept else None
+        scaled = LCP(A, q)
+    else:
+        bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
+        ends = zip(bounds, (problem.lower, problem.upper))
+        if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
+            return None  # a bound that vanishes or overflows would make another problem
+        scaled = MixedLCP(A, q, *bounds)
+    # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
+    object.__setattr__(scaled, "balance", (np.zeros_like(rows), np.zeros_like(columns)))
+    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
 def _level(problem: MixedLCP) -> bool:

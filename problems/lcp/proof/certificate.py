@@ -185,7 +185,7 @@ def _drowned(problem: MixedLCP, terms: Terms, off: Array) -> float:
         asked = (off > 0.0) & (off * terms.size > DROWNED * np.abs(np.ldexp(problem.q, -terms.exponents)))
     if not asked.any():
         return 0.0
-    rows = problem.row_units
+    rows, _ = problem.balance
     with np.errstate(over="ignore", under="ignore"):
         largest = float(np.ldexp(np.abs(problem.q), rows).max())
         worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())
