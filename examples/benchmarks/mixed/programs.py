@@ -154,8 +154,9 @@ def draw(points, file):
         ax.set_xlabel("seconds")
     for ax in axes[:, 0]:
         ax.set_ylabel("natural residual")
-    axes[0, 0].legend(fontsize=8)
-    figure.tight_layout()
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncols=len(labels), fontsize=9)
+    figure.tight_layout(rect=(0.0, 0.05, 1.0, 1.0))
     figure.savefig(file, dpi=110)
 
 
