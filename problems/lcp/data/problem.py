@@ -74,6 +74,8 @@ class MixedLCP:
     q: Array = field(converter=_q)
     lower: Array = field(default=None)
     upper: Array = field(default=None)
+    known: dict[str, Any] = field(factory=dict, init=False, repr=False)
+    """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
 
     @q.validator
     def _same_order(self, attribute: Attribute[Any], q: Array) -> None:
@@ -231,13 +233,6 @@ class MixedLCP:
         """|A|_inf: asked for with every point that is judged."""
         return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
 
-    @cached_property
-    def balance(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The exponents of two by which rows and columns are balanced (`data.scaling`): every certificate may ask."""
-        from problems.lcp.data.scaling import units
-
-        return units(self)
-
     def relative_residual(self, x: Array) -> float:
         """The natural residual divided by `scale`.
 
@@ -310,8 +305,7 @@ class LCP(MixedLCP):
         q : array_like, shape (n,)
         """
         other = LCP(self.A, q)
-        object.__setattr__(other, "_norm", self._norm)
-        object.__setattr__(other, "balance", self.balance)
+        other.known.update(self.known)
         return other
 
 

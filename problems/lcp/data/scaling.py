@@ -89,7 +89,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     """
     if not problem.standard and _level(problem):
         return None
-    rows, columns = problem.balance
+    rows, columns = units(problem)
     if not rows.any() and not columns.any():
         return None
     A, q = _scaled(problem.A, rows, columns), _times(problem.q, rows)
@@ -103,7 +103,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
             return None  # a bound that vanishes or overflows would make another problem
         scaled = MixedLCP(A, q, *bounds)
     # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
-    object.__setattr__(scaled, "balance", (np.zeros_like(rows), np.zeros_like(columns)))
+    scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
@@ -124,11 +124,18 @@ def extreme(problem: MixedLCP) -> bool:
 
 
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
-    """The exponents of two for the rows of [A, q] and the columns of A.
+    """The exponents of two for the rows of [A, q] and the columns of A; found once for a problem.
 
     Units of the given problem that are powers of two come out again, exactly: nothing is rounded but differences that
     they do not change. Row i and column i are rounded together, so that what is symmetric up to units becomes so.
     """
+    if "units" not in problem.known:
+        problem.known["units"] = _units(problem)
+    found: tuple[Exponents, Exponents] = problem.known["units"]
+    return found
+
+
+def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     logs, counts = _logarithms(problem.A)
     r, c = _equilibrated(logs, *_least_squares(logs, counts))
     # Negligible or not, an entry ties its row to its column: what is free is free of all of them.

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
+from problems.lcp.data.scaling import units
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
@@ -185,7 +186,7 @@ def _drowned(problem: MixedLCP, terms: Terms, off: Array) -> float:
         asked = (off > 0.0) & (off * terms.size > DROWNED * np.abs(np.ldexp(problem.q, -terms.exponents)))
     if not asked.any():
         return 0.0
-    rows, _ = problem.balance
+    rows, _ = units(problem)
     with np.errstate(over="ignore", under="ignore"):
         largest = float(np.ldexp(np.abs(problem.q), rows).max())
         worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())

@@ -24,8 +24,9 @@ from problems.lcp.search.pivots import AT_END, LARGEST, most_pivots
 from problems.lcp.search.search import Search
 from problems.lcp.search.solver import solve
 
-WARM = Policy(steps=10, patience=PATIENCE)
-"""Corrections of the active set of the problem before, each mostly with factors that are there."""
+WARM = Policy(steps=4, patience=PATIENCE)
+"""Corrections of the active set of the problem before. On a stack of boxes (n = 200, 100 steps) the slowest step takes
+30 ms with 10 of them, 10 to 13 ms with 4 or fewer, after which pivots are quicker."""
 
 
 def _checked(A: Any) -> Matrix:
