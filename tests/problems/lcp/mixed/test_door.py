@@ -1,5 +1,6 @@
 """What comes through the door of `MixedLCP`, `from_qp` and the readers: sound, or refused with the index."""
 
+import importlib.util
 import json
 
 import h5py
@@ -10,6 +11,7 @@ import scipy.sparse as sp
 from hypothesis import find, given
 from hypothesis import strategies as st
 
+from continuation.cli import main
 from problems import lcp
 from problems.lcp.data.files import InputError, read_problem, read_program
 from problems.lcp.mixed_strategies import planted_mixed_lcps
@@ -140,3 +142,21 @@ def test_planted_solutions_solve(planted):
 def test_problems_of_every_kind_of_bound_are_drawn():
     found = find(st.from_type(lcp.MixedLCP), lambda p: p.fixed.any() and np.isinf(p.lower).any() and p.n == 2)
     assert found.n == 2
+
+
+def test_the_shell_solves_bounds_and_programs(tmp_path, capsys):
+    bounds = {"A": [[2, 1], [1, 2]], "q": [-5, -6], "lower": [0, None], "upper": [1, None]}
+    (tmp_path / "bounds.json").write_text(json.dumps(bounds))
+    assert main(["solve", str(tmp_path / "bounds.json"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["x"] == pytest.approx([1.0, 2.5], rel=1e-15)
+    program = {"P": [[2, 0], [0, 2]], "c": [-2, -6], "G": [[1, 1]], "h": [2], "lower": [0, 0]}
+    (tmp_path / "program.json").write_text(json.dumps(program))
+    assert main(["solve", str(tmp_path / "program.json"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert (said["objective"], said["named"]["rows"]) == (-8.0, [-2.0])
+    assert main(["solve", str(tmp_path / "program.json")]) == 0
+    assert "objective  -8" in capsys.readouterr().out
+    (tmp_path / "model.mps").write_text("NAME")
+    if importlib.util.find_spec("highspy") is None:
+        assert main(["solve", str(tmp_path / "model.mps")]) == 2
+        assert "expected highspy for this format" in capsys.readouterr().err

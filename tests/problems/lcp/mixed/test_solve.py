@@ -1,5 +1,8 @@
 """Problems with bounds against enumeration, closed forms and other software; what is claimed is true."""
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -12,25 +15,8 @@ from problems.lcp.mixed_strategies import mixed_lcps, planted_mixed_lcps, progra
 from problems.lcp.proof.farkas import farkas
 from problems.lcp.reference.enumeration import exhaust
 
-
-def random_problem(rng):
-    """Integers, n <= 6, bounds of all kinds mixed; singular and infeasible problems among them."""
-    n = int(rng.integers(1, 7))
-    A, q = rng.integers(-3, 4, (n, n)).astype(float), rng.integers(-4, 5, n).astype(float)
-    change = rng.random(4) < 0.3
-    if change[0]:
-        A[rng.integers(n)] = A[rng.integers(n)]
-    if change[1]:
-        A[:, rng.integers(n)] = 0.0
-    if change[2]:
-        A = A + A.T
-    if change[3]:
-        A = A @ A.T
-    kind = rng.integers(0, 6, n)  # lower, box, upper, free, lower, fixed
-    lower = np.where(np.isin(kind, [0, 1, 4, 5]), rng.integers(-2, 3, n), -np.inf)
-    width = np.where(kind == 5, 0, rng.integers(0, 4, n))
-    upper = np.where(np.isin(kind, [1, 5]), lower + width, np.where(kind == 2, rng.integers(-2, 3, n), np.inf))
-    return lcp.MixedLCP(A, q, lower, upper)
+BENCHMARK = Path(__file__).parents[4] / "examples" / "benchmarks" / "mixed" / "pieces.py"
+random_problem = runpy.run_path(str(BENCHMARK))["random_problem"]
 
 
 def test_no_outcome_is_false_where_all_pieces_are_tried():
