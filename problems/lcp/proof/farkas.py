@@ -171,10 +171,9 @@ def infeasibility(
     rows, columns = scales(system)
     matrix, vector = scaled_data(system, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    if guess is None:
-        guess = _linear_program(matrix, vector, seconds)
-    else:
+    if guess is not None:
         guess = guess * rows / max(float((guess * rows).max()), np.finfo(float).tiny)
+    guess = _linear_program(matrix, vector, seconds) if guess is None else guess
     if guess is None or not float(vector @ guess) < 0.0 or float((matrix.T @ guess).max()) > _NEARLY_TIGHT:
         return None
     proof = _exact(problem, system, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)

@@ -198,7 +198,8 @@ def _at(found: Solution, x: Array, tolerance: float) -> Solution:
         return evolve(found, certificate=certificate)
     if not bad.any() and (x > 0.0).any() and float(x[x > 0.0].min()) > np.finfo(float).tiny:
         off = math.nan if certificate is None else certificate.relative_residual
-        message = f"{Outcome.NOT_FOUND} In the units given the point misses the tolerance, by {off:.1e}."
+        why = "q drowns in the rounding of x" if off <= tolerance else f"the point misses the tolerance, by {off:.1e}"
+        message = f"{Outcome.NOT_FOUND} In the units given {why}."
         return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=f"{message} {found.message}")
     i = int(np.argmax(bad)) if bad.any() else int(np.argmin(np.where(x > 0.0, x, np.inf)))
     message = f"{Outcome.NOT_FOUND} There is a solution, but no float holds it: x[{i}] is {_size(x[i])}."

@@ -55,6 +55,20 @@ def test_the_order_depends_on_the_matrix():
     assert tried(case(lcp.LCP(membrane, -np.ones(300))), AUTOMATIC)[0] == "active sets, from coarser problems"
 
 
+def test_a_sparse_matrix_is_dense_for_pivots_and_paths():
+    r = np.random.default_rng(2)
+    A = sp.random_array((20, 20), density=0.2, rng=r, data_sampler=r.standard_normal).tocsr()
+    x, w = r.uniform(0.5, 2.0, (2, 20)) * (r.random(20) < [[0.5], [2.0]])
+    problem = lcp.LCP(A, np.where(x > 0.0, 0.0, w) - A @ x)
+    one = case(problem)
+    settled_by(one, AUTOMATIC)
+    assert not one.problem.sparse
+    assert not one.search.finish.problem.sparse
+    assert lcp.solve(problem).problem is problem
+    large = sp.diags_array([1.0, -1.0], offsets=[0, 1], shape=(600, 600)).tocsr()
+    assert "dense from here on" not in tried(case(lcp.LCP(large, -np.ones(600))), AUTOMATIC)
+
+
 def test_a_path_that_is_wanted_comes_first():
     assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", "all faces", "restarts"]
 
