@@ -14,7 +14,7 @@ from continuation.controllers import Bounds, Decision, StepMeasures
 from continuation.counts import Counts
 from continuation.ends.closed_curve import SAME_POINT, passes_start
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import Automatic, Euclidean, Metric, inner, norm
+from continuation.metric import Automatic, Euclidean, Metric, Weighted, inner, norm
 from continuation.path import Path, Step
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization, linearize
@@ -33,7 +33,7 @@ _CHECK_NODES = np.concatenate(([0.0], _NODES[1:4], [1.0]))
 _CHECK_WEIGHTS: Array = np.linalg.solve(np.vander(_CHECK_NODES, increasing=True).T, 1.0 / np.arange(1.0, 6.0))
 """The interpolatory rule, of degree 5, on the inner Gauss nodes and the ends, where the speed is known anyway."""
 
-_AGREEMENT = 1e-7
+_AGREEMENT = 1e-8
 """Relative difference of the two rules; Gauss's, of degree 9, is then far more accurate."""
 
 _DIVISIONS = 20
@@ -64,14 +64,14 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     """
     _require_step(path)
     solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
-    planes, rule = _metric_of(homotopy), Euclidean() if metric is None else metric
+    planes, rule = _metric_of(homotopy, path), Euclidean() if metric is None else metric
     total = 0.0
     current: Array | None = None
     measure: Array | None = None
     before: Linearization | None = None
     for step in path.steps:
         current = planes.weights(step.u, step.tangent, current)
-        here = linearize(solver.evaluator, step.u, current, current * step.tangent, 0)
+        here = linearize(solver.evaluator, step.u, current, current * step.tangent)
         if before is not None and measure is not None:
             try:
                 total += _length(solver, before, here, measure, _DIVISIONS)
@@ -107,9 +107,16 @@ def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Arr
     return sum(_length(solver, p, q, measure, divisions - 1) for p, q in ((a, middle), (middle, b)))
 
 
-def _metric_of(homotopy: Any) -> Metric:
+def _metric_of(homotopy: Any, path: Path) -> Metric:
+    """The homotopy's own metric, else the one in which the path ended."""
     own: Metric | None = getattr(homotopy, "metric", None)
-    return Automatic() if own is None else own
+    if own is not None:
+        return own
+    weights = path.steps[-1].weights
+    if weights is None:
+        extent = np.ptp(path.u, axis=0)
+        weights = Automatic().of_extent(np.where(extent > 0.0, extent, float(extent.max()) or 1.0))
+    return Weighted(weights[:-1], float(weights[-1]))
 
 
 @frozen(eq=False)
@@ -204,7 +211,7 @@ def audit(
         If the path has no step.
     """
     _require_step(path)
-    rule, tolerance = metric or _metric_of(homotopy), as_tolerance(tolerance)
+    rule, tolerance = metric or _metric_of(homotopy, path), as_tolerance(tolerance)
     indices = [k for k, step in enumerate(path.steps) if k == 0 or (step.u != path.steps[k - 1].u).any()]
     sign = 1.0
     if backwards:
@@ -223,7 +230,7 @@ def audit(
     met = _follow(tracer, knots, tolerance)
     if met < len(knots):
         return Audit(False, _missed(path, indices[met], tracer.path), indices[met], tracer.path)
-    turns, expected = _turns(tracer.path, knots[-1], tolerance), len(path.turning_points)
+    turns, expected = _turns(tracer, knots[-1], tolerance), len(path.turning_points)
     same = turns == expected
     sentence = f"The retrace passes through all points, with {turns} turning points"
     return Audit(same, sentence + ("." if same else f" instead of {expected}."), None, tracer.path)
@@ -252,7 +259,7 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
     for step in tracer:
         assert tracer.state is not None
         weights = tracer.state.weights
-        here = linearize(solver.evaluator, step.u, weights, weights * step.tangent, 0)
+        here = linearize(solver.evaluator, step.u, weights, weights * step.tangent)
         while before is not None and met < len(knots) and _meets(solver, knots[met], before, here):
             met, met_at = met + 1, step.arclength
         # Between two points of one path lies little more than their chord; a loop that was left out is longer.
@@ -263,23 +270,26 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
 
 
 def _meets(solver: PathSolver, knot: Knot, before: Linearization, after: Linearization) -> bool:
-    if inner(after.weights, after.tangent, knot.tangent) > 0.0 and _same(after.u, knot.u, solver.tolerance):
+    if inner(after.weights, after.tangent, knot.tangent) > 0.0 and _same(after, knot.u, solver.tolerance):
         return True
     arc = Arc(before, after, before.border, hermite(before.u, before.tangent, after.u, after.tangent, before.border))
     unit = evolve(knot, tangent=knot.tangent / norm(after.weights, knot.tangent))
     return passes_start(solver, unit, after.weights, arc)
 
 
-def _same(u: Array, wanted: Array, tolerance: Tolerance) -> bool:
-    return tolerance.measure(u - wanted, wanted) <= SAME_POINT
+def _same(point: Linearization, wanted: Array, tolerance: Tolerance) -> bool:
+    return tolerance.measure(point.u - wanted, point.weights) <= SAME_POINT
 
 
-def _turns(retraced: Path, end: Knot, tolerance: Tolerance) -> int:
+def _turns(tracer: Tracer, end: Knot, tolerance: Tolerance) -> int:
     """Turning points up to the end; the last step may lie beyond it."""
-    last = len(retraced) - 1
+    assert tracer.state is not None
+    last, weights = len(tracer.path) - 1, tracer.state.weights
     return sum(
-        event.step < last or float(np.dot(end.tangent, event.u - end.u)) <= 0.0 or _same(event.u, end.u, tolerance)
-        for event in retraced.turning_points
+        event.step < last
+        or inner(weights, end.tangent, event.u - end.u) <= 0.0
+        or tolerance.measure(event.u - end.u, weights) <= SAME_POINT
+        for event in tracer.path.turning_points
     )
 
 
@@ -317,6 +327,6 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     ahead = path(min(float(s) + 1e-6 * path.arclength[-1], path.arclength[-1]))
     behind = path(max(float(s) - 1e-6 * path.arclength[-1], 0.0))
     border = (ahead - behind) / np.linalg.norm(ahead - behind)
-    near = linearize(solver.evaluator, u, np.ones_like(u), border, 0)
+    near = linearize(solver.evaluator, u, np.ones_like(u), border)
     settled, _ = solver.project(near, u, border)
     return settled

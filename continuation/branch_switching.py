@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
+from continuation.checks import complain, is_number
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
@@ -40,11 +41,13 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]
 
     Raises
     ------
-    ValueError
-        If the event is no branch point.
+    TypeError, ValueError
+        If the event is none, or no branch point.
     ArithmeticError
         If the quadratic form is definite or vanishes: then no second simple branch crosses there.
     """
+    if not isinstance(event, LocatedEvent):
+        raise complain(TypeError, "event", "a located event of a path", event)
     if event.kind != Kind.BRANCH_POINT:
         raise ValueError(f"event: expected a branch point, found {event.name!r}")
     evaluator = Evaluator(homotopy, Counts())
@@ -86,9 +89,13 @@ def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tup
 
     Raises
     ------
+    TypeError, ValueError
+        If the event is no branch point, or the step no positive number.
     ArithmeticError
         If no point of the other branch is found at that distance.
     """
+    if not is_number(step) or not 0.0 < step < np.inf:
+        raise complain(ValueError, "step", "a positive finite number", step)
     _, other = branch_directions(homotopy, event)
     evaluator = Evaluator(homotopy, Counts())
     tolerance = Tolerance()
@@ -97,11 +104,11 @@ def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tup
     for v in (other, -other):
         guess = event.u + step * v
         try:
-            near = linearize(evaluator, guess, weights, v, 0)
+            near = linearize(evaluator, guess, weights, v)
             correction = BorderedNewton(max_iterations=15).correct(evaluator, near, guess, v, tolerance)
         except EvaluationError as error:
             raise ArithmeticError(f"the other branch could not be reached: {error}") from error
         if not correction.converged:
             raise ArithmeticError(f"the other branch could not be reached: {correction.rejected(step)}")
-        starts.append((correction.u, linearize(evaluator, correction.u, weights, v, 0).tangent))
+        starts.append((correction.u, linearize(evaluator, correction.u, weights, v).tangent))
     return tuple(starts)

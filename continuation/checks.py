@@ -10,13 +10,19 @@ from typing import Any
 import numpy as np
 from attrs import Attribute
 
+_SHOWN = 200
+"""Characters of a value in a message."""
+
 Validator = Callable[[Any, "Attribute[Any]", Any], None]
 
 
 def complain(error: type[Exception], name: str, expected: str, value: Any) -> Exception:
     """The exception about an argument; of a value of the wrong type the type is said too."""
     kind = f" ({type(value).__name__})" if error is TypeError else ""
-    return error(f"{name}: expected {expected}, found {value!r}{kind}")
+    # One line, and not a long one, whatever a value has to say of itself.
+    found = " ".join(repr(value).split())
+    shown = found if len(found) <= _SHOWN else f"{found[:_SHOWN]} ..."
+    return error(f"{name}: expected {expected}, found {shown}{kind}")
 
 
 def is_number(value: Any) -> bool:
@@ -103,13 +109,16 @@ def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     Raises
     ------
     ValueError
-        If it holds anything but real numbers: a complex one would lose its imaginary part without a word.
+        If it holds anything but real numbers: a complex one would lose its imaginary part, and a masked one its mask,
+        without a word.
     """
+    if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
+        raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:
         array = np.array(value)
     except ValueError:
         array = np.array(None)
     if array.dtype.kind not in "fiu":
-        found = f"{array.dtype} numbers" if array.dtype.kind == "c" else f"{value!r}"
+        found = f"{array.dtype} numbers" if array.dtype.kind == "c" else " ".join(repr(value).split())[:200]
         raise ValueError(f"{name}: expected real numbers, found {found}")
     return array.astype(float)

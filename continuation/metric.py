@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import gt
+from attrs.validators import gt, lt
 
 from continuation.arrays import Array
 
@@ -102,24 +102,98 @@ class Relative:
 
 @frozen
 class Automatic:
-    """Components of y measured absolutely while below 1 and relatively above, like a mixed tolerance; lam absolutely.
+    """Each component measured by how far the path has gone in it: the same path in any units, and wherever zero is.
 
-    It follows curves whose components have very different sizes in few steps, and it is nearly Euclidean where all
-    are moderate. The parameter's weight is raised once, at the start, if its share of the tangent would be below
-    `share` there: without that, steps on a fine discretisation would be blind to the parameter. At a start on a
-    turning point there is nothing to raise.
+    ``|v|^2 = (1 - share) mean_i (v_i / S_i)^2 + share (v_{N+1} / S_{N+1})^2``, where S is the extent: at the start how
+    far each component goes until the path has turned noticeably (`continuation.step.extent`), from then on at least its
+    distance from the start. A change of units y -> D y + c, lam -> a lam + b, H -> E H changes neither lengths nor
+    angles, so a trace takes the same steps.
+
+    The mean over y makes the length independent of N. The parameter's share decides how sharp a turning point looks;
+    measured on twelve problems (examples/benchmarks/units), factorisations differ by less than a tenth between shares
+    of 0.1 and 0.3.
+
+    Parameters
+    ----------
+    share : float
+        Weight of the parameter's change beside the mean of all others.
     """
 
-    share: float = field(default=0.01, validator=[gt(0)])
+    share: float = field(default=0.2, validator=[gt(0), lt(1)])
+
+    @property
+    def longest(self) -> float:
+        """The longest step: at most doubles what is known of the path. Farther ahead nothing has been seen yet."""
+        return 1.0
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
-        """1/max(|y_i|, 1)^2 for y, and one fixed weight for the parameter."""
-        size = np.maximum(np.abs(u), 1.0)
-        weights: Array = 1.0 / (size * size)
+        """The current weights; without any, each component is measured by its share in the direction `v`."""
         if current is not None:
-            weights[-1] = current[-1]
-            return weights
-        rest, own = float(np.dot(weights[:-1] * v[:-1], v[:-1])), float(v[-1] ** 2)
-        balance = self.share / (1.0 - self.share) * rest
-        weights[-1] = min(max(1.0, balance / own), 1e6) if own > 0.0 else 1.0
+            return current
+        size = np.abs(v)
+        return self.of_extent(np.where(size > 0.0, size, float(size.max())))
+
+    def of_extent(self, extent: Array) -> Array:
+        """The weights for the extent of each component.
+
+        Parameters
+        ----------
+        extent : ndarray, shape (N + 1,)
+        """
+        weights: Array = extent**-2.0
+        weights[:-1] *= (1.0 - self.share) / (extent.size - 1)
+        weights[-1] *= self.share
         return weights
+
+    def grown(self, current: Array, origin: Array, u: Array) -> Array:
+        """The weights where the path, which began at `origin`, has come to `u`.
+
+        Parameters
+        ----------
+        current, origin, u : ndarray, shape (N + 1,)
+        """
+        return np.minimum(current, self.of_extent(np.maximum(np.abs(u - origin), TINY)))
+
+
+TINY = 1e-150
+"""Below this a distance counts as this: its square can still be inverted."""
+
+
+@runtime_checkable
+class SupportsExtent(Protocol):
+    """A metric that measures components by how far the path has gone in them; found by presence."""
+
+    @property
+    def longest(self) -> float:
+        """The longest step, in its own length."""
+        ...
+
+    def of_extent(self, extent: Array) -> Array:
+        """The weights for the extent of each component.
+
+        Parameters
+        ----------
+        extent : ndarray, shape (N + 1,)
+            How far the path goes in each component; positive.
+
+        Returns
+        -------
+        ndarray, shape (N + 1,)
+        """
+        ...
+
+    def grown(self, current: Array, origin: Array, u: Array) -> Array:
+        """The weights where a path has come to `u`.
+
+        Parameters
+        ----------
+        current : ndarray, shape (N + 1,)
+            The weights before.
+        origin, u : ndarray, shape (N + 1,)
+            The start of the path, and where it is.
+
+        Returns
+        -------
+        ndarray, shape (N + 1,)
+        """
+        ...

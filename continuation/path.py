@@ -10,6 +10,7 @@ import numpy as np
 from attrs import define, field, frozen
 
 from continuation.arrays import Array
+from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.point.segment import Segment, parameter_at
 from continuation.rejection import Rejected
@@ -214,11 +215,15 @@ class Path:
         Raises
         ------
         ValueError
-            If s lies outside [0, arclength[-1]].
+            If s lies outside [0, arclength[-1]], or is no number.
+        IndexError
+            If the path has no points.
         """
-        wanted = np.asarray(s, dtype=float)
+        wanted = real_vector("s", s) if np.size(s) else np.zeros(0)
         knots = self.arclength.tolist()
-        if wanted.size and (wanted.min() < knots[0] or wanted.max() > knots[-1] * (1 + 1e-15)):
+        if not knots:
+            raise IndexError("s: expected a path with points, found one without")
+        if wanted.size and not (wanted.min() >= knots[0] and wanted.max() <= knots[-1] * (1 + 1e-15)):
             found = f"{wanted.min():g} .. {wanted.max():g}"
             raise ValueError(f"s: expected values in [{knots[0]:g}, {knots[-1]:g}], found {found}")
         points = [self._at(float(value), knots) for value in np.atleast_1d(wanted)]

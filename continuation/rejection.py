@@ -23,7 +23,7 @@ class Rejection(Enum):
     ELSEWHERE = "the end found is not where the path was heading"
     CONTROLLER = "the controller refuses it, as it does the shortest step where the Jacobian is wrong"
     ORIENTATION = "the determinant changes its sign on the arc, and no branch point is found there"
-    MIDPOINT = "the middle of the arc is not near the path"
+    MIDPOINT = "the inside of the arc is not on the path"
     ARC = "the inside of the arc could not be evaluated"
 
     @property

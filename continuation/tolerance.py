@@ -1,41 +1,50 @@
-"""When a correction is small enough: a mixed absolute and relative rule."""
+"""When a correction is small enough: by its length in the metric of the path."""
 
 from __future__ import annotations
 
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array, largest
-from continuation.checks import NOT_NEGATIVE, POSITIVE, POSITIVE_FINITE, complain, is_number
+from continuation.arrays import Array
+from continuation.checks import POSITIVE, POSITIVE_FINITE, complain, is_number
+from continuation.metric import norm
 
 
 @frozen
 class Tolerance:
-    """An increment d of the point u is small if ``max_i |d_i| / (absolute + relative max(|u|_i, |u|_inf / 1e3)) <= 1``.
+    """An increment d is small if its length in the metric of the path is at most `relative`: ``|d|_W <= relative``.
 
-    Not absolute alone (round-off makes 1e-10 unreachable at N = 1000), not relative alone (zero is a solution too).
-    A residual r counts as small if it is below `residual` in size; the default, infinity, judges by increments only,
-    since a residual has the units of the equations and an increment those of the unknowns.
+    The default metric measures each component by how far the path has gone in it, so this is a fraction of the path,
+    in any units. After the last increment of Newton's method the error is about its square; so a tolerance below the
+    root of round-off, as the default is, asks for points whose residual is round-off of what H is made of there, and
+    a looser one for points whose error is about its square.
+
+    Attributes
+    ----------
+    relative : float
+        Of the last increment.
+    residual : float
+        Points with a larger residual, in the units of the equations, do not count; infinity (the default) judges by
+        increments and round-off alone.
     """
 
-    absolute: float = field(default=1e-8, validator=POSITIVE_FINITE)
-    relative: float = field(default=1e-8, validator=NOT_NEGATIVE)
+    relative: float = field(default=1e-8, validator=POSITIVE_FINITE)
     residual: float = field(default=float("inf"), validator=POSITIVE)
 
-    def measure(self, increment: Array, u: Array) -> float:
-        """The largest increment in units of the tolerance: small is <= 1.
+    def measure(self, increment: Array, weights: Array) -> float:
+        """The length of an increment in units of the tolerance: small is <= 1.
 
         Parameters
         ----------
-        increment, u : ndarray, shape (N + 1,)
-            A correction, and the point that it is added to.
+        increment : ndarray, shape (N + 1,)
+        weights : ndarray, shape (N + 1,)
+            Of the metric.
         """
-        scale = self.absolute + self.relative * np.maximum(np.abs(u), 1e-3 * largest(u))
-        return largest(increment / scale)
+        return norm(weights, increment) / self.relative
 
 
 def as_tolerance(value: float | Tolerance) -> Tolerance:
-    """A Tolerance as it is, a number as both its absolute and its relative part.
+    """A Tolerance as it is, a number as its relative part.
 
     Raises
     ------
@@ -51,4 +60,4 @@ def as_tolerance(value: float | Tolerance) -> Tolerance:
         raise complain(TypeError, "tolerance", expected, value)
     if not (np.isfinite(value) and value > 0):
         raise complain(ValueError, "tolerance", expected, value)
-    return Tolerance(absolute=float(value), relative=float(value))
+    return Tolerance(relative=float(value))

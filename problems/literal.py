@@ -115,10 +115,6 @@ def run_literally(
         Ones by default.
     settings : LiteralSettings
 
-    Returns
-    -------
-    LiteralRun
-
     Raises
     ------
     ValueError

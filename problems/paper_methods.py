@@ -6,13 +6,12 @@ import csv
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as File
-from typing import Any
 
 from attrs import asdict, field, frozen
 
 import continuation
-from continuation.arrays import Array
-from problems.lcp.homotopies import KKTHomotopy, WangHomotopy, XuHomotopy, YuHomotopy, ZhaoHomotopy
+from problems.lcp.data.problem import LCP
+from problems.lcp.homotopies.registry import HOMOTOPIES, Registered
 from problems.lcp.proof.certificate import certify
 from problems.lcp.reference import ReferenceResult, lemke, min_newton, modulus
 from problems.literal import run_literally
@@ -56,18 +55,18 @@ class Result:
 Method = Callable[[Example], Result]
 
 
-def _homotopy(name: str, make: Callable[[Example], Any]) -> Method:
+def _homotopy(homotopy: Registered) -> Method:
     def run(example: Example) -> Result:
-        path = continuation.trace(make(example))
+        path = continuation.trace(homotopy.make(example.problem, example.x0))
         x = path.endpoint.y[: example.q.size]
         outcome = path.status.name
-        if _solves(example, x):
+        if certify(example.problem, x).solves(SOLVED_TO):
             outcome = "SOLVED"
         elif path.status is continuation.Status.REACHED_TARGET:
             outcome = "STATIONARY"
         residual = example.problem.natural_residual(x)
         turns = len(path.turning_points)
-        return Result(example.number, name, outcome, residual, path.counts.factorizations, turns, path.message)
+        return Result(example.number, homotopy.name, outcome, residual, path.counts.factorizations, turns, path.message)
 
     return run
 
@@ -78,7 +77,7 @@ def _literal(example: Example) -> Result:
     return Result(example.number, "literal", outcome, run.residual, run.iterations, 0, run.ended_by)
 
 
-def _reference(name: str, solve: Callable[[Any], ReferenceResult]) -> Method:
+def _reference(name: str, solve: Callable[[LCP], ReferenceResult]) -> Method:
     def run(example: Example) -> Result:
         result = solve(example.problem)
         outcome = "SOLVED" if result.solved else "NOT_FOUND"
@@ -87,17 +86,9 @@ def _reference(name: str, solve: Callable[[Any], ReferenceResult]) -> Method:
     return run
 
 
-def _solves(example: Example, x: Array) -> bool:
-    return certify(example.problem, x).solves(SOLVED_TO)
-
-
 METHODS: Mapping[str, Method] = {
-    "kkt": _homotopy("kkt", lambda e: KKTHomotopy(e.problem, e.x0, e.z1, e.z2)),
+    **{name: _homotopy(homotopy) for name, homotopy in HOMOTOPIES.items()},
     "literal": _literal,
-    "yu": _homotopy("yu", lambda e: YuHomotopy(e.problem, e.x0)),
-    "zhao": _homotopy("zhao", lambda e: ZhaoHomotopy(e.problem, e.x0)),
-    "xu": _homotopy("xu", lambda e: XuHomotopy(e.problem, e.x0)),
-    "wang": _homotopy("wang", lambda e: WangHomotopy(e.problem, e.x0)),
     "lemke": _reference("lemke", lemke),
     "modulus": _reference("modulus", modulus),
     "min-newton": _reference("min-newton", min_newton),
@@ -140,7 +131,7 @@ _SHORT = {
 
 LEGEND = (
     "A number: solved with so many factorisations (homotopies), iterations or pivots. stat.: ends at a KKT point that "
-    "solves nothing. div.: runs off to infinity. -: no solution found."
+    "solves nothing. div.: runs off to infinity. back: comes back to lambda = 1. -: no solution found."
 )
 
 

@@ -1,21 +1,23 @@
 """The path archive: HDF5 files written safely while paths are traced, resumed exactly, and read by anybody.
 
-The schema is `continuation-path-1` (`continuation.archive.schema`): two tables, of points and of paths, which h5py,
+The schema is `continuation-path-2` (`continuation.archive.schema`): two tables, of points and of paths, which h5py,
 xarray (engines h5netcdf and netCDF4) and every netCDF-4 tool read without this package.
 """
 
 from continuation.archive.codec import SupportsArchive
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
 from continuation.archive.export import export
+from continuation.archive.limits import Limits
 from continuation.archive.merge import merge
 from continuation.archive.page import describe
-from continuation.archive.reader import Archive, Selection, open_archive
+from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import recover
 from continuation.archive.resume import resume
 from continuation.archive.schema import SCHEMA
+from continuation.archive.selection import Selection
 from continuation.archive.sweep import trace_many
 from continuation.archive.tables import Table
-from continuation.archive.writer import Limits, PathLog
+from continuation.archive.writer import PathLog
 
 __all__ = [
     "SCHEMA",

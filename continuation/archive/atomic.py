@@ -13,10 +13,13 @@ import secrets
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from os import PathLike
 from pathlib import Path as File
+from typing import Any
 
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
 from continuation.archive.locks import is_held
+from continuation.checks import complain
 
 _ABANDONED = 60.0
 """Seconds after which a part that nobody holds a lock on is litter: it is locked right after it is made."""
@@ -120,6 +123,19 @@ def _tidy(target: File) -> None:
         with suppress(OSError):
             if time.time() - part.stat().st_mtime > _ABANDONED and not is_held(part):
                 part.unlink()
+
+
+def as_file(argument: str, value: Any) -> File:
+    """The path that an argument is.
+
+    Raises
+    ------
+    TypeError
+        If it is no name of a file.
+    """
+    if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
+        raise complain(TypeError, argument, "the name of a file", value)
+    return File(value)
 
 
 def check_new(file: File) -> None:

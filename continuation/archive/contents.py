@@ -5,12 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from os import PathLike
-from pathlib import Path as File
 from typing import Any, TypeVar
 
 import numpy as np
 
-from continuation.archive.atomic import short
+from continuation.archive.atomic import as_file, short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import (
     GROUP,
@@ -32,7 +31,7 @@ from continuation.archive.locks import is_held
 from continuation.archive.problem import GROUP as PROBLEM
 from continuation.archive.problem import read_problem
 from continuation.archive.schema import EVENT_NAME, TANGENT_COLUMNS, Column, Layout
-from continuation.archive.store import RESUME, SLOTS
+from continuation.archive.structure import RESUME, SLOTS
 
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
@@ -69,7 +68,7 @@ class Contents:
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int = LIMIT, salvage: bool = False) -> None:
-        self.file, self._limit, self._salvage = File(file), limit, salvage
+        self.file, self._limit, self._salvage = as_file("file", file), limit, salvage
         self.flaws: list[str] = []
         self._open()
         try:

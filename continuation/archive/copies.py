@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from numbers import Integral
 from pathlib import Path as File
 from typing import Any
 
@@ -40,6 +41,17 @@ class Share:
     paths: Mapping[str, Any]
     points: slice
     first: int = 0
+
+
+def check_level(compression: Any) -> None:
+    """Raise unless gzip knows the level.
+
+    Parameters
+    ----------
+    compression : int
+    """
+    if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
+        raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
 
 
 def leading_paths(archive: Archive, paths: int, points: int) -> Share:

@@ -12,13 +12,13 @@ from typing import Any
 
 import h5py
 import numpy as np
-from h5py import h5d, h5l, h5z
+from h5py import h5d, h5l, h5o, h5z
 
 LIMIT = 1 << 28
 """Bytes that a compressed dataset may unfold to, unless the caller says more. Others are no larger than their file."""
 
 _CHUNK = 1 << 26
-"""Bytes of a chunk: HDF5 reads it whole. Ours have 512 KiB, or one row."""
+"""Bytes of a chunk, or a quarter of the limit: HDF5 unfolds it whole. Ours have 512 KiB, or one row."""
 
 _FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF)
 """Those that h5py brings itself; any other would be a library that is loaded to read the file."""
@@ -41,7 +41,9 @@ def member(group: Any, name: str) -> Any:
         raise StructureError(f"it has no {name}")
     if group.id.links.get_info(raw).type != h5l.TYPE_HARD:
         raise StructureError(f"{name} is a link to somewhere else")
-    return group[name]
+    # As `group[name]`, which makes a new object of the whole file each time.
+    found = h5o.open(group.id, raw)
+    return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 
 def names(group: Any) -> list[str]:
@@ -87,27 +89,26 @@ def dataset(
     found = member(group, name)
     if not isinstance(found, h5py.Dataset):
         raise StructureError(f"{name} is no dataset")
-    if kind is not None and found.dtype != kind and not (kind.kind == "S" and found.dtype.itemsize == kind.itemsize):
-        raise StructureError(f"{name} holds {found.dtype}, expected {kind}")
-    if kind is None and found.dtype.kind not in "fiubc":
-        raise StructureError(f"{name} holds {found.dtype}, expected numbers")
+    stored, lengths, properties = found.dtype, found.shape, found.id.get_create_plist()
+    if kind is not None and stored != kind and not (kind.kind == "S" and stored.itemsize == kind.itemsize):
+        raise StructureError(f"{name} holds {stored}, expected {kind}")
+    if kind is None and stored.kind not in "fiubc":
+        raise StructureError(f"{name} holds {stored}, expected numbers")
     if shape is not None and (
-        found.ndim != len(shape) or any(n is not None and n != m for n, m in zip(shape, found.shape))
+        lengths is None or len(lengths) != len(shape) or any(n is not None and n != m for n, m in zip(shape, lengths))
     ):
-        raise StructureError(f"{name} has the shape {found.shape}, expected {tuple(shape)}")
-    properties = found.id.get_create_plist()
-    if properties.get_layout() == h5d.VIRTUAL or properties.get_external_count():
+        raise StructureError(f"{name} has the shape {lengths}, expected {tuple(shape)}")
+    layout = properties.get_layout()
+    if layout == h5d.VIRTUAL or properties.get_external_count():
         raise StructureError(f"{name} is stored outside of the file")
     for k in range(properties.get_nfilters()):
         code = properties.get_filter(k)[0]
         if code not in _FILTERS:
             raise StructureError(f"{name} is stored by the filter number {code}, which h5py does not bring itself")
-    if found.chunks is not None and math.prod(found.chunks) * found.dtype.itemsize > _CHUNK and math.prod(
-        found.chunks[1:]
-    ) * found.dtype.itemsize > _CHUNK >> 3:
-        raise StructureError(f"{name} is stored in chunks of {found.chunks}")
-    claimed = math.prod(found.shape) * found.dtype.itemsize if shape is None or None not in shape else 0
-    check_size(found, claimed, limit)
+    if layout == h5d.CHUNKED and math.prod(properties.get_chunk()) * stored.itemsize > max(_CHUNK, limit >> 2):
+        raise StructureError(f"{name} is stored in chunks of {properties.get_chunk()}")
+    if lengths is not None and (shape is None or None not in shape):
+        check_size(found, math.prod(lengths) * stored.itemsize, limit)
     return found
 
 
@@ -120,6 +121,8 @@ def check_size(found: Any, claimed: int, limit: int = LIMIT) -> None:
         If less is stored, or more than the limit would unfold from what is.
     """
     stored = found.id.get_storage_size()
+    if claimed <= stored:
+        return
     compressed = found.id.get_create_plist().get_nfilters() > 0
     if claimed > (limit if compressed else stored):
         where = f"more than the limit of {limit}; say limit=" if compressed else f"but only {stored} are stored"

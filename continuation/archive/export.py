@@ -11,8 +11,8 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any, BinaryIO
 
-from continuation.archive.atomic import beside, check_new, publish
-from continuation.archive.copies import everything, put, write_copy
+from continuation.archive.atomic import as_file, beside, check_new, publish
+from continuation.archive.copies import check_level, everything, put, write_copy
 from continuation.archive.provenance import history
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.tables import Table
@@ -44,9 +44,8 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
     ArchiveError
         If `file` is no archive, or a target exists.
     """
-    if not 0 <= compression <= 9:
-        raise ValueError(f"compression: expected a level from 0 to 9, found {compression}")
-    name = File(target)
+    check_level(compression)
+    name = as_file("target", target)
     with open_archive(file) as archive:
         if name.suffix in (".nc", ".nc4", ".h5"):
             attributes = {**archive.attributes, **history(archive.attributes, f"exported from {archive.file.name}")}

@@ -7,10 +7,12 @@ a write fails while it closes a file. None of this can happen where Python reads
 from __future__ import annotations
 
 import os
+import resource
 import stat
 import struct
 from pathlib import Path as File
 
+from continuation.archive.atomic import short
 from continuation.archive.errors import ArchiveError
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -197,6 +199,18 @@ class Sink:
             self.descriptor = -1
 
 
+def to_nowhere(descriptor: int) -> None:
+    """Let the descriptor of a file stand for another one, which nobody sees."""
+    # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
+    limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+    if limited or not hasattr(os, "memfd_create"):
+        nowhere = os.open(os.devnull, os.O_RDWR)
+    else:
+        nowhere = os.memfd_create("abandoned")
+    os.dup2(nowhere, descriptor, inheritable=False)
+    os.close(nowhere)
+
+
 def stated_length(head: bytes) -> int:
     """The bytes that a file is to have, as its superblock says."""
     return int(struct.unpack_from("<Q", head, _LENGTH)[0])
@@ -211,7 +225,7 @@ def _opened(file: File) -> int:
     except PermissionError:
         raise ArchiveError(f"{file}: may not be read (permissions)") from None
     except (OSError, ValueError) as error:
-        raise ArchiveError(f"{file}: cannot be opened ({error})") from None
+        raise ArchiveError(f"{file}: cannot be opened ({short(error)})") from None
     mode = os.fstat(descriptor).st_mode
     if not stat.S_ISREG(mode):
         os.close(descriptor)

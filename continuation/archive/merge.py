@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path as File
 
-from continuation.archive.atomic import check_new
-from continuation.archive.copies import Share, everything, interrupt, leading, put, write_copy
+from continuation.archive.atomic import as_file, check_new
+from continuation.archive.copies import Share, check_level, everything, interrupt, leading, put, write_copy
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import open_archive
+from continuation.checks import complain
 from continuation.status import Status
 
 
 def merge(
-    files: Sequence[str | PathLike[str]], target: str | PathLike[str], *, compression: int = 0, title: str = ""
+    files: Iterable[str | PathLike[str]], target: str | PathLike[str], *, compression: int = 0, title: str = ""
 ) -> File:
     """Concatenate archives, in the order given: paths are numbered anew, everything else stays as it is.
 
@@ -24,7 +25,7 @@ def merge(
 
     Parameters
     ----------
-    files : sequence of path
+    files : iterable of path
     target : path
         Must not exist.
     compression : int
@@ -34,13 +35,17 @@ def merge(
     Raises
     ------
     ValueError
-        If there are no files.
+        If there are no files, or gzip does not know the level.
     ArchiveError
         If one is no archive, has another number of unknowns than the first, or `target` exists.
     """
+    if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
+        raise complain(TypeError, "files", "names of archives, in a list", files)
+    files = list(files)
     if not files:
         raise ValueError("files: expected at least one archive, found none")
-    whole = File(target)
+    check_level(compression)
+    whole = as_file("target", target)
     check_new(whole)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]

@@ -13,6 +13,7 @@ from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES
+from continuation.checks import complain
 from continuation.path import Path
 from continuation.status import Kind, Status
 
@@ -33,9 +34,13 @@ def describe(archive: Archive) -> str:
 
     Raises
     ------
+    TypeError
+        For anything else.
     ArchiveError
         If what the file says of itself makes no sense.
     """
+    if not isinstance(archive, Archive):
+        raise complain(TypeError, "archive", "an open Archive, as open_archive(file) returns", archive)
     try:
         page = _page(archive)
     except ArchiveError:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from numbers import Integral
 from os import PathLike
-from pathlib import Path as File
 from types import TracebackType
 from typing import Any, overload
 
@@ -17,9 +17,11 @@ from continuation.archive.contents import Contents
 from continuation.archive.datasets import LIMIT
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES
+from continuation.archive.selection import Selection, selected
 from continuation.archive.stored import events as events_of
 from continuation.archive.stored import stored_path
 from continuation.archive.tables import Table
+from continuation.checks import complain
 from continuation.citation import entries
 from continuation.counts import Counts
 from continuation.path import Path
@@ -49,8 +51,8 @@ class Archive(Sequence[Path]):
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int = LIMIT) -> None:
-        self.file = File(file)
         self.contents = contents = Contents(file, limit=limit)
+        self.file = contents.file
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
         self.layout, self.event_names = contents.layout, contents.event_names
         self._last_checkpoint = contents.committed.checkpoint if contents.checked else None
@@ -117,6 +119,8 @@ class Archive(Sequence[Path]):
         """
         if keep not in ("all", "ends"):
             raise ValueError(f'keep: expected "all" or "ends", found {keep!r}')
+        if not isinstance(index, Integral):
+            raise complain(TypeError, "index", "an integer or a slice", index)
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         index %= len(self)
@@ -212,27 +216,10 @@ class Archive(Sequence[Path]):
 
         Raises
         ------
-        ValueError
-            If the event does not occur in the file at all.
+        TypeError, ValueError
+            If one of them is nothing of its kind, or the event does not occur in the file at all.
         """
-        paths = np.ones(len(self), dtype=bool)
-        if status is not None:
-            wanted = [status] if isinstance(status, Status) else list(status)
-            paths = np.isin(self.paths["status"], [int(s) for s in wanted])
-        points = paths[self.points["path_index"]]
-        if kind is not None:
-            points &= self.points["kind"] == kind
-        if event is not None:
-            if event not in self.event_names:
-                raise ValueError(f"event: expected one of {', '.join(self.event_names)}, found {event!r}")
-            points &= self.points["event_index"] == self.event_names.index(event)
-        if parameter is not None:
-            low, high = parameter
-            points &= (self.points["parameter"] >= low) & (self.points["parameter"] <= high)
-        if kind is not None or event is not None or parameter is not None:
-            paths = np.zeros(len(self), dtype=bool)
-            paths[self.points["path_index"][points]] = True
-        return Selection(self, np.flatnonzero(points), np.flatnonzero(paths))
+        return selected(self, status, kind, event, parameter)
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
@@ -302,36 +289,6 @@ class Archive(Sequence[Path]):
             # An older checkpoint is good to resume from, and tells the work of then.
             row |= {**dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         return row
-
-
-class Selection:
-    """Some points of an archive, and the paths they belong to."""
-
-    def __init__(self, archive: Archive, points: Any, paths: Any) -> None:
-        self.archive = archive
-        self.numbers: list[int] = paths.tolist()
-        self.points = archive.points.choose(points)
-        self.paths = archive.paths.choose(paths)
-
-    def __len__(self) -> int:
-        return len(self.numbers)
-
-    def __iter__(self) -> Iterator[Path]:
-        return (self.archive.path(number) for number in self.numbers)
-
-    def __repr__(self) -> str:
-        return f"<Selection of {self.archive.file}: {len(self)} paths, {self.points.size} points>"
-
-    def to_xarray(self) -> Any:
-        """The selected points and paths as an `xarray.Dataset`; ``path_index`` keeps the numbers of the file."""
-        archive = self.archive
-        return frames.dataset(
-            self.points, self.paths, archive.event_names, archive.layout.unknowns, archive.attributes
-        )
-
-    def to_dataframe(self) -> Any:
-        """The selected points as a `pandas.DataFrame`."""
-        return frames.dataframe(self.points)
 
 
 def open_archive(file: str | PathLike[str], *, limit: int = LIMIT) -> Archive:

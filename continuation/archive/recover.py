@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
+from continuation.archive.atomic import as_file
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
 from continuation.archive.copies import everything, interrupt, put, write_copy
@@ -18,6 +19,7 @@ from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
 from continuation.archive.salvage import nothing, salvaged
+from continuation.archive.structure import SLOTS
 from continuation.status import Status
 
 
@@ -45,7 +47,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     ArchiveError
         If it is no archive, its structure is damaged, it is read-only, or is being written.
     """
-    name = File(file)
+    name = as_file("file", file)
     with closing(Contents(name, salvage=True)) as contents:
         lost = {table: contents.unsound(table) for table in ("point", "path")}
         damaged = any(lost.values())
@@ -106,8 +108,8 @@ def _legible(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def kept(checkpoint: Checkpoint | None) -> dict[int, bytes]:
-    """The checkpoint in the first slot of a new file."""
-    return {} if checkpoint is None else {0: pack(checkpoint)}
+    """The checkpoint in its slot of a new file, which is not the one that the next is written to."""
+    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
 
 
 def own(contents: Contents, file: File, *, force: bool = False) -> Lock:

@@ -12,7 +12,7 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from continuation.archive.atomic import beside, check_new, short
+from continuation.archive.atomic import as_file, beside, check_new, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
 from continuation.archive.copies import leading_paths, write_copy
 from continuation.archive.errors import ArchiveError
@@ -27,7 +27,7 @@ from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.path import Path
 from continuation.status import Status
-from continuation.step.options import Options, documented
+from continuation.step.options import OBSERVER, Options, documented, each
 from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
@@ -82,11 +82,12 @@ def resume(
     ValueError
         If the homotopy given is not the one of the file.
     """
-    name = File(file)
-    target = File(os.path.realpath(name)) if archive is None else File(archive)
+    name = as_file("file", file)
+    target = File(os.path.realpath(name)) if archive is None else as_file("archive", archive)
     if archive is not None:
         check_new(target)
     every = kept_every(keep)
+    each("observers", observers, OBSERVER)
     for option in ("start", "state"):
         if option in options:
             raise ValueError(f"{option}: a resumed path begins where the archive ends")

@@ -7,7 +7,7 @@ readable at every moment, the records (`continuation.archive.checks`) say how mu
 from __future__ import annotations
 
 import os
-import resource
+import weakref
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path as File
@@ -25,36 +25,23 @@ from continuation.archive.checks import (
     RECORD_BYTES,
     RECORDS,
     Committed,
-    blank,
     digest,
     of_attributes,
     seal,
-    width,
 )
 from continuation.archive.errors import ArchiveError
-from continuation.archive.image import HEAD_BYTES, Sink, stated_length
+from continuation.archive.image import HEAD_BYTES, Sink, stated_length, to_nowhere
 from continuation.archive.locks import Lock
 from continuation.archive.problem import write_problem
-from continuation.archive.schema import COMPONENT, EVENT_NAME, NAME, Column, Layout, text
+from continuation.archive.schema import EVENT_NAME, NAME, Layout, text
+from continuation.archive.structure import RESUME, SLOTS, build
 
 LIBVER = ("v110", "v110")
-SLOTS = 2
-RESUME = "resume"
-
-_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
-_CHUNK_BYTES = 1 << 19
-_ROWS, _PATHS = 1024, 64
 
 _TABLES = ("point", "path")
 _ONE_RECORD = h5s.create_simple((1, RECORD_BYTES))
 
 Block = Mapping[str, np.ndarray[Any, Any]]
-
-
-def chunk_rows(unknowns: int) -> int:
-    """Rows a chunk of y: 512 KiB at most, a power of two."""
-    fitting = max(_CHUNK_BYTES // (8 * unknowns), 1)
-    return int(min(_ROWS, 1 << (fitting.bit_length() - 1)))
 
 
 class Store:
@@ -101,14 +88,14 @@ class Store:
         self.events: list[str] = []
         self._committed = Committed(sequence=1)
         self._lock: Lock | None = None
-        self._abandoned = False
+        self._abandoned, self._process = False, os.getpid()
         self._sink: Sink | None = Sink(part)
         # Without a cache HDF5 writes what it is given; 1 MiB for each column, kept for nothing, would be 25 MiB.
         self._cache = {} if compression else {"rdcc_nbytes": 0}
         self._h5 = h5py.File(self._sink, "w", libver=LIBVER, **self._cache)
         try:
             self._h5.attrs.update(attributes)
-            self._build(compression)
+            build(self._h5, layout, compression)
             if problem is not None:
                 write_problem(self._h5, *problem)
             self._h5[GROUP].attrs["attributes"] = np.uint32(of_attributes(dict(self._h5.attrs)))
@@ -129,6 +116,7 @@ class Store:
         self.finish(sync=self.durable)
         self._lock = Lock(self.file)
         self._h5 = h5py.File(self.file, "r+", libver=LIBVER, **self._cache)
+        _LIVE.add(self)
         self._bind()
         self._h5.swmr_mode = True
 
@@ -151,58 +139,6 @@ class Store:
             sink.close()
             self._sink = None
 
-    # -- structure --------------------------------------------------------------------------------------------
-
-    def _build(self, compression: int) -> None:
-        file, layout = self._h5, self.layout
-        filters = {"compression": "gzip", "compression_opts": compression, "shuffle": True} if compression else {}
-        rows = chunk_rows(layout.unknowns)
-        self._scale("point", None, _ROWS)
-        self._variable(Column("path", "i8", "1", ""), (), _PATHS, {}).make_scale("path")
-        self._scale("event", None, 16)
-        self._scale("controller", layout.controller)
-        component = file.create_dataset("component", data=np.arange(layout.unknowns, dtype=COMPONENT.dtype))
-        component.attrs.update(COMPONENT.attributes)
-        component.make_scale("component")
-        for column in layout.point_columns:
-            self._variable(column, layout.width(column), rows if column.dimensions[1:] else _ROWS, filters)
-        for column in layout.path_columns:
-            self._variable(column, layout.width(column), _PATHS, filters if not column.length else {})
-        self._variable(EVENT_NAME, (), 16, {})
-        for name, what in (("points", "rows of the point table"), ("paths", "rows of the path table")):
-            counter = file.create_dataset(f"committed_{name}", (), "i8")
-            counter.attrs.update({"units": "1", "long_name": f"valid {what}"})
-        checks = file.create_group(GROUP)
-        for table, columns, chunk in (("point", layout.point_columns, 16), ("path", layout.path_columns, _PATHS)):
-            words = width([column.name for column in columns])
-            checks.create_dataset(table, (0, words), "u4", maxshape=(None, words), chunks=(chunk, words))
-        checks.create_dataset("event", (0,), "u4", maxshape=(None,), chunks=(16,))
-        checks.create_dataset(RECORDS, data=blank())
-        group = file.create_group(RESUME)
-        slots = group.create_dataset("slots", (SLOTS, 0), "u1", maxshape=(SLOTS, None), chunks=(1, 1 << 14))
-        slots.attrs["long_name"] = "two alternating checkpoints: sequence u8, length u8, CRC-32 u4, JSON, JSON, arrays"
-
-    def _scale(self, name: str, length: int | None, chunk: int = 0) -> None:
-        """A dimension without a variable, as netCDF knows it; `length` None if it grows."""
-        grows = {"maxshape": (None,), "chunks": (chunk,)} if length is None else {}
-        scale = self._h5.create_dataset(name, (length or 0,), ">f4", **grows)
-        scale.make_scale(_NO_VARIABLE.format(length or 0))
-
-    def _variable(self, column: Column, width: tuple[int, ...], chunk: int, filters: Mapping[str, Any]) -> Any:
-        if column.name in self._h5:
-            dataset = self._h5[column.name]
-            dataset.attrs.update(column.attributes)
-            return dataset
-        dtype = h5py.string_dtype("utf-8", column.length) if column.length else column.dtype
-        dataset = self._h5.create_dataset(
-            column.name, (0, *width), dtype, maxshape=(None, *width), chunks=(chunk, *width), **filters
-        )
-        if column.name not in column.dimensions and column.name != "path":
-            dataset.attrs.update(column.attributes)
-            for axis, dimension in enumerate(column.dimensions):
-                dataset.dims[axis].attach_scale(self._h5[dimension])
-        return dataset
-
     def _names(self) -> tuple[str, ...]:
         """Of the datasets that grow."""
         columns = (*self.layout.point_columns, *self.layout.path_columns, EVENT_NAME)
@@ -223,6 +159,8 @@ class Store:
         Writing the same again does the same, so a commit that was interrupted is simply repeated, with the rows beyond
         `committed`.
         """
+        if not self.ours:
+            raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
         before = self._committed
         after = Committed(
             before.sequence + 1,
@@ -317,6 +255,17 @@ class Store:
                 if held is not None:
                     held.close()
 
+    @property
+    def ours(self) -> bool:
+        """Whether this process has opened it: a child that was forked since has a copy, and never writes."""
+        return self._process == os.getpid()
+
+    def disown(self) -> None:
+        """Let HDF5 write nowhere what it still has, in a process that is not to write."""
+        if self._sink is None and self._h5:
+            to_nowhere(self._h5.id.get_vfd_handle())
+            self._abandoned = True
+
     def abandon(self) -> None:
         """Leave the file as a kill would, and let HDF5 write what it still has to nowhere.
 
@@ -330,15 +279,19 @@ class Store:
             stated = stated_length(head.read(HEAD_BYTES))
             if stated > os.fstat(descriptor).st_size:
                 os.truncate(self.file, stated)
-        # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
-        limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
-        if limited or not hasattr(os, "memfd_create"):
-            nowhere = os.open(os.devnull, os.O_RDWR)
-        else:
-            nowhere = os.memfd_create("abandoned")
-        os.dup2(nowhere, descriptor)
-        os.close(nowhere)
-        self._abandoned = True
+        self.disown()
+
+
+_LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
+
+
+def _in_child() -> None:
+    """A forked child has its parent's files open, and HDF5 would write to them when the child ends."""
+    for store in list(_LIVE):
+        store.disown()
+
+
+os.register_at_fork(after_in_child=_in_child)
 
 
 def _rows(block: Block | None) -> int:

@@ -16,20 +16,22 @@ from typing import Any, Unpack
 
 from attrs import define, field
 
-from continuation.archive.atomic import check_new
+from continuation.archive.atomic import as_file, check_new
 from continuation.archive.errors import ArchiveError
 from continuation.archive.merge import gather
 from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
 from continuation.archive.writer import PathLog
+from continuation.checks import complain, instance_with, is_number
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import Options, check_names
 
 Progress = Callable[[int, int], None]
 _PARTS_PER_WORKER = 4
-_GRACE = 0.7
-"""Seconds that workers get to end their paths after Ctrl-C."""
+_GRACE = 0.5
+"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s, and the rest of a second is
+for the files."""
 
 
 def trace_many(
@@ -80,10 +82,16 @@ def trace_many(
         After Ctrl-C, when everything finished is in the archive.
     """
     check_names(options, owned={"start": "where every homotopy has its own"})
-    if timeout is not None and not timeout > 0:
-        raise ValueError(f"timeout: expected a positive number of seconds, found {timeout!r}")
+    if timeout is not None and not (is_number(timeout) and timeout > 0):
+        raise complain(ValueError, "timeout", "a positive number of seconds", timeout)
+    if not isinstance(homotopies, Iterable):
+        raise complain(TypeError, "homotopies", "several, as in a list", homotopies)
+    if executor is not None:
+        instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
+    if progress is not None and not callable(progress):
+        raise complain(TypeError, "progress", "a function of (done, total)", progress)
     tasks = list(homotopies)
-    target = None if archive is None else File(archive)
+    target = None if archive is None else as_file("archive", archive)
     if target is not None:
         check_new(target)
     report = progress or _silent

@@ -31,7 +31,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         if name not in self.columns:
-            raise KeyError(f"no column {name!r}; there are {', '.join(self.columns)}")
+            raise KeyError(f"column: expected one of {', '.join(self.columns)}, found {name!r}")
         if name not in self._read:
             values = self._fetch(name, slice(0, self._rows))
             self._read[name] = values if self._chosen is None else values[self._chosen]

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
-from attrs.validators import ge
 
 from continuation.archive import record
-from continuation.archive.atomic import check_new
+from continuation.archive.atomic import as_file, check_new
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.errors import ArchiveError
+from continuation.archive.limits import Limits
 from continuation.archive.live import create
 from continuation.archive.problem import problem_data
 from continuation.archive.provenance import root_attributes, scalars
@@ -25,21 +25,14 @@ from continuation.archive.reader import open_archive
 from continuation.archive.record import Record, counted
 from continuation.archive.rows import Row, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
-from continuation.archive.store import SLOTS, Store
+from continuation.archive.store import Store
 from continuation.archive.stored import StoredSteps, kept_every
+from continuation.archive.structure import SLOTS
+from continuation.checks import complain
 from continuation.path import LocatedEvent, Step
 from continuation.status import Status
 from continuation.step.state import State
 from continuation.step.tracer import Tracer
-
-
-@frozen
-class Limits:
-    """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
-
-    rows: int = field(default=256, validator=ge(1))
-    nbytes: int = field(default=4 << 20, validator=ge(1))
-    seconds: float = field(default=1.0, validator=ge(0.0))
 
 
 @frozen(eq=False)
@@ -118,8 +111,11 @@ class PathLog:
         limits: Limits | None = None,
         keep: str = "all",
     ) -> None:
-        check_new(File(file))
-        self._begin(File(file), durable, tangents, title, limits or Limits(), kept_every(keep))
+        limits = Limits() if limits is None else limits
+        if not isinstance(limits, Limits):
+            raise complain(TypeError, "limits", "Limits(...)", limits)
+        check_new(as_file("file", file))
+        self._begin(File(file), durable, tangents, title, limits, kept_every(keep))
 
     def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
         self.file, self._every = file, every
@@ -188,8 +184,8 @@ class PathLog:
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
-        if self._closed and self._open is not None:
-            # The disk is full, and has been told of.
+        if self._open is not None and (self._closed or (self._store is not None and not self._store.ours)):
+            # The disk is full, and has been told of; or a child was forked, whose copy of a path ends when it does.
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         row = record.of_path(found, tracer.homotopy, state.controller if state is not None else ())
@@ -219,7 +215,7 @@ class PathLog:
         if self._store is None and self._early:
             self._make(self._witness, _unknowns(self._witness), ())
         if self._store is not None:
-            if self._buffer.rows:
+            if self._buffer.rows and self._store.ours:
                 self._commit()
             self._store.close()
         self._closed = True

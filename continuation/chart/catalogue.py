@@ -7,6 +7,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Literal
 
 from continuation.chart.study import Study
+from continuation.plugins import grouped, owners
 
 GROUP = "continuation.studies"
 """Entry points of this group are functions (size, compare) to a sequence of studies, named as the entry point."""
@@ -26,13 +27,11 @@ def catalogue() -> dict[str, EntryPoint]:
     ValueError
         If two distributions provide a study of the same name.
     """
-    found: dict[str, EntryPoint] = {}
-    for point in sorted(entry_points(group=GROUP), key=lambda point: point.name):
-        other = found.setdefault(point.name, point)
-        if other.value != point.value:
-            owners = " and ".join(p.dist.name if p.dist else p.value for p in (other, point))
-            raise ValueError(f"{point.name}: expected one package that provides this study, found {owners}")
-    return found
+    found = grouped(entry_points(group=GROUP))
+    for name, points in found.items():
+        if len(points) > 1:
+            raise ValueError(f"{name}: expected one package that provides this study, found {owners(points)}")
+    return {name: points[0] for name, points in sorted(found.items())}
 
 
 def studies(name: str, size: Size = "moderate", compare: bool = False) -> Sequence[Study]:

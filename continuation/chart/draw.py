@@ -9,12 +9,12 @@ from attrs import frozen
 
 from continuation.chart.front import FLOOR, coordinates, on_front
 from continuation.chart.results import WORK, Results, Row
-from continuation.chart.style import Axes, Figure, few_ticks, handle, label, legend_below, line_style, panels, tidy
+from continuation.chart.style import Axes, Figure, few_ticks, label, legend_below, line_style, panels, ring, tidy
 
 STRIP = 0.11
 """Width of the strip of failures, as a fraction of the panel."""
 
-_FRONT = {"marker": "o", "markersize": 11, "markerfacecolor": "none", "markeredgecolor": "black", "linestyle": "none"}
+_FRONT = ring(11)
 
 
 def draw(
@@ -45,10 +45,8 @@ def draw(
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the error, the work, a problem or a method is none of the results'.
+    ImportError, ValueError
+        Without matplotlib; if the error, the work, a problem or a method is none of the results'.
     """
     results.check(error, work)
     shown = list(problems) if problems is not None else results.problems
@@ -60,12 +58,9 @@ def draw(
     for name, ax in zip(shown, axes):
         rows = [row for row in results.of(problem=name) if row.method in names]
         _panel(ax, rows, names, error, work)
-        ax.set_title(name, fontsize="medium")
+        tidy(ax, name)
     label(axes, results.errors[error], WORK[work].label)
-    handles = [handle(line_style(k)) for k in range(len(names))]
-    legend_below(figure, [*handles, handle(_FRONT)], [*names, "Pareto front"])
-    if [results.title] != shown:
-        figure.suptitle(results.title, fontsize="medium")
+    legend_below(figure, names, results.title if [results.title] != shown else "", {"Pareto front": _FRONT})
     return figure
 
 
@@ -104,7 +99,6 @@ def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, wo
     axes.set_yscale("log")
     axes.margins(y=0.08)
     few_ticks(axes.yaxis)
-    tidy(axes)
     band.mark(axes)
     _failures(axes, failures, len(names))
 

@@ -23,7 +23,7 @@ from continuation.tolerance import Tolerance
 BETWEEN = (0.25, 0.5, 0.75)
 """Where in each step the dense output is compared with the curve."""
 
-_TIGHT = Tolerance(absolute=1e-12, relative=1e-12)
+_TIGHT = Tolerance(relative=1e-12)
 """Of the correction that drops a point onto the curve: the next Newton step would be below round-off."""
 
 
@@ -102,7 +102,7 @@ def _dropped(problem: Problem, points: Array) -> Array:
     found = []
     for u in points:
         try:
-            here = linearize(evaluator, u, weights, np.ones_like(u), 0)
+            here = linearize(evaluator, u, weights, np.ones_like(u))
             correction = MoorePenrose(max_contraction=10.0).correct(evaluator, here, u, here.border, _TIGHT)
         except ArithmeticError:
             found.append(np.full_like(u, np.nan))

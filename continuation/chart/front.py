@@ -28,14 +28,8 @@ def on_front(rows: Sequence[Row], error: str, work: str) -> list[Row]:
     Parameters
     ----------
     rows : sequence of Row
-    error : str
-        A name in `Row.errors`.
-    work : str
-        One of `WORK`.
-
-    Returns
-    -------
-    list of Row
+    error, work : str
+        Names in `Row.errors` and `WORK`.
     """
     points = [(point, row) for row in rows if (point := coordinates(row, error, work)) is not None]
     best = [
@@ -54,10 +48,8 @@ def excess(results: Results, error: str, work: str) -> dict[tuple[str, str, floa
     Parameters
     ----------
     results : Results
-    error : str
-        One of `results.errors`.
-    work : str
-        One of `WORK`.
+    error, work : str
+        Names in `results.errors` and `WORK`.
 
     Raises
     ------

@@ -108,7 +108,7 @@ def orders(*values: int) -> Ladder:
 def _limited(options: Options, value: float) -> Options:
     controller = options.get("controller") or options.get("preset", DEFAULT).controller
     bounds = controller.bounds
-    limited = evolve(bounds, maximum=value, initial=min(bounds.initial, value), minimum=min(bounds.minimum, value))
+    limited = evolve(bounds, maximum=value, minimum=min(bounds.minimum, value))
     return {**options, "controller": evolve(controller, bounds=limited)}
 
 

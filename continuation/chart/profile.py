@@ -12,7 +12,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.chart.results import WORK, Results
-from continuation.chart.style import Figure, handle, label, legend_below, line_style, panels, tidy
+from continuation.chart.style import Figure, label, legend_below, line_style, panels, tidy
 from continuation.chart.table import Cell, Table
 
 
@@ -65,10 +65,8 @@ def draw_profile(results: Results, work: str) -> Figure:
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the work is unknown.
+    ImportError, ValueError
+        Without matplotlib; for an unknown work.
     """
     results.check(work=work)
     figure, axes = panels(len(results.families))
@@ -90,11 +88,9 @@ def draw_profile(results: Results, work: str) -> Figure:
         ax.set_xscale("log")
         ax.set_xlim(1.0, widest)
         ax.set_ylim(-0.03, 1.04)
-        ax.set_title(family, fontsize="medium")
-        tidy(ax)
+        tidy(ax, family)
     label(axes, f"{WORK[work].quantity},\nover the least of all methods", "fraction solved")
-    legend_below(figure, [handle(line_style(k)) for k in range(len(results.methods))], results.methods)
-    figure.suptitle(results.title, fontsize="medium")
+    legend_below(figure, results.methods, results.title)
     return figure
 
 

@@ -128,12 +128,12 @@ class Results:
 
     @property
     def families(self) -> list[str]:
-        """Names in order of appearance."""
+        """As for the problems."""
         return list(dict.fromkeys(row.family for row in self.rows))
 
     @property
     def methods(self) -> list[str]:
-        """Names in order of appearance."""
+        """As for the problems."""
         return list(dict.fromkeys(row.method for row in self.rows))
 
     def of(self, *, problem: str | None = None, family: str | None = None, method: str | None = None) -> Sequence[Row]:
@@ -143,10 +143,6 @@ class Results:
         ----------
         problem, family, method : str, optional
             Only rows of that name; all by default.
-
-        Returns
-        -------
-        sequence of Row
         """
         wanted = {"problem": problem, "family": family, "method": method}
         given = {name: value for name, value in wanted.items() if value is not None}
@@ -157,8 +153,7 @@ class Results:
 
         Parameters
         ----------
-        error : str, optional
-        work : str, optional
+        error, work : str, optional
 
         Raises
         ------

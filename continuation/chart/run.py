@@ -31,10 +31,6 @@ def run(study: Study, watch: Watch | None = None) -> Results:
     study : Study
     watch : callable, optional
         Called with every row.
-
-    Returns
-    -------
-    Results
     """
     cases = [
         (problem, method, rung)

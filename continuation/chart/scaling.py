@@ -7,7 +7,7 @@ from attrs import frozen
 from scipy.optimize import isotonic_regression
 
 from continuation.chart.results import WORK, Results
-from continuation.chart.style import Axes, Figure, few_ticks, handle, label, legend_below, line_style, panels, tidy
+from continuation.chart.style import Axes, Figure, few_ticks, label, legend_below, line_style, panels, tidy
 from continuation.chart.table import Cell, Table
 
 FITTED = 3
@@ -81,10 +81,8 @@ def draw_scaling(results: Results, work: str) -> Figure:
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the work is unknown.
+    ImportError, ValueError
+        Without matplotlib; for an unknown work.
     """
     results.check(work=work)
     powers = exponents(results, work)
@@ -101,13 +99,11 @@ def draw_scaling(results: Results, work: str) -> Figure:
                 ends.append((points[-1][1], f"$n^{{{power:.1f}}}$", line_style(k)["color"]))
         ax.set_xscale("log")
         ax.set_yscale("log")
-        ax.set_title(family, fontsize="medium")
         few_ticks(ax.yaxis)
-        tidy(ax)
+        tidy(ax, family)
         _name_ends(ax, ends)
     label(axes, "size $n$", WORK[work].label)
-    legend_below(figure, [handle(line_style(k)) for k in range(len(results.methods))], results.methods)
-    figure.suptitle(results.title, fontsize="medium")
+    legend_below(figure, results.methods, results.title)
     return figure
 
 

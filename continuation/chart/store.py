@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
@@ -14,7 +15,7 @@ import numpy as np
 from attrs import fields_dict
 from h5py import h5s
 
-from continuation.archive.atomic import check_new
+from continuation.archive.atomic import beside, check_new, publish
 from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import history
 from continuation.archive.schema import TEXT, Column, text
@@ -55,18 +56,16 @@ def write(results: Results, file: str | PathLike[str]) -> File:
     file : path
         Must not exist.
 
-    Returns
-    -------
-    pathlib.Path
-
     Raises
     ------
     ArchiveError
-        If the file exists, or its directory does not, or may not be written.
+        If the file exists, or its directory does not, or may not be written, or the disk is full.
     """
     name = File(file)
     check_new(name)
-    with h5py.File(name, "x", libver=LIBVER) as h5:
+    # In memory, since HDF5 ends the process where it cannot write what it closes.
+    image = BytesIO()
+    with h5py.File(image, "w", libver=LIBVER) as h5:
         h5.attrs.update(
             {
                 "Conventions": "CF-1.11",
@@ -85,6 +84,9 @@ def write(results: Results, file: str | PathLike[str]) -> File:
         run.make_scale("run")
         for column, values in _columns(results):
             _put(h5, column, values)
+    with beside(name) as part:
+        part.write_bytes(image.getvalue())
+        publish(part, name)
     return name
 
 
@@ -117,10 +119,6 @@ def read(file: str | PathLike[str]) -> Results:
     ----------
     file : path
         Written by `write`.
-
-    Returns
-    -------
-    Results
 
     Raises
     ------

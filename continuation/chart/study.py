@@ -47,10 +47,6 @@ class SupportsTable(Protocol):
         Parameters
         ----------
         results : Results
-
-        Returns
-        -------
-        Table
         """
         ...
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from continuation.plot import COLOURS, STYLES, require_matplotlib
@@ -28,11 +28,10 @@ def line_style(k: int) -> dict[str, Any]:
     }
 
 
-def handle(style: dict[str, Any]) -> Any:
-    """A line with this line_style, for a legend, no larger than a line of text."""
-    from matplotlib.lines import Line2D
-
-    return Line2D([], [], **{**style, "markersize": min(style["markersize"], 9.0)})
+def ring(size: float) -> dict[str, Any]:
+    """A black ring around what is best."""
+    shape = {"marker": "o", "markerfacecolor": "none", "markeredgecolor": "black", "linestyle": "none"}
+    return {**shape, "markersize": size}
 
 
 def panels(count: int, most_across: int = 3, height: float = 3.1) -> tuple[Figure, list[Axes]]:
@@ -50,8 +49,16 @@ def panels(count: int, most_across: int = 3, height: float = 3.1) -> tuple[Figur
     return figure, list(grid[:count])
 
 
-def legend_below(figure: Figure, handles: Sequence[Any], labels: Sequence[str]) -> None:
-    """One legend for all panels, outside of them."""
+def legend_below(figure: Figure, names: Sequence[str], title: str, marks: Mapping[str, dict[str, Any]] = {}) -> None:
+    """One legend for all panels, outside of them: the lines by name, then the marks by their style; a title above."""
+    from matplotlib.lines import Line2D
+
+    if title:
+        figure.suptitle(title, fontsize="medium")
+    styles = [*map(line_style, range(len(names))), *marks.values()]
+    # No larger than a line of text.
+    handles = [Line2D([], [], **{**style, "markersize": min(style["markersize"], 9.0)}) for style in styles]
+    labels = [*names, *marks]
     width = figure.get_size_inches()[0]
     longest = max((len(label) for label in labels), default=1)
     most = max(1, int(width / (0.5 + 0.075 * longest)))
@@ -83,9 +90,9 @@ def few_ticks(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def tidy(axes: Axes) -> Axes:
-    """Without a frame, with a light grid at the decades."""
+def tidy(axes: Axes, title: str) -> None:
+    """A title; no frame, a light grid at the decades."""
+    axes.set_title(title, fontsize="medium")
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(which="major", color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
-    return axes

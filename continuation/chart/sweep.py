@@ -8,12 +8,12 @@ import numpy as np
 from attrs import frozen
 
 from continuation.chart.results import WORK, Results, Row
-from continuation.chart.style import Figure, handle, legend_below, line_style, panels, tidy
+from continuation.chart.style import Figure, legend_below, line_style, panels, ring, tidy
 
 Chooser = Callable[[Row], float | None]
 """The value that the library chooses for a row's problem; None where it does not choose."""
 
-_BEST = {"marker": "o", "markersize": 12, "markerfacecolor": "none", "markeredgecolor": "black", "linestyle": "none"}
+_BEST = ring(12)
 _CHOSEN = {"marker": "|", "markersize": 20, "markeredgecolor": "black", "markeredgewidth": 2.5, "linestyle": "none"}
 _TICKS = (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
@@ -31,10 +31,8 @@ def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Fi
 
     Raises
     ------
-    ImportError
-        Without matplotlib.
-    ValueError
-        If the work is unknown.
+    ImportError, ValueError
+        Without matplotlib; for an unknown work.
     """
     results.check(work=work)
     figure, axes = panels(len(results.methods), most_across=2, height=3.6)
@@ -57,16 +55,11 @@ def draw_sweep(results: Results, work: str, chosen: Chooser | None = None) -> Fi
         ax.set_yticks(ticks, labels=[f"{tick:g}" for tick in ticks])
         ax.set_yticks([], minor=True)
         ax.set_ylim(0.9, highest)
-        ax.set_title(method, fontsize="medium")
         ax.set_xlabel(results.ladder)
-        tidy(ax)
+        tidy(ax, method)
     axes[0].set_ylabel(f"{WORK[work].quantity},\nover the least of the line")
-    labels = [*results.problems, "least"]
-    handles = [*(handle(line_style(k)) for k in range(len(results.problems))), handle(_BEST)]
-    if chosen is not None:
-        labels, handles = [*labels, "chosen by the library"], [*handles, handle(_CHOSEN)]
-    legend_below(figure, handles, labels)
-    figure.suptitle(results.title, fontsize="medium")
+    marks = {"least": _BEST} if chosen is None else {"least": _BEST, "chosen by the library": _CHOSEN}
+    legend_below(figure, results.problems, results.title, marks)
     return figure
 
 
@@ -80,7 +73,7 @@ class Sweep:
     @property
     def name(self) -> str:
         """Of the file."""
-        return f"{self.work}"
+        return self.work
 
     def draw(self, results: Results) -> Figure:
         """See `draw_sweep`."""

@@ -95,21 +95,11 @@ def runs(results: Results, failures_only: bool = False) -> Table:
     counts = [name for name in asdict(results.rows[0].counts) if name != "jacobians"] if results.rows else []
     head = ("problem", "n", "method", results.ladder, "front", "outcome", "turns", *results.errors, *counts, "seconds")
     lines = [
-        (
-            row.problem,
-            row.n,
-            row.method,
-            row.rung,
-            ON_FRONT if id(row) in front else "",
-            row.failure or "ok",
-            row.turns,
-            *(row.errors[name] for name in results.errors),
-            *(asdict(row.counts)[name] for name in counts),
-            row.seconds,
-        )
+        (row.problem, row.n, row.method, row.rung, ON_FRONT if id(row) in front else "", row.failure or "ok", row.turns,
+         *(row.errors[name] for name in results.errors), *(asdict(row.counts)[name] for name in counts), row.seconds)
         for row in results.rows
         if row.failed or not failures_only
-    ]
+    ]  # fmt: skip
     return Table(head, lines)
 
 

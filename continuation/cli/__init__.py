@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -14,6 +15,9 @@ __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError",
 
 INTERRUPTED = 130
 """The shell's status for a process that Ctrl-C ended."""
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
+"""What the machine says of a file that has no place; any other error of the system may be a defect, and is shown."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -49,6 +53,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         return SUCCESS
     except KeyboardInterrupt:
         return INTERRUPTED
+    except OSError as error:
+        from continuation.archive.errors import ArchiveError
+
+        if not isinstance(error, ArchiveError) and error.errno not in NO_ROOM:
+            raise
+        name = error.filename or "a file"
+        what = error if error.errno is None else f"{name}: could not be written ({os.strerror(error.errno)})"
+        print(f"continuation: {what}", file=sys.stderr)
+        return BAD_INPUT
     return status
 
 

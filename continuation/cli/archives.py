@@ -26,8 +26,14 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
     parser.add_argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps")
     parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
-    parser.add_argument("--trust", action="append", default=[], type=_named, metavar="MODULE:NAME",
-                        help="a class or function that may be made, besides what is installed; can be given again")
+    parser.add_argument(
+        "--trust",
+        action="append",
+        default=[],
+        type=_named,
+        metavar="MODULE:NAME",
+        help="a class or function that may be made, besides what is installed; can be given again",
+    )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.set_defaults(run=_resume)
 
@@ -51,7 +57,7 @@ def register(subparsers: Subparsers) -> None:
 def _inspect(arguments: argparse.Namespace) -> int:
     from continuation.archive import describe, open_archive
 
-    with _complaints("FILE"), open_archive(arguments.file) as archive:
+    with complaints("FILE"), open_archive(arguments.file) as archive:
         print(describe(archive), end="")
     return SUCCESS
 
@@ -64,7 +70,7 @@ def _resume(arguments: argparse.Namespace) -> int:
     limits = {name: getattr(arguments, name) for name in ("steps", "factorizations") if getattr(arguments, name)}
     options: Options = {"budget": Budget(**limits)} if limits else {}
     observers = (Progress(),) if arguments.progress else ()
-    with _complaints("FILE", new="--archive"):
+    with complaints("FILE", new="--archive"):
         path = resume(
             arguments.file, archive=arguments.archive, observers=observers, trust=arguments.trust, **options
         )
@@ -85,7 +91,7 @@ def _named(path: str) -> Any:
 def _recover(arguments: argparse.Namespace) -> int:
     from continuation.archive import open_archive, recover
 
-    with _complaints("FILE"):
+    with complaints("FILE"):
         file = recover(arguments.file, force=arguments.force)
         with open_archive(file) as archive:
             print(f"{file}: {len(archive)} paths, {archive.points.size} points")
@@ -95,7 +101,7 @@ def _recover(arguments: argparse.Namespace) -> int:
 def _export(arguments: argparse.Namespace) -> int:
     from continuation.archive import export
 
-    with _complaints("FILE", new="TARGET"):
+    with complaints("FILE", new="TARGET"):
         for file in export(arguments.file, arguments.target, compression=arguments.compression):
             print(file)
     return SUCCESS
@@ -104,13 +110,13 @@ def _export(arguments: argparse.Namespace) -> int:
 def _merge(arguments: argparse.Namespace) -> int:
     from continuation.archive import merge
 
-    with _complaints("FILE", new="OUT"):
+    with complaints("FILE", new="OUT"):
         print(merge(arguments.files, arguments.target))
     return SUCCESS
 
 
 @contextmanager
-def _complaints(argument: str, new: str = "FILE") -> Iterator[None]:
+def complaints(argument: str, new: str = "FILE") -> Iterator[None]:
     """An archive that cannot be used as one line about `argument`, or about `new` if a new file is there already."""
     from continuation.archive import ArchiveError, ArchiveExistsError
 

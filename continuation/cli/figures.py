@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from continuation.cli.parser import SUCCESS, Subparsers, UsageError
+from continuation.cli.parser import SUCCESS, Subparsers, UsageError, parsed
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
@@ -40,8 +41,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Read, draw, say where."""
     from continuation.archive import ArchiveError, open_archive
 
-    output = arguments.output if arguments.output is not None else str(Path(arguments.file).with_suffix(".png"))
-    check_picture("--output", output)
+    if arguments.output is not None:
+        check_picture("--output", arguments.output)
     try:
         with open_archive(arguments.file) as archive:
             if not 0 <= arguments.path < len(archive):
@@ -49,8 +50,11 @@ def run(arguments: argparse.Namespace) -> int:
             path = archive.path(arguments.path)
     except ArchiveError as error:
         raise UsageError("FILE", error) from error
+    output = str(Path(arguments.file).with_suffix(".png")) if arguments.output is None else arguments.output
+    check_picture("--output", output)
     try:
-        save(output, lambda figure: _draw(figure, path, arguments))
+        title = f"{Path(arguments.file).name}, path {arguments.path}: {path.status.name}"
+        save(output, path, title, lambda axes: _draw(axes, path, arguments))
     except ValueError as error:
         complaint = str(error).removeprefix("components: ")
         raise UsageError("FILE" if arguments.components is None else "--components", complaint) from error
@@ -73,32 +77,37 @@ def check_picture(option: str, file: str) -> None:
         raise UsageError(option, f"{error}, found none") from error
 
 
-def save(file: str, draw: Callable[[Any], None], size: tuple[float, float] = (7.0, 6.0)) -> None:
-    """Make a figure, draw into it and write it; no window opens, with any backend of matplotlib."""
+def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> None:
+    """What `draw` draws on its axes, above the step sizes; no window opens, with any backend of matplotlib."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=size, layout="constrained")
-    draw(figure)
-    figure.savefig(file, dpi=DOTS_PER_INCH)
+    from continuation.archive.atomic import beside, publish
+    from continuation.plot import plot_steps
 
-
-def _draw(figure: Any, path: Any, arguments: argparse.Namespace) -> None:
-    from continuation.plot import plot_bifurcation, plot_components, plot_steps
-
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     above, below = figure.subplots(2, 1, height_ratios=(3, 1))
+    draw(above)
+    above.set_title(title, fontsize="medium")
+    plot_steps(path, below)
+    picture = BytesIO()
+    figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
+    # Beside it first: where the disk is full, what was there stays.
+    with beside(Path(file)) as part:
+        part.write_bytes(picture.getvalue())
+        publish(part, Path(file), replace=True)
+
+
+def _draw(axes: Any, path: Any, arguments: argparse.Namespace) -> None:
+    from continuation.plot import plot_bifurcation, plot_components
+
     chosen = arguments.components
     if not arguments.diagram:
-        plot_components(path, above, arguments.against, components=chosen)
+        plot_components(path, axes, arguments.against, components=chosen)
     else:
         if chosen is not None and len(chosen) != 1:
             raise ValueError(f"expected one component for --diagram, found {len(chosen)}")
-        plot_bifurcation(path, above, None if chosen is None else chosen[0])
-    above.set_title(f"{Path(arguments.file).name}, path {arguments.path}: {path.status.name}", fontsize="medium")
-    plot_steps(path, below)
+        plot_bifurcation(path, axes, None if chosen is None else chosen[0])
 
 
 def _numbers(text: str) -> list[int]:
-    try:
-        return [int(part) for part in text.split(",")]
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"expected numbers like 0,2,3, found {text!r}") from None
+    return parsed(text, lambda text: [int(part) for part in text.split(",")], bool, "numbers like 0,2,3")

@@ -13,7 +13,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from continuation import plugins
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
+from continuation.cli.archives import complaints
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, parsed, positive
 
 if TYPE_CHECKING:
     from continuation.budget import Budget
@@ -122,7 +123,7 @@ def _full(described: plugins.Description) -> Iterator[str]:
 
 def _trace(arguments: argparse.Namespace) -> int:
     from continuation import presets
-    from continuation.archive import ArchiveError, PathLog
+    from continuation.archive import PathLog
     from continuation.tracing import trace
 
     homotopy, values = _homotopy(arguments)
@@ -130,10 +131,8 @@ def _trace(arguments: argparse.Namespace) -> int:
         from continuation.cli.figures import check_picture
 
         check_picture("--plot", arguments.plot)
-    try:
+    with complaints("--archive", new="--archive"):
         log = None if arguments.archive is None else PathLog(arguments.archive)
-    except ArchiveError as error:
-        raise UsageError("--archive", error) from error
     folder = None
     if arguments.chart is not None:
         from continuation.cli.charts import new_folder
@@ -141,7 +140,7 @@ def _trace(arguments: argparse.Namespace) -> int:
         folder = new_folder("--chart", arguments.chart)
     course, budget = _course(arguments), _budget(arguments)
     preset = getattr(presets, arguments.preset.upper())
-    with _refused(arguments.name):
+    with _refused(arguments.name), complaints("--archive", new="--archive"):
         path = trace(
             homotopy,
             archive=log,
@@ -160,7 +159,10 @@ def _trace(arguments: argparse.Namespace) -> int:
 
         print(f"\n{cite(path)}", file=out)
     if arguments.plot is not None:
-        _draw(path, title, arguments.plot)
+        from continuation.cli.figures import save
+        from continuation.plot import plot_components
+
+        save(arguments.plot, path, f"{title}: {path.status.name}", lambda axes: plot_components(path, axes))
     arrived = path.success
     if folder is not None:
         if not arrived:
@@ -224,19 +226,6 @@ def _as_json(title: str, path: Path) -> dict[str, Any]:
         "counts": path.counts.as_dict(),
         "seconds": path.seconds,
     }
-
-
-def _draw(path: Path, title: str, file: str) -> None:
-    from continuation.cli.figures import save
-    from continuation.plot import plot_components, plot_steps
-
-    def draw(figure: Any) -> None:
-        above, below = figure.subplots(2, 1, height_ratios=(3, 1))
-        plot_components(path, above)
-        above.set_title(f"{title}: {path.status.name}", fontsize="medium")
-        plot_steps(path, below)
-
-    save(file, draw)
 
 
 # -- check ----------------------------------------------------------------------------------------------------
@@ -321,13 +310,7 @@ def _number_or_none(text: str) -> float:
     """A number; NaN stands for no target, so that it differs from an option not given."""
     if text.lower() == "none":
         return math.nan
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.inf
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a finite number or none, found {text!r}")
-    return value
+    return parsed(text, float, math.isfinite, "a finite number or none")
 
 
 def _tolerances(text: str) -> tuple[float, ...]:
@@ -335,10 +318,4 @@ def _tolerances(text: str) -> tuple[float, ...]:
 
 
 def _above_zero(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"expected a positive number, found {text!r}")
-    return value
+    return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from typing import Any, NoReturn, Protocol
+from typing import Any, NoReturn, Protocol, TypeVar
+
+T = TypeVar("T")
 
 SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
 """Exit statuses: done or solved; not solved; an argument could not be used."""
@@ -50,20 +52,21 @@ class Subparsers(Protocol):
             Of the command.
         **options
             As for `argparse.ArgumentParser`, and `help`, the line in the list of commands.
-
-        Returns
-        -------
-        argparse.ArgumentParser
         """
         ...
 
 
+def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], expected: str) -> T:
+    """The value of an argument, for its `type`; a sentence where it cannot be read or is not fine."""
+    try:
+        value = convert(text)
+        if fine(value):
+            return value
+    except ValueError:
+        pass
+    raise argparse.ArgumentTypeError(f"expected {expected}, found {text!r}")
+
+
 def positive(text: str) -> int:
     """A positive integer, for the `type` of an argument."""
-    try:
-        value = int(text)
-    except ValueError:
-        value = 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"expected a positive integer, found {text!r}")
-    return value
+    return parsed(text, int, lambda value: value >= 1, "a positive integer")

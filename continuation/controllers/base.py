@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Protocol, TypeAlias
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
+from attrs.validators import optional
 
 from continuation.checks import POSITIVE, POSITIVE_FINITE
 from continuation.rejection import Rejection
@@ -64,14 +65,25 @@ class Decision:
 
 @frozen
 class Bounds:
-    """Floor, ceiling and first value of the step length, in arclength of the metric."""
+    """Floor, ceiling and first value of the step length, in arclength of the metric.
+
+    Attributes
+    ----------
+    minimum : float, default 1e-10
+        A path whose step falls below it ends.
+    maximum : float, default inf
+        No step is longer, the first one included.
+    initial : float or None, default None
+        The first step. None is chosen from the problem (`continuation.step.extent`), or by a controller that has a
+        usual step of its own.
+    """
 
     minimum: float = field(default=1e-10, validator=POSITIVE_FINITE)
     maximum: float = field(default=float("inf"), validator=POSITIVE)
-    initial: float = field(default=0.1, validator=POSITIVE)
+    initial: float | None = field(default=None, validator=optional(POSITIVE))
 
     def __attrs_post_init__(self) -> None:
-        if not self.minimum <= self.initial:
+        if self.initial is not None and not self.minimum <= self.initial:
             raise ValueError(f"minimum: expected at most the initial step {self.initial:g}, found {self.minimum:g}")
         if not self.minimum <= self.maximum:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
@@ -88,6 +100,21 @@ class Bounds:
         float
         """
         return min(h, self.maximum)
+
+    def beginning_with(self, usual: float) -> Bounds:
+        """The same bounds, with a first step where they do not say one.
+
+        Parameters
+        ----------
+        usual : float
+            That of the controller.
+        """
+        return self if self.initial is not None else evolve(self, initial=max(self.cap(usual), self.minimum))
+
+    @property
+    def longest(self) -> float:
+        """The first value, for a controller that goes back to it after every step."""
+        return self.maximum if self.initial is None else self.cap(self.initial)
 
 
 class Controller(Protocol):

@@ -21,11 +21,25 @@ the last one's, are taken for this at least; a corrector that contracts better t
 _FRACTION = and_(gt(0.0), lt(1.0))
 
 
+def _of_fixed(bounds: Bounds) -> Bounds:
+    return bounds.beginning_with(0.1)
+
+
+def _of_geometric(bounds: Bounds) -> Bounds:
+    """The paper's step: ratio^0."""
+    return bounds.beginning_with(1.0)
+
+
+def _of_series(bounds: Bounds) -> Bounds:
+    """The whole range of the series."""
+    return bounds.beginning_with(math.inf)
+
+
 @frozen
 class Fixed:
-    """The same step always; halved within a step that fails, and restored after it."""
+    """The same step always, `bounds.initial` (0.1); halved within a step that fails, and restored after it."""
 
-    bounds: Bounds = field(factory=Bounds)
+    bounds: Bounds = field(factory=Bounds, converter=_of_fixed)
     max_angle: float = field(default=0.8, validator=gt(0))
 
     def init(self) -> State:
@@ -35,7 +49,7 @@ class Fixed:
     def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Accept whatever converged within the angle."""
         if attempt.converged and attempt.angle <= self.max_angle:
-            return Decision(True, self.bounds.cap(self.bounds.initial), state)
+            return Decision(True, self.bounds.longest, state)
         return Decision(False, attempt.h / 2.0, state)
 
 
@@ -43,12 +57,12 @@ class Fixed:
 class Geometric:
     """The backtracking of Dutta, Das and Jana (Steps 2 and 3): the step is ratio^l, and l starts at 0 at every point.
 
-    `bounds.initial` is the longest step (1 in the paper). It accepts whatever the corrector accepts, however far the
+    `bounds.initial` is the longest step (1, as in the paper). It accepts whatever the corrector does, however far the
     tangent turned, so it can jump between paths: here to be compared with, not to be used.
     """
 
     ratio: float = field(default=0.5, validator=_FRACTION)
-    bounds: Bounds = field(factory=lambda: Bounds(minimum=1e-6, initial=1.0))
+    bounds: Bounds = field(factory=lambda: Bounds(minimum=1e-6), converter=_of_geometric)
 
     def init(self) -> State:
         """No state."""
@@ -57,7 +71,7 @@ class Geometric:
     def update(self, state: State, attempt: StepMeasures) -> Decision:
         """Back to the longest step after success, one power of the ratio down after failure."""
         if attempt.converged:
-            return Decision(True, self.bounds.initial, state)
+            return Decision(True, self.bounds.longest, state)
         return Decision(False, attempt.h * self.ratio, state)
 
 
@@ -149,6 +163,10 @@ class Curvature:
     growth: float = field(default=3.0, validator=gt(1))
     bounds: Bounds = field(factory=Bounds)
 
+    def _step(self, liked: float, curvature: float) -> float:
+        # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.
+        return min(math.sqrt(2.0 * liked / curvature), self.max_angle / curvature)
+
     def init(self) -> State:
         """No curvature known."""
         return (-1.0, 0.0, self.initial_distance)
@@ -165,9 +183,7 @@ class Curvature:
         ahead = max(ahead, STRAIGHT / attempt.h, LEAST_CURVATURE * curvature)
         quality = math.sqrt(self.contraction / max(attempt.contraction, LEAST_CONTRACTION))
         liked = liked * min(max(quality, 0.5), 2.0)
-        wanted = math.sqrt(2.0 * liked / ahead)
-        # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.
-        wanted = min(wanted, self.max_angle / ahead, self.growth * attempt.h)
+        wanted = min(self._step(liked, ahead), self.growth * attempt.h)
         wanted = max(wanted, attempt.h / self.growth)
         if attempt.rejections:
             wanted = min(wanted, attempt.h)
@@ -184,7 +200,7 @@ class SeriesRange:
 
     distance: float = field(default=1e-3, validator=gt(0))
     max_angle: float = field(default=1.4, validator=gt(0))
-    bounds: Bounds = field(factory=lambda: Bounds(initial=math.inf))
+    bounds: Bounds = field(factory=Bounds, converter=_of_series)
 
     def init(self) -> State:
         """No state."""
@@ -194,5 +210,5 @@ class SeriesRange:
         """Accept small corrections; ask for the whole range again."""
         near = attempt.distance <= self.distance * attempt.h and attempt.angle <= self.max_angle
         if attempt.converged and near:
-            return Decision(True, self.bounds.cap(self.bounds.initial), state)
+            return Decision(True, self.bounds.cap(math.inf), state)
         return Decision(False, attempt.h / 2.0, state)

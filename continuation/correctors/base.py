@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -90,6 +91,40 @@ class Corrector(Protocol):
         ...
 
 
+ROOT_OF_ROUND_OFF = float(np.finfo(float).eps) ** 0.5
+"""A tolerance below this asks for a residual at round-off: Newton's last error is about the square of its increment."""
+
+TINY = 1e-300
+"""Stands for terms that do not move: no residual beside them is round-off."""
+
+POLISHING = Contraction(iterations=12)
+"""From the tolerance to round-off chord steps that halve an increment, or better, need no more."""
+
+ROUND_OFF = 32.0
+"""How much larger than what `Evaluator.round_off` sees a residual at round-off may be: it looks once, at something
+random, and H adds up as many terms as it has."""
+
+
+FAR_FROM_ROUND_OFF = 30.0 * ROUND_OFF
+"""A residual this large after polishing is worth a factorisation of its own."""
+
+ROUNDS = 10
+"""At most so many, while they help: near a pole Newton's method first creeps."""
+
+
+def level(r: Array, terms: Array) -> float:
+    """The largest component of a residual beside the round-off of its terms, as `Evaluator.round_off` sees it."""
+    size = np.abs(r)
+    live = size > 0.0
+    return float((size[live] / np.maximum(terms[live], TINY)).max()) if live.any() else 0.0
+
+
+def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
+    """Whether a component of the residual at u is far above the round-off of what that equation is made of."""
+    r = evaluator.residual(u)
+    return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
+
+
 Direction = Callable[[int, Array, Array, float], Array]
 """(iteration, u, residual, contraction so far) -> increment."""
 
@@ -120,17 +155,47 @@ def iterate(
         residual_norm = largest(r)
         return size <= 1.0 and residual_norm <= tolerance.residual
 
+    def polished(k: int, ratio: float) -> Array:
+        return direction(k, iteration.x, r, ratio)
+
+    def leftover(*_: Array) -> float:
+        return level(r, terms)
+
+    def settled(_: float) -> bool:
+        nonlocal r, residual_norm
+        r = evaluator.residual(iteration.x)
+        residual_norm = largest(r)
+        return level(r, terms) <= ROUND_OFF
+
+    def measure(step: Array, _: Array) -> float:
+        return tolerance.measure(step, point.weights)
+
     rejection: Rejection | None = None
-    detail, count = "", 0
+    detail, count, worst, terms = "", 0, 0.0, r
     try:
         r = evaluator.residual(predicted)
         done = iteration.run(
             lambda: direction(iteration.count, iteration.x, r, iteration.worst),
-            tolerance.measure,
+            measure,
             small,
         )
-        count = iteration.count
-        if iteration.stalled:
+        count, worst = iteration.count, iteration.worst
+        if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
+            # Judged by the residual itself: an increment may be small beside the path and large beside what is left of
+            # a component. Where it no longer shrinks that is round-off too, of terms that do not move with u. Rounds
+            # after the first have factorisations of their own: the one at hand may be of a point where that component
+            # was another.
+            before = np.inf
+            for fresh in range(ROUNDS):
+                terms = evaluator.round_off(iteration.x, r)
+                left = level(r, terms)
+                if left <= (FAR_FROM_ROUND_OFF if fresh else ROUND_OFF) or left > before:
+                    break
+                before = left if fresh else np.inf
+                k, ratio = (count + 2 * fresh, 1.0) if fresh else (count, worst)
+                iteration = Iteration(iteration.x, POLISHING)
+                iteration.run(partial(polished, k, ratio), leftover, settled)
+        elif iteration.stalled:
             rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"
         elif not done:
             rejection, detail = Rejection.NOT_CONVERGED, f"{max_iterations} iterations"
@@ -138,4 +203,4 @@ def iterate(
         rejection, detail = error.rejection, str(error)
     u, anchor = iteration.x, anchors[-1] if anchors else None
     distance = norm(point.weights, u - predicted)
-    return Correction(u, count, residual_norm, iteration.worst, distance, rejection, detail, anchor)
+    return Correction(u, count, residual_norm, worst, distance, rejection, detail, anchor)

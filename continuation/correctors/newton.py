@@ -107,7 +107,7 @@ class MoorePenrose:
         """See `Corrector.correct`."""
 
         def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
-            return linearize(evaluator, u, point.weights, point.border, 0).solve(-r)
+            return linearize(evaluator, u, point.weights, point.border).solve(-r)
 
         return iterate(evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction)
 

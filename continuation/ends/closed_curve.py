@@ -37,5 +37,5 @@ def passes_start(solver: PathSolver, origin: Knot, weights: Array, arc: Arc) -> 
         point = solver.project_and_linearize(arc.b, guess, border)
     except EvaluationError:
         return False
-    same = solver.tolerance.measure(point.u - origin.u, origin.u) <= SAME_POINT
+    same = solver.tolerance.measure(point.u - origin.u, arc.a.weights) <= SAME_POINT
     return same and inner(weights, point.tangent, origin.tangent) > 0.0

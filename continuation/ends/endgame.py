@@ -19,6 +19,7 @@ from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.metric import norm
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver
 from continuation.point.segment import Curve
@@ -79,20 +80,23 @@ class SingularLimit:
         Estimate of the largest error of a component, absolute.
     winding_number : int
         1 where the path is analytic in the parameter, 2 for a square root, ...
+    length : float
+        The error's length in the metric of the path.
     """
 
     u: Array
     error: float
     winding_number: int
+    length: float
 
 
 @frozen(eq=False)
 class Sample:
-    """A point of the path, dy/dlam there, and how much round-off moves Newton's method about it."""
+    """A point of the path, dy/dlam there, and how much round-off moves Newton's method about it, by component."""
 
     u: Array
     slope: Array
-    noise: float = 0.0
+    noise: Array
 
 
 @frozen(eq=False)
@@ -120,7 +124,7 @@ class Endgame:
             On the path, near the target, with the parameter moving towards it.
         """
         gap = point.lam - self.target
-        taken = [_sample(point)]
+        taken = [_sample(point, np.zeros_like(point.u))]
         best: SingularLimit | None = None
         worse = 0
         here = point
@@ -134,16 +138,16 @@ class Endgame:
             taken.append(_sample(here, noise))
             if len(taken) < 3:
                 continue
-            end = _limit(taken, self.target)
-            if best is None or end.error < best.error:
+            end = _limit(taken, self.target, point.weights)
+            if best is None or end.length < best.length:
                 best, worse = end, 0
             else:
                 worse += 1
-            if best.error <= RELATIVE_FLOOR * (1.0 + largest(best.u)) or worse >= PATIENCE:
+            if best.length <= RELATIVE_FLOOR or worse >= PATIENCE:
                 break
         if best is None or not self._within(best):
             taken = self._farther(point)
-            best = _limit(taken, self.target) if len(taken) > 2 else None
+            best = _limit(taken, self.target, point.weights) if len(taken) > 2 else None
         if best is None or not self._within(best):
             return None
         return best if self._holds(best, taken) else None
@@ -154,7 +158,7 @@ class Endgame:
         taken: list[Sample] = []
         for k in range(1, MAX_BACKWARD_SAMPLES + 1):
             lam = self.target + gap / RATIO**k
-            tracked = self._track(here, here.u + (lam - here.lam) * _sample(here).slope, lam, True)
+            tracked = self._track(here, here.u + (lam - here.lam) * _slope(here), lam, True)
             if tracked is None:
                 break
             here, noise = tracked
@@ -162,7 +166,7 @@ class Endgame:
         return taken
 
     def _within(self, end: SingularLimit) -> bool:
-        return self.solver.tolerance.measure(np.full_like(end.u, end.error), end.u) <= 1.0
+        return end.length <= self.solver.tolerance.relative
 
     def _holds(self, end: SingularLimit, taken: list[Sample]) -> bool:
         """Whether the equations hold at the limit: to round-off, or far better than at the first sample, put there.
@@ -175,7 +179,7 @@ class Endgame:
         # Where one of them has no value, and is nan, this is False.
         return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
-    def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, float] | None:
+    def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
         """The point at a parameter value, by Newton at that value, and its noise.
 
         Increments are followed to a thousandth of the tolerance. Where H_y is so near singular that round-off in H
@@ -190,31 +194,36 @@ class Endgame:
             if room < 1.0:
                 guess = here.u + room * (guess - here.u)
                 guess[-1] = lam
-        fine = Tolerance(absolute=FINE * tolerance.absolute, relative=FINE * tolerance.relative)
+        fine = Tolerance(relative=FINE * tolerance.relative)
         correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
-        u, anchor, noise = correction.u, correction.anchor, 0.0
+        u, anchor, noise = correction.u, correction.anchor, np.zeros_like(guess)
         try:
             if not correction.converged:
                 if not noisy or anchor is None:
                     return None
                 increment = anchor.system.solve(-evaluator.residual(u), 0.0)
-                if tolerance.measure(increment, u) > 1.0:
+                if tolerance.measure(increment, here.weights) > 1.0:
                     return None
-                u, noise = u + increment, largest(increment)
+                u, noise = u + increment, np.abs(increment)
             if max_step is not None and not max_step(here.u, u - here.u) > 1.0:
                 return None
             u = np.append(u[:-1], lam)
             if anchor is not None:
                 at = relinearize(evaluator, u, here.weights, anchor, here.border)
             else:
-                at = linearize(evaluator, u, here.weights, here.border, 0)
-            return at, max(noise, _round_off(evaluator, at, unit))
+                at = linearize(evaluator, u, here.weights, here.border)
+            return at, np.maximum(noise, _round_off(evaluator, at, unit))
         except EvaluationError:
             return None
 
 
-def _sample(point: Linearization, noise: float = 0.0) -> Sample:
-    return Sample(point.u, point.tangent / point.tangent[-1], noise)
+def _slope(point: Linearization) -> Array:
+    slope: Array = point.tangent / point.tangent[-1]
+    return slope
+
+
+def _sample(point: Linearization, noise: Array) -> Sample:
+    return Sample(point.u, _slope(point), noise)
 
 
 def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[float], Array], Array]:
@@ -225,19 +234,20 @@ def _polynomial(taken: list[Sample], target: float, w: int) -> tuple[Callable[[f
     return interpolate([float(node) for node in t], [sample.u for sample in taken], slopes), t
 
 
-def _limit(taken: list[Sample], target: float) -> SingularLimit:
+def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
     """The best limit over the winding numbers; the error is the change that a sample makes, and the noise."""
     ends = []
-    noise = max(sample.noise for sample in taken)
+    noise = np.max([sample.noise for sample in taken], axis=0)
     for w in WINDING_NUMBERS:
         value = _polynomial(taken, target, w)[0](0.0)
         # Without the last sample, the most accurate, and without the first, the least: a small change may be chance.
         others = [_polynomial(some, target, w)[0](0.0) for some in (taken[:-1], taken[1:])]
-        change = max(largest((value - other)[:-1]) for other in others)
+        change = np.max([np.abs(value - other) for other in others], axis=0)
         error = change + AMPLIFICATION[0] * AMPLIFICATION[1] ** w * noise
-        ends.append(SingularLimit(np.append(value[:-1], target), error, w))
-    least = min(end.error for end in ends)
-    return next(end for end in ends if end.error <= EQUALLY_GOOD * least)
+        error[-1] = 0.0
+        ends.append(SingularLimit(np.append(value[:-1], target), largest(error), w, norm(weights, error)))
+    least = min(end.length for end in ends)
+    return next(end for end in ends if end.length <= EQUALLY_GOOD * least)
 
 
 def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit | None) -> Array:
@@ -254,19 +264,20 @@ def _guess(taken: list[Sample], target: float, lam: float, best: SingularLimit |
     return guess
 
 
-def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> float:
+def _round_off(evaluator: Evaluator, at: Linearization, unit: Array) -> Array:
     """How far round-off in H moves the point at its parameter value: where H repeats it, Newton's method cannot see it.
 
     Measured: H a few units in the last place away, less what the derivative says of that, is round-off.
     """
     apply = evaluator.differential(at.u)
     if apply is None:
-        return 0.0
+        return np.zeros_like(at.u)
     nearby = at.u + ULPS * np.spacing(at.u) * np.sign(generic_vector(at.u.size))
     nearby[-1] = at.u[-1]
     left = evaluator.residual(nearby) - evaluator.residual(at.u) - apply(nearby - at.u)
     # One look at something random: the largest of many is more than that.
-    return 2.0 * largest(at.solve(left, 0.0, unit))
+    seen: Array = 2.0 * np.abs(at.solve(left, 0.0, unit))
+    return seen
 
 
 def touching(curve: Curve, point: Linearization, target: float) -> float | None:

@@ -38,6 +38,9 @@ RETRY, LEAP = 0.3, 10.0
 """An interior path creeps towards a target on its boundary. There a landing is tried from so many step lengths away,
 and again when so much of the way is left."""
 
+STRETCH = 1.01
+"""A target just beyond the step is landed on with it: a step of round-off would be left."""
+
 ROOM, EDGE = 0.9, 1e-6
 """The least way to the boundary, in ways to the predicted end: a prediction may err by so much. The end itself may lie
 on the boundary, to within the other."""
@@ -93,7 +96,7 @@ class Landing:
             if abs(gap) > RETRY * abs(last_failed - target):
                 return None
             h *= LEAP
-        high = min(prediction.reach, h)
+        high = min(prediction.reach, STRETCH * h)
         try:
             if not (prediction(high)[-1] - target) * gap >= 0.0:
                 return None

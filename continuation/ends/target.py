@@ -10,11 +10,12 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import largest
+from continuation.correctors.base import far_from_round_off
 from continuation.ends.closed_curve import passes_start
 from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
 from continuation.ends.landing import SINGULAR_SHARE, crossing, regular
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.metric import share
+from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
@@ -152,6 +153,8 @@ class Target:
             if point is not None:
                 limit = self._limit(arc, point, value) if at is EndsAt.TARGET else None
                 u = np.append(point.u[:-1], value) if limit is None else limit.u
+                if limit is None and at is EndsAt.TARGET and far_from_round_off(self.solver.evaluator, u):
+                    raise EvaluationError("the equations do not hold where the path would take the target's value")
                 return ArcEnd(cut(arc, evolve(point, u=u)), at, kind, False, limit)
         origin = state.origin
         if passes_start(self.solver, origin, state.origin_weights, arc):
@@ -177,10 +180,10 @@ class Target:
         fold = None
         if (arc.a.lam - value) * (arc.b.lam - value) >= 0.0 and FOLD[0] * expected < gap < FOLD[1] * expected:
             # y ~ y* + c sqrt(lam - value), with c as at the beginning of the arc.
-            fold = SingularLimit(
-                np.append(end.u[:-1], value), (abs(end.lam - value) / gap) ** 0.5 * largest(arc.a.y - end.y), 2
-            )
-            if fold.error <= RELATIVE_FLOOR * (1.0 + largest(end.u)):
+            left, way = (abs(end.lam - value) / gap) ** 0.5, np.append(arc.a.y - end.y, 0.0)
+            u = np.append(end.u[:-1], value)
+            fold = SingularLimit(u, left * largest(way), 2, left * norm(end.weights, way))
+            if fold.length <= RELATIVE_FLOOR:
                 return fold
         limit = endgame.limit(arc.a)
-        return fold if limit is None or (fold is not None and fold.error <= limit.error) else limit
+        return fold if limit is None or (fold is not None and fold.length <= limit.length) else limit

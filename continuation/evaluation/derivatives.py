@@ -4,27 +4,42 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, generic_vector
 from continuation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
 
 
 @frozen
 class Derivative:
-    """A way to get (H_y, H_lam), what it costs in residual evaluations, its name and where it was published."""
+    """A way to get (H_y, H_lam), its name and where it was published."""
 
     function: Callable[[Array, float], tuple[Matrix, Array]]
-    evaluations: int
     source: str
     references: tuple[str, ...] = ()
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at a point."""
         return self.function(y, lam)
+
+
+def check_derivative(answer: Any, n: int) -> None:
+    """Raise unless a homotopy's answer is a pair (H_y, H_lam) of the right shapes, of real numbers."""
+    wanted = f"a pair (H_y, H_lam) of real numbers, shapes ({n}, {n}) and ({n},)"
+    if not isinstance(answer, (tuple, list)) or len(answer) != 2:
+        raise TypeError(f"jacobian: expected {wanted}, found {type(answer).__name__}")
+    parts = answer[0], np.asarray(answer[1])
+    found = [getattr(part, "shape", type(part).__name__) for part in parts]
+    if found != [(n, n), (n,)]:
+        raise ValueError(f"jacobian: expected {wanted}, found {found[0]} and {found[1]}")
+    for part in parts:
+        kind = getattr(part, "dtype", None)
+        if kind is not None and np.dtype(kind).kind not in "fiub":
+            raise TypeError(f"jacobian: expected {wanted}, found some of the type {kind}")
 
 
 def _split(full: Array) -> tuple[Array, Array]:
@@ -56,18 +71,70 @@ def by_complex_step(residual: Callable[..., Any]) -> Callable[[Array, float], tu
     return function
 
 
-def by_differences(residual: Callable[..., Any]) -> Callable[[Array, float], tuple[Array, Array]]:
-    """Derivatives by central differences, step eps^(1/3) relative: about ten digits."""
+STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
+"""Steps of central differences beside the size of a component (or 1, where it is 0): eps^(1/3), the best one where that
+is how far the function sees it, and others, since zero may lie anywhere and units may be any."""
+
+
+def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[Array, float]:
+    """The central difference of a residual along w, and its step.
+
+    Of several steps that one is taken at which the difference changes least from this to the next, in the mean over
+    the equations, each beside its own size.
+
+    Parameters
+    ----------
+    residual : callable
+    u, w : ndarray, shape (N + 1,)
+
+    Returns
+    -------
+    difference : ndarray, shape (N,)
+    step : float
+    """
+
+    def at(h: float) -> Array:
+        ahead, behind = u + h * w, u - h * w
+        # A copy of the first: a residual may return the same array every time.
+        try:
+            change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
+        except (ArithmeticError, ValueError):
+            # Outside the domain; shorter steps stay inside.
+            return np.full(u.size - 1, np.nan)
+        return np.asarray(change / (2.0 * h), dtype=float)
+
+    with np.errstate(all="ignore"):
+        found = [at(float(h)) for h in STEPS]
+        changes = []
+        for one, other in pairwise(found):
+            size = np.abs(one) + np.abs(other)
+            change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
+            changes.append(float(np.where(np.isfinite(change), change, 1.0).mean()))
+    best = int(np.argmin(changes)) + 1
+    return found[best], float(STEPS[best])
+
+
+def sizes(u: Array) -> Array:
+    """What the steps of differences are measured by: a component's size, or 1."""
+    return np.where(u != 0.0, np.abs(u), 1.0)
+
+
+def by_differences(residual: Callable[..., Any], u0: Array) -> Callable[[Array, float], tuple[Array, Array]]:
+    """Derivatives by central differences, about eight to ten digits, with steps found at `u0`, shape (N + 1,)."""
+    steps = np.empty_like(u0)
+    for i, size in enumerate(sizes(u0)):
+        w = np.zeros_like(u0)
+        w[i] = size
+        steps[i] = difference_along(residual, u0, w)[1]
 
     def function(y: Array, lam: float) -> tuple[Array, Array]:
         u = np.append(y, lam)
+        reach = steps * np.maximum(sizes(u0), np.abs(u))
         columns = []
         for i in range(u.size):
-            h = 6e-6 * max(1.0, abs(u[i]))
             ahead, behind = u.copy(), u.copy()
-            ahead[i] += h
-            behind[i] -= h
-            # A copy of the first: a residual may return the same array every time.
+            ahead[i] += reach[i]
+            behind[i] -= reach[i]
             difference = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
             columns.append(difference / (ahead[i] - behind[i]))
         return _split(np.stack(columns, axis=1))
@@ -75,21 +142,26 @@ def by_differences(residual: Callable[..., Any]) -> Callable[[Array, float], tup
     return function
 
 
+AGREEMENT = 1e-3
+"""Of a derivative with a difference, beside the sum of its terms: what is wrong is wrong by more."""
+
+
 def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> Derivative:
     """The best derivative that a residual allows: jets, else complex step, else central differences.
 
-    Each is tried at the start, and believed when it agrees with differences there, since a residual may well run on
-    complex numbers and be wrong on them (``abs``, ``np.real``).
+    The first two are tried at the start, and believed when they agree with a difference there, since a residual may
+    well run on complex numbers and be wrong on them (``abs``, ``np.real``).
+
+    Parameters
+    ----------
+    residual : callable
+    start : tuple of ndarray, shape (N,), and float
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
-    m = y.size + 1
-    with np.errstate(all="ignore"):
-        reference = np.column_stack(by_differences(residual)(y, lam))
-    ways = (
-        ("jets", by_jets, -(-m // 128), GRIEWANK_WALTHER),
-        ("complex step", by_complex_step, m, SQUIRE_TRAPP),
-    )
-    for name, maker, cost, source in ways:
+    u = np.append(y, lam)
+    w = sizes(u) * generic_vector(u.size)
+    reference: Array | None = None
+    for name, maker, source in (("jets", by_jets, GRIEWANK_WALTHER), ("complex step", by_complex_step, SQUIRE_TRAPP)):
         try:
             function = maker(residual)
             with warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -97,7 +169,12 @@ def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> D
                 found = np.column_stack(function(y, lam))
         except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
             continue
-        scale = 1.0 + float(np.abs(reference).max())
-        if found.shape == reference.shape and np.allclose(found, reference, rtol=1e-4, atol=1e-4 * scale):
-            return Derivative(function, cost, name, (source,))
-    return Derivative(by_differences(residual), 2 * m, "differences")
+        if found.shape != (y.size, u.size):
+            continue
+        if reference is None:
+            reference = difference_along(residual, u, w)[0]
+        allowed = AGREEMENT * np.abs(found) @ np.abs(w)
+        allowed = np.maximum(allowed, AGREEMENT * float(allowed.max()))
+        if (np.abs(found @ w - reference) <= allowed).all():
+            return Derivative(function, name, (source,))
+    return Derivative(by_differences(residual, u), "differences")

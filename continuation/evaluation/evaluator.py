@@ -9,13 +9,19 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, Matrix, finite, largest
+from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import real_vector
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import Derivative, from_residual
+from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
+
+ULPS = 4.0
+"""Units in the last place by which round-off moves a point, about."""
+
+LOOK = 64.0
+"""By so many a point is moved to see it: the change of an equation is then more than a few of its own last places."""
 
 
 class EvaluationError(ArithmeticError):
@@ -96,15 +102,18 @@ class Evaluator:
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
+        for name in ("jacobian", "bordered", "differential"):
+            if not callable(getattr(homotopy, name, len)):
+                raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
         self.counts = counts
-        self._residual: Callable[[Array, float], Array] = homotopy.residual
+        self._checked = False
         self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
         self.methods: set[str] = set()
         self._derivative: Derivative | None = None
         if isinstance(homotopy, SupportsJacobian):
-            self._derivative = Derivative(homotopy.jacobian, evaluations=0, source="jacobian")
+            self._derivative = Derivative(homotopy.jacobian, source="jacobian")
 
     def start(self) -> Array:
         """The start as one vector (y0, lam0), checked."""
@@ -119,22 +128,31 @@ class Evaluator:
         u: Array = np.append(y0, lam0)
         if not np.isfinite(u).all():
             raise ValueError("start: expected finite numbers, found NaN or infinity")
-        r = np.asarray(self._residual(u[:-1].copy(), float(u[-1])))
+        r = np.asarray(self.called(u[:-1].copy(), float(u[-1])))
         if r.shape != y0.shape:
             raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
-        if r.dtype.kind == "c":
-            raise ValueError("residual: expected real numbers, found complex ones")
-        self.counts.residuals += 1
+        if r.dtype.kind not in "fiub":
+            found = "complex ones" if r.dtype.kind == "c" else f"an array of the type {r.dtype}"
+            raise ValueError(f"residual: expected real numbers, found {found}")
         return u
+
+    def called(self, y: Any, lam: Any) -> Any:
+        """The plug-in's residual, on numbers or on jets, counted.
+
+        Parameters
+        ----------
+        y, lam : ndarray, shape (N,), and float; or jets of them
+        """
+        self.counts.residuals += 1
+        return self.homotopy.residual(y, lam)
 
     def residual(self, u: Array) -> Array:
         """H(u), shape (N,); EvaluationError where it is not finite."""
-        self.counts.residuals += 1
         # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
         with np.errstate(all="ignore"):
             try:
                 # A copy: a plug-in may well return the same array every time.
-                r: Array = np.array(self._residual(u[:-1], float(u[-1])), dtype=float)
+                r: Array = np.array(self.called(u[:-1], float(u[-1])), dtype=float)
             except (ArithmeticError, ValueError) as error:
                 raise NotFiniteError(f"the residual could not be evaluated: {error}") from error
         if not finite(r):
@@ -148,11 +166,24 @@ class Evaluator:
         except EvaluationError:
             return math.nan
 
+    def round_off(self, u: Array, residual: Array) -> Array:
+        """What round-off in u makes of H there, shape (N,): the size of its terms, in units of their last places.
+
+        Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
+        an equation may cancel in one of them. `residual` is H(u).
+        """
+        # Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them.
+        generic, step = generic_vector(u.size), LOOK * np.spacing(np.abs(u))
+        moves = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
+        looks = (self.residual(u + step * moves), self.residual(u + step * moves[::-1]))
+        terms: Array = np.maximum(*(np.abs(look - residual) for look in looks)) * (ULPS / LOOK)
+        return terms
+
     @property
     def derivative(self) -> Derivative:
         """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
         if self._derivative is None:
-            self._derivative = from_residual(self._residual, self.homotopy.start())
+            self._derivative = from_residual(self.called, self.homotopy.start())
             self.methods.update(self._derivative.references)
         return self._derivative
 
@@ -170,13 +201,16 @@ class Evaluator:
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
-        derivative = self.derivative
-        self.counts.residuals += derivative.evaluations
         try:
             with np.errstate(all="ignore"):
-                return derivative(u[:-1], float(u[-1]))
+                answer = self.derivative(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
             raise NotFiniteError(f"the derivative could not be evaluated: {error}") from error
+        if not self._checked:
+            # Once: whoever gets it right at the start does so later on.
+            check_derivative(answer, u.size - 1)
+            self._checked = True
+        return answer
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
         """Factor [[H_y, H_lam], [border']] at u; EvaluationError where that is impossible."""

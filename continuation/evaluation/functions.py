@@ -9,6 +9,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.checks import complain
 
 
 def _start_vector(y: object) -> Array:
@@ -78,7 +79,17 @@ def from_functions(
         ``(y0, lam0)``, a point on or near the path.
     target : float or None
         Where the path is to end; None for a curve that is followed for its own sake.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If one of them is no function, or the start no pair.
     """
+    for name, function in (("residual", residual), ("jacobian", jacobian)):
+        if not callable(function) and (name == "residual" or function is not None):
+            raise complain(TypeError, name, "a function of (y, lam)", function)
+    if not isinstance(start, (tuple, list)) or len(start) != 2:
+        raise complain(ValueError, "start", "a pair (y0, lam0)", start)
     y0, lam0 = start
     plain = FunctionHomotopy(residual, y0, lam0, target)
     return plain if jacobian is None else DifferentiableHomotopy(plain, jacobian)

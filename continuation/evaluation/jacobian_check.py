@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.counts import Counts
+from continuation.evaluation.derivatives import difference_along
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.jets import directional_derivatives
 
@@ -124,12 +125,10 @@ def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Produ
     """The best directional derivative that the residual allows, believed if it agrees with differences."""
 
     def residual(u: Any) -> Any:
-        return evaluator.homotopy.residual(u[:-1], u[-1])
+        return evaluator.called(u[:-1], u[-1])
 
     def by_differences(w: Array) -> Array:
-        h = 6e-6 * max(1.0, float(np.abs(u).max())) / float(np.abs(w).max())
-        with np.errstate(all="ignore"):
-            return np.asarray((np.array(residual(u + h * w)) - residual(u - h * w)) / (2.0 * h))
+        return difference_along(evaluator.called, u, w)[0]
 
     def by_complex_step(w: Array) -> Array:
         return np.asarray(np.imag(residual(u + 1e-200j * w)) * 1e200)

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from attrs import evolve, field, frozen
 from scipy.sparse.linalg import splu
 
-from continuation.arrays import Array, Matrix, largest
+from continuation.arrays import Array, Matrix, generic_vector, largest
 from continuation.checks import integer
 from continuation.contraction import HALVING, Contraction, Iteration, magnitude
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
@@ -37,6 +37,9 @@ aligns with it; one and a half hundredths of a bracket is nearer than its next h
 
 STRAIGHT = 0.99
 """The cosine between the tangents on both sides of a branch point; they agree but for the bracket times a curvature."""
+
+BESIDE_PATH = 1e-4
+"""A point so far off, in extents of the path, is no point of it. The middle of a bracket is off by 1e-10."""
 
 SAME_PLACE = 1e-2
 """How far polishing may move the point, in chords of the arc: a thousand brackets."""
@@ -98,12 +101,19 @@ def locate_branch_point(solver: PathSolver, a: Linearization, b: Linearization) 
     u = polish(solver.evaluator, 0.5 * (low.u + high.u))
     if u is None or float(np.linalg.norm(u - low.u)) > SAME_PLACE * float(np.linalg.norm(b.u - a.u)):
         u = 0.5 * (low.u + high.u)
-    return evolve(low, u=u)
+    # Between points of two paths lies no point of either: the determinant's sign differs, and nothing crosses.
+    return evolve(low, u=u) if _near_path(solver.evaluator, low.weights, u) else None
 
 
-def _factored(
-    solver: PathSolver, near: Linearization, segment: Segment, t: float, border: Array
-) -> Linearization:
+def _near_path(evaluator: Evaluator, weights: Array, u: Array) -> bool:
+    """Whether the equations are off by less than a move of BESIDE_PATH, in the metric, makes of them."""
+    r, extent, generic = evaluator.residual(u), 1.0 / np.sqrt(weights * u.size), generic_vector(u.size)
+    moves = (BESIDE_PATH * extent * part for part in (generic, generic[::-1]))
+    changes = [np.abs(evaluator.residual(u + move) - r) for move in moves]
+    return bool((np.abs(r) <= np.maximum(*changes)).all())
+
+
+def _factored(solver: PathSolver, near: Linearization, segment: Segment, t: float, border: Array) -> Linearization:
     """The path's point near t with factors of its own: those from the other side of a branch point have another sign.
 
     In the branch point itself there is no factorisation; a point beside it serves as well.
@@ -111,7 +121,7 @@ def _factored(
     for beside in (t, BESIDE[0] * t + BESIDE[1]):
         u, _ = solver.project(near, segment.at(beside), border)
         try:
-            return linearize(solver.evaluator, u, near.weights, border, 0)
+            return linearize(solver.evaluator, u, near.weights, border)
         except EvaluationError:
             continue
     raise EvaluationError("no factorisation in or beside a supposed branch point")
@@ -154,9 +164,7 @@ def _singularity(H: Matrix, column: Array, rows: Array) -> Singularity:
     rights = np.zeros((n + 2, 2))
     rights[n, 0] = rights[n + 1, 1] = 1.0
     if sp.issparse(H):
-        bordered = sp.csc_array(
-            sp.block_array([[H, sp.csc_array(column[:, None])], [sp.csc_array(rows), None]])
-        )
+        bordered = sp.csc_array(sp.block_array([[H, sp.csc_array(column[:, None])], [sp.csc_array(rows), None]]))
         factor = splu(bordered)
         left: Array = factor.solve(unit, trans="T")
         kernel: Array = factor.solve(rights)

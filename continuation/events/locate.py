@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import itertools
+import math
+from collections.abc import Sequence
 
 import numpy as np
 from attrs import evolve
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from continuation.arrays import Array, largest
 from continuation.contraction import HALVING
@@ -20,6 +22,13 @@ from continuation.point.segment import Segment, hermite
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
 
+LOOKS = 17
+"""Places where a monitor is looked at before its lowest value is sought: a cubic has two turns at most."""
+
+DESCENTS, INSIDE, AS_EXPECTED = 8, 1e-6, 0.1
+"""At most so many points are put on the path to find a monitor's least value, so far inside of an arc; one at which it
+is within a tenth of what was expected settles that there is no zero."""
+
 PASSES = 60
 """A bisection in every other pass narrows a bracket to round-off in these."""
 
@@ -27,21 +36,88 @@ FINE = 1e-6
 """A bracket so narrow, relative to the first, that the difference of its ends is mostly round-off: a poor cubic."""
 
 AT_ROUND_OFF, NEARLY_ZERO = 1e-15, 1e-10
-"""The monitor's value, relative to those at the ends, that is zero; and that does where it no longer halves."""
+"""The monitor's value, relative to those at the ends, that is zero; and that does where it
+has not halved twice."""
 
 TRANSVERSAL = 1e-6
 """The least component of a tangent, relative to its largest, along which a point is put on a value exactly."""
 
 
-def may_vanish(event: Event, inside: list[tuple[Array, Array]], ga: float, gb: float) -> bool:
-    """Whether the monitor may vanish on an arc, judged by its ends and the samples inside.
+def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
+    """Whether the monitor may vanish on an arc, judged by its ends and its least value inside.
 
-    Ends of one sign may hide a pair of zeros where a sample has the other sign, or dips to less than half of both.
+    Ends of one sign may hide a pair of zeros where it has the other sign there, or dips to less than half of both.
+
+    Parameters
+    ----------
+    event : Event
+    arc : Arc
+    ga, gb : float
+        The monitor at the ends.
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    values = [event.monitor(u, v) for u, v in inside]
-    return any(value * ga < 0.0 for value in values) or min(map(abs, values)) < 0.5 * min(abs(ga), abs(gb))
+    sign = math.copysign(1.0, ga)
+    values = [sign * g for g in (ga, *(event.monitor(u, v) for u, v in arc.samples), gb)]
+    places = (0.0, *arc.segment.inside, 1.0)
+    return _least(places, values) < 0.5 * min(abs(ga), abs(gb))
+
+
+def _least(places: Sequence[float], values: Sequence[float]) -> float:
+    """The least of some values and of the parabolas through each three neighbours between them.
+
+    For the parameter's component of a cubic's tangent that is the least of all.
+    """
+    least = min(values)
+    for i in range(len(values) - 2):
+        (p, q, r), (a, b, c) = places[i : i + 3], values[i : i + 3]
+        left, right = (b - a) / (q - p), (c - b) / (r - q)
+        bend = (right - left) / (r - p)
+        if bend > 0.0:
+            lowest = 0.5 * (p + q - left / bend)
+            if p < lowest < r:
+                least = min(least, a + (lowest - p) * (left + bend * (lowest - q)))
+    return least
+
+
+def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
+    """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
+    length = float(np.dot(arc.border, arc.b.u - arc.a.u))
+
+    def g(t: float) -> float:
+        return sign * event.monitor(arc.segment.at(t), arc.segment.derivative(t) / length)
+
+    places = np.linspace(0.0, 1.0, LOOKS)
+    k = int(np.argmin([g(float(t)) for t in places]))
+    around = float(places[max(k - 1, 0)]), float(places[min(k + 1, LOOKS - 1)])
+    least = minimize_scalar(g, bounds=around, method="bounded", options={"xatol": 1e-9})
+    return float(least.x), float(least.fun)
+
+
+def _descent(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[tuple[Linearization, float]]:
+    """Points of the path towards the least value of a monitor that has one sign at both ends, up to another sign.
+
+    The segment says where; the point of the path there makes two segments out of one, which say it better, until the
+    monitor changes its sign, or is what was expected and does not.
+    """
+    sign = float(np.sign(ga))
+    knots, parts = [(arc.a, ga), (arc.b, gb)], [arc]
+    for _ in range(DESCENTS):
+        lowest = [_lowest(event, part, sign) for part in parts]
+        k = min(range(len(parts)), key=lambda i: lowest[i][1])
+        part, (t, expected) = parts[k], lowest[k]
+        if not INSIDE < t < 1.0 - INSIDE:
+            break
+        point, g = _knot(solver, event, part, t)
+        knots.insert(k + 1, (point, g))
+        if sign * g <= 0.0 or abs(sign * g - expected) <= AS_EXPECTED * abs(g):
+            break
+        parts[k : k + 1] = [_between(part.a, point, arc.border), _between(point, part.b, arc.border)]
+    return knots[1:-1]
+
+
+def _between(a: Linearization, b: Linearization, border: Array) -> Arc:
+    return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 
 def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[Linearization]:
@@ -57,9 +133,12 @@ def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> 
     """
     knots = [(arc.a, ga), (arc.b, gb)]
     along = [ga, *(event.monitor(u, v) for u, v in arc.samples), gb]
-    divided = ga * gb > 0.0 or sum(p * q < 0.0 for p, q in itertools.pairwise(along)) > 1
-    if divided:
-        knots[1:1] = [_knot(solver, event, arc, t) for t in _dividing(arc, along)]
+    changes = sum(p * q < 0.0 for p, q in itertools.pairwise(along))
+    divided = ga * gb > 0.0 or changes > 1
+    if ga * gb > 0.0 and changes <= 2:
+        knots[1:1] = _descent(solver, event, arc, ga, gb)
+    elif divided:
+        knots[1:1] = [_knot(solver, event, arc, t) for t in _dividing(arc, along) if 0.0 < t < 1.0]
     found = []
     for (left, gl), (right, gr) in itertools.pairwise(knots):
         if gl == 0.0 or gl * gr > 0.0 or np.sign(gl) * event.direction > 0:
@@ -118,7 +197,7 @@ def _root(
     best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
     scale = max(abs(ga), abs(gb))
     width = first = float(np.dot(arc.border, b.u - a.u))
-    bisect = False
+    bisect, stalled, noise = False, 0, None
     for _ in range(PASSES):
         segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
         series = None
@@ -135,9 +214,17 @@ def _root(
         else:
             b, gb = point, g
         width = float(np.dot(arc.border, b.u - a.u))
-        if least <= AT_ROUND_OFF * scale or (bisect and least <= NEARLY_ZERO * scale):
+        stalled = stalled + 1 if bisect else 0
+        if least <= AT_ROUND_OFF * scale or (stalled >= 2 and least <= NEARLY_ZERO * scale):
             break
-    return _on_value(solver, event, best) if least <= JUMP * scale else None
+        if bisect or fine:
+            # As near as points are known: farther bisections would locate round-off.
+            noise = solver.noise(arc.a) if noise is None else noise
+            if width <= noise or least <= noise * abs(gb - ga) / width:
+                break
+    if least > JUMP * scale and not (noise is not None and width <= noise):
+        return None
+    return _on_value(solver, event, best)
 
 
 def _on_value(solver: PathSolver, event: Event, point: Linearization) -> Linearization:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from attrs import field, frozen
 
@@ -63,6 +63,23 @@ class Event(Protocol):
         ...
 
 
+@runtime_checkable
+class SupportsResolution(Protocol):
+    """An event that knows which values of its monitor are round-off."""
+
+    def resolution(self, noise: Array, length: float) -> float:
+        """The largest value that is round-off.
+
+        Parameters
+        ----------
+        noise : ndarray, shape (N + 1,)
+            How far round-off moves each component of a point.
+        length : float
+            Of the arc, in the units of the tangent.
+        """
+        ...
+
+
 @frozen
 class TurningPoint:
     """Where a component of the tangent changes sign: the parameter by default (a fold), or a component of y."""
@@ -80,6 +97,10 @@ class TurningPoint:
     def monitor(self, u: Array, v: Array) -> float:
         """The tangent's component."""
         return float(v[self.component])
+
+    def resolution(self, noise: Array, length: float) -> float:
+        """The tangent's component that moves the point by no more than its round-off over the arc."""
+        return float(noise[self.component]) / length
 
 
 @frozen

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from continuation.arrays import Array
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event
 from continuation.events.locate import locate, may_vanish
@@ -29,12 +30,20 @@ def scan_events(
     """
     found: list[tuple[int, Linearization]] = []
     values = []
+    noise: Array | None = None
     for i, event in enumerate(events):
         g = event.monitor(arc.b.u, arc.b.tangent)
         values.append(g)
         first = before[i] if before[i] != 0.0 else event.monitor(*arc.just_after_start)
-        if first == 0.0 or not may_vanish(event, arc.samples, first, g):
+        if first == 0.0 or not may_vanish(event, arc, first, g):
             continue
+        resolution = getattr(event, "resolution", None)
+        if resolution is not None:
+            if noise is None:
+                noise = solver.noise_by_component(arc.a)
+            # Signs of round-off are no crossings: a component that is zero all along, to the last digits.
+            if max(abs(first), abs(g)) <= resolution(noise, position(arc, arc.b.u)):
+                continue
         try:
             points = locate(solver, event, arc, first, g)
         except EvaluationError:

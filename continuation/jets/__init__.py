@@ -7,14 +7,7 @@ from continuation.jets.functions import RULES
 from continuation.jets.series import JetDomainError
 
 __all__ = [
-    "Jet",
-    "JetDomainError",
-    "directional_derivatives",
-    "evaluate",
-    "jacobian",
-    "path_series",
-    "taylor",
-    "variable",
-]
+    "Jet", "JetDomainError", "directional_derivatives", "evaluate", "jacobian", "path_series", "taylor", "variable",
+]  # fmt: skip
 
 FUNCTIONS.update(RULES)

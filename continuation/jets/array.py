@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import operator
+import sys
 from collections.abc import Callable, Iterator
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 from scipy.sparse import issparse
@@ -226,11 +227,16 @@ class ArrayJet(Jet):
 
     __slots__ = ()
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NoReturn:
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        caller = sys._getframe(1)
+        if caller.f_code.co_name == "_matmul_dispatch" and caller.f_globals["__name__"].startswith("scipy.sparse"):
+            # A sparse matrix times a jet: scipy asks by a conversion whether it can do that. An array of one object
+            # says no, and Python goes on to `__rmatmul__`.
+            return np.array(None, dtype=object)
         raise TypeError(
             "a Jet cannot become a plain array, which would drop its series: leave out numpy.asarray, use np.stack "
-            "for np.array([jet, ...]) and np.zeros_like(y) for an array to assign into, write y @ A.T for A @ y with "
-            "a sparse A, and numpy functions for those of other packages; or give a jacobian"
+            "for np.array([jet, ...]) and np.zeros_like(y) for an array to assign into, and numpy functions for those "
+            "of other packages; or give a jacobian"
         )
 
     def __bool__(self) -> bool:

@@ -143,11 +143,7 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
 
 
 def path_series(
-    residual: Callable[[Any, Any], Any],
-    u0: Any,
-    tangent: Any,
-    solve: Callable[[Array, float], Array],
-    order: int,
+    residual: Callable[[Any, Any], Any], u0: Any, tangent: Any, solve: Callable[[Array, float], Array], order: int
 ) -> Array:
     """Taylor coefficients of the path u(s) through u0 with H(u(s)) = H(u0) and border . (u(s) - u0) = s.
 

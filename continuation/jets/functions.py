@@ -84,14 +84,6 @@ def _inner(a: Any, b: Any) -> Any:
     return a * b if a.ndim == 0 or b.ndim == 0 else _tensordot(a, b, axes=(-1, -1))
 
 
-def _vdot(a: Any, b: Any) -> Any:
-    return gather(a).reshape(-1) @ gather(b).reshape(-1)
-
-
-def _outer(a: Any, b: Any) -> Any:
-    return gather(a).reshape(-1, 1) * gather(b).reshape(1, -1)
-
-
 def _tensordot(a: Any, b: Any, axes: Any = 2) -> Jet:
     a, b = gather(a), gather(b)
     if isinstance(axes, int):
@@ -149,18 +141,6 @@ def _hstack(tup: Any) -> Jet:
     return _concatenate(parts, 0 if parts[0].ndim == 1 else 1)
 
 
-def _vstack(tup: Any) -> Jet:
-    return _concatenate([np.atleast_2d(x) for x in _pieces(tup)])
-
-
-def _column_stack(tup: Any) -> Jet:
-    return _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in _pieces(tup)], 1)
-
-
-def _append(arr: Any, values: Any, axis: int | None = None) -> Jet:
-    return _concatenate([arr, values], axis)
-
-
 def _where(condition: Any, x: Any, y: Any) -> Jet:
     if isinstance(condition, Jet):
         raise unknown("numpy.where with a jet for a condition (compare it first)")
@@ -184,13 +164,6 @@ def _like(a: Jet, shape: Any, value: Any) -> Jet:
     out = wrap(np.zeros((len(a.c), *shape)), a.algebra)
     out.c[...] = np.moveaxis(np.broadcast_to(_entries_first(as_jet(value, a)), (*shape, len(a.c))), -1, 0)
     return out
-
-
-def _maker(value: float) -> Callable[..., Jet]:
-    def make(prototype: Jet, dtype: Any = None, *, shape: Any = None) -> Jet:
-        return _full_like(prototype, value, dtype, shape=shape)
-
-    return make
 
 
 def _full_like(a: Jet, fill_value: Any, dtype: Any = None, *, shape: Any = None) -> Jet:
@@ -229,10 +202,6 @@ def _reshape(a: Jet, /, shape: Any, order: str = "C") -> Jet:
     if order != "C":
         raise unknown(f"numpy.reshape with order={order!r}")
     return a.reshape(shape)
-
-
-def _ravel(a: Jet, order: str = "C") -> Jet:
-    return _reshape(a, -1, order)
 
 
 def _moved(function: Any) -> Callable[..., Jet]:
@@ -274,28 +243,28 @@ RULES: dict[Any, Callable[..., Any]] = {
     np.diff: _diff,
     np.dot: _dot,
     np.inner: _inner,
-    np.vdot: _vdot,
-    np.outer: _outer,
+    np.vdot: lambda a, b: gather(a).reshape(-1) @ gather(b).reshape(-1),
+    np.outer: lambda a, b: gather(a).reshape(-1, 1) * gather(b).reshape(1, -1),
     np.tensordot: _tensordot,
     np.einsum: _einsum,
     np.concatenate: _concatenate,
     np.stack: _stack,
     np.hstack: _hstack,
-    np.vstack: _vstack,
-    np.column_stack: _column_stack,
-    np.append: _append,
+    np.vstack: lambda tup: _concatenate([np.atleast_2d(x) for x in _pieces(tup)]),
+    np.column_stack: lambda tup: _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in _pieces(tup)], 1),
+    np.append: lambda arr, values, axis=None: _concatenate([arr, values], axis),
     np.where: _where,
     np.clip: _clip,
-    np.zeros_like: _maker(0.0),
-    np.ones_like: _maker(1.0),
-    np.empty_like: _maker(0.0),
+    np.zeros_like: lambda a, dtype=None, *, shape=None: _full_like(a, 0.0, dtype, shape=shape),
+    np.ones_like: lambda a, dtype=None, *, shape=None: _full_like(a, 1.0, dtype, shape=shape),
+    np.empty_like: lambda prototype, dtype=None, *, shape=None: _full_like(prototype, 0.0, dtype, shape=shape),
     np.full_like: _full_like,
     np.copy: lambda a: a.copy(),
     np.shape: lambda a: a.shape,
     np.ndim: lambda a: a.ndim,
     np.size: lambda a, axis=None: a.size if axis is None else a.shape[axis],
     np.reshape: _reshape,
-    np.ravel: _ravel,
+    np.ravel: lambda a, order="C": _reshape(a, -1, order),
     np.transpose: lambda a, axes=None: a.transpose(*(axes or ())),
     np.squeeze: _squeeze,
     np.expand_dims: _expand_dims,

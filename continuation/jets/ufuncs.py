@@ -29,14 +29,6 @@ def _subtract(algebra: Algebra, a: Array, b: Array) -> Array:
     return a - b if len(a) == len(b) else _add(algebra, a, -b)
 
 
-def _multiply(algebra: Algebra, a: Array, b: Array) -> Array:
-    return algebra.product(np.multiply, a, b)
-
-
-def _divide(algebra: Algebra, a: Array, b: Array) -> Array:
-    return algebra.quotient(a, b)
-
-
 def _power(algebra: Algebra, a: Array, b: Array) -> Array:
     if len(b) == 1:
         return algebra.compose(lambda u: series.power(u, b[0]), a) if len(a) > 1 else series.power(a, b[0])
@@ -102,8 +94,8 @@ UNARY: dict[np.ufunc, Callable[[Algebra, Array], Array]] = {
 BINARY: dict[np.ufunc, Binary] = {
     np.add: _add,
     np.subtract: _subtract,
-    np.multiply: _multiply,
-    np.divide: _divide,
+    np.multiply: lambda algebra, a, b: algebra.product(np.multiply, a, b),
+    np.divide: lambda algebra, a, b: algebra.quotient(a, b),
     np.power: _power,
     np.float_power: _power,
     np.hypot: _hypot,

@@ -7,12 +7,4 @@ from continuation.linear.sparse import permutation_sign
 from continuation.linear.symmetric import Symmetric
 from continuation.linear.system import BorderedSystem, SingularError
 
-__all__ = [
-    "Banded",
-    "BorderedSystem",
-    "Operator",
-    "SingularError",
-    "Symmetric",
-    "factor_bordered",
-    "permutation_sign",
-]
+__all__ = ["Banded", "BorderedSystem", "Operator", "SingularError", "Symmetric", "factor_bordered", "permutation_sign"]

@@ -111,12 +111,7 @@ def factor_banded(matrix: Banded, column: Array, row: Array) -> BorderedSystem:
 
 
 def factor_band(matrix: Banded) -> BandedLU | None:
-    """LU factors of a banded matrix by itself; None where a pivot is exactly zero.
-
-    Parameters
-    ----------
-    matrix : Banded
-    """
+    """LU factors of a banded matrix by itself; None where a pivot is exactly zero."""
     lower, upper = matrix.lower, matrix.upper
     # Row exchanges fill as many diagonals more as there are below the main one.
     room = np.zeros((2 * lower + upper + 1, matrix.shape[0]), order="F")

@@ -15,15 +15,7 @@ EQUILIBRATED = 0.1
 
 
 def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
-    """Sign of the determinant of LAPACK's LU factors: row exchanges and negative pivots, counted.
-
-    Parameters
-    ----------
-    exchanges : Array
-        With which row each one was exchanged.
-    pivots : Array
-        The diagonal of U.
-    """
+    """Sign of the determinant: rows exchanged with others, and negative pivots (the diagonal of U), are counted."""
     odd = np.count_nonzero(exchanges != np.arange(len(exchanges))) + np.count_nonzero(pivots < 0)
     return -1 if odd % 2 else 1
 
@@ -112,11 +104,6 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
 
 
 def factor_lu(matrix: Array) -> LU | None:
-    """LU factors of a square matrix by itself; None where a pivot is exactly zero.
-
-    Parameters
-    ----------
-    matrix : Array of shape (N, N)
-    """
+    """LU factors of a square matrix by itself; None where a pivot is exactly zero."""
     lu, pivots, info = dgetrf(matrix)
     return LU(lu, pivots) if info == 0 else None

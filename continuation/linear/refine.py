@@ -87,23 +87,9 @@ def join(r: Array, rho: float) -> Array:
 
 
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
-    """Solve M z = rhs by `solve`, corrected until its residual is round-off.
+    """M z = rhs by `solve`, an approximate inverse, corrected at most `REFINEMENTS` times.
 
-    Parameters
-    ----------
-    bordered : BorderedMatrix
-        M, for the residuals.
-    solve : callable
-        An approximate inverse of M, ``(N + 1,) -> (N + 1,)``.
-    rhs : Array
-        Shape (N + 1,).
-
-    Returns
-    -------
-    z : Array
-        Shape (N + 1,).
-    accurate : bool
-        Whether the residual of `z` is round-off; at most `REFINEMENTS` corrections were made.
+    Returns z, and whether its residual is round-off.
     """
     with np.errstate(all="ignore"):
         z = solve(rhs)
@@ -157,15 +143,6 @@ def eliminate(bordered: BorderedMatrix, factor: Factored, factor_whole: Callable
     One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is to this factorisation: at a fold w is round-off.
     The test depends on no norm, and so on no scaling. Within its limits both signs in ``det M = det H_y * schur`` are
     certain; beyond them neither is, though their product is well determined, and only the whole matrix tells it.
-
-    Parameters
-    ----------
-    bordered : BorderedMatrix
-        M.
-    factor : Factored
-        The factorisation of H_y.
-    factor_whole : callable
-        Factors M as one matrix.
 
     Raises
     ------

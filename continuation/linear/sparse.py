@@ -24,10 +24,6 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
     Parameters
     ----------
     permutation : ndarray of int
-
-    Returns
-    -------
-    int
     """
     n = len(permutation)
     edges = coo_array((np.ones(n, dtype=np.int8), (np.arange(n), permutation)), shape=(n, n))

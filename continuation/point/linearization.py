@@ -108,18 +108,15 @@ class Linearization:
         return Linearization(self.u, weights, self.anchor, tangent, self.orientation)
 
 
-def linearize(evaluator: Evaluator, u: Array, weights: Array, reference: Array, orientation: int) -> Linearization:
-    """Factor at u with the border `reference` and orient the tangent.
+def linearize(evaluator: Evaluator, u: Array, weights: Array, reference: Array) -> Linearization:
+    """Factor at u with the border `reference`; the tangent makes an acute angle with it.
 
     With M = [[H'], [reference']] and M v = e_{N+1}: det [[H'], [v']] = det(M) |v|^2, so the sign of the one
-    factorisation orients the tangent (Allgower and Georg, Section 2.1). Where the sign is unknown (operators), or no
-    `orientation` is asked for (0), the tangent makes an acute angle with the reference instead.
+    factorisation is the tangent's orientation (Allgower and Georg, Section 2.1).
     """
     system = evaluator.factor(u, reference)
     raw = system.solve(np.zeros(u.size - 1), 1.0)
-    flip = system.sign * orientation < 0
-    anchor, sign = Anchor(u, reference, system), system.sign
-    return _oriented(anchor, u, weights, -raw if flip else raw, -sign if flip else sign)
+    return _oriented(Anchor(u, reference, system), u, weights, raw, system.sign)
 
 
 def relinearize(
@@ -147,7 +144,7 @@ def relinearize(
             guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
         tangent = _refined(apply, anchor, guess, accuracy)
     if tangent is None:
-        return linearize(evaluator, u, weights, along, 0)
+        return linearize(evaluator, u, weights, along)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
     flip = float(np.dot(along, tangent)) < 0.0
     sign = anchor.system.sign
@@ -218,7 +215,7 @@ def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearizati
 
 def factored(evaluator: Evaluator, point: Linearization) -> Linearization:
     """The same point, tangent and orientation with a factorisation of its own."""
-    return evolve(point, anchor=linearize(evaluator, point.u, point.weights, point.border, 0).anchor)
+    return evolve(point, anchor=linearize(evaluator, point.u, point.weights, point.border).anchor)
 
 
 def _oriented(anchor: Anchor, u: Array, weights: Array, raw: Array, orientation: int) -> Linearization:

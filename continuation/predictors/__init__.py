@@ -6,15 +6,6 @@ from continuation.predictors.polynomial import Hermite, Polynomial, Secant, Tang
 from continuation.predictors.taylor import Taylor
 
 __all__ = [
-    "AdamsBashforth",
-    "Hermite",
-    "Knot",
-    "Polynomial",
-    "Prediction",
-    "Predictor",
-    "RungeKutta",
-    "Secant",
-    "SupportsSegment",
-    "Tangent",
-    "Taylor",
-]
+    "AdamsBashforth", "Hermite", "Knot", "Polynomial", "Prediction", "Predictor", "RungeKutta", "Secant",
+    "SupportsSegment", "Tangent", "Taylor",
+]  # fmt: skip

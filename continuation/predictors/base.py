@@ -47,10 +47,6 @@ class SupportsSegment(Curve, Protocol):
         ----------
         h : float
         end : ndarray, shape (N + 1,)
-
-        Returns
-        -------
-        Segment
         """
         ...
 
@@ -89,10 +85,6 @@ class Predictor(Protocol):
         point : Linearization
             The current point, with its factorisation and tangent.
         history : sequence of Knot
-
-        Returns
-        -------
-        Prediction
         """
         ...
 

@@ -28,7 +28,7 @@ class _Stages:
 
     def _slope(self, u: Array) -> Array:
         # The tangent field exists off the path as well; orientation by angle, since a stage is no point of the path.
-        return linearize(self.evaluator, u, self.point.weights, self.point.border, 0).tangent
+        return linearize(self.evaluator, u, self.point.weights, self.point.border).tangent
 
     def __call__(self, h: float) -> Array:
         """The point after one step of length h."""

@@ -107,7 +107,7 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
     shapes = [approximant(series[: k + 1], weights) for k in range(order, max(order - DEGREES, 2), -1)]
     longest, reach = shapes[0], 0.0
     for upper, lower in pairwise(shapes):
-        agreed = _agreement(upper, lower, accuracy, series_reach)
+        agreed = _agreement(upper, lower, accuracy, series_reach, weights)
         if agreed > reach:
             longest, reach = upper, agreed
     if safety * reach <= series_reach:
@@ -115,15 +115,15 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
     return Pade(longest.numerator, longest.denominator, longest.order, safety * reach)
 
 
-def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float) -> float:
+def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float, weights: Array) -> float:
     """How far two approximants agree; looked for on the way out, so that no gap in between is jumped over."""
-    measure = Tolerance(absolute=accuracy, relative=accuracy).measure
+    measure = Tolerance(relative=accuracy).measure
     end = min(FARTHEST * series_reach, *(BEFORE_POLE * first_pole(curve.denominator) for curve in (upper, lower)))
     agreed = 0.0
     if end > series_reach:
         for s in np.geomspace(series_reach, end, LOOKS):
             point = upper(float(s))
-            if not measure(point - lower(float(s)), point) <= 1.0:
+            if not measure(point - lower(float(s)), weights) <= 1.0:
                 break
             agreed = float(s)
     return agreed

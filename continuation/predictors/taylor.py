@@ -29,7 +29,7 @@ ORDERS = (8, 30)
 
 
 LONGEST_STEP = 100.0
-"""In sizes of the point: a polynomial path has no last terms that would limit it."""
+"""In the length of the metric: a polynomial path has no last terms that would limit it."""
 
 
 @frozen(eq=False)
@@ -80,16 +80,16 @@ def best_order(n: int, accuracy: float) -> int:
     return min(max(round(best), ORDERS[0]), ORDERS[1])
 
 
-def series_reach(coefficients: Array, accuracy: float) -> float:
+def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
     """The step at which the last two terms reach `accuracy`, relative to the point's components (a mixed measure).
 
     Two terms, since one may vanish by symmetry; the shorter answer counts.
     """
-    measure = Tolerance(absolute=accuracy, relative=accuracy).measure
+    measure = Tolerance(relative=accuracy).measure
     order = len(coefficients) - 1
-    reach = LONGEST_STEP * (1.0 + float(np.abs(coefficients[0]).max())) / float(np.abs(coefficients[1]).max())
+    reach = LONGEST_STEP
     for k in (order - 1, order):
-        size = measure(coefficients[k], coefficients[0])
+        size = measure(coefficients[k], weights)
         if size > 0.0:
             reach = min(reach, size ** (-1.0 / k))
     return reach
@@ -138,7 +138,7 @@ class Taylor:
             coefficients = coefficients_at(evaluator, with_exact_solves(evaluator, point), order)
         except EvaluationError:
             coefficients = coefficients_at(evaluator, factored(evaluator, point), order)
-        series = Series(coefficients, self.safety * series_reach(coefficients, self.accuracy))
+        series = Series(coefficients, self.safety * series_reach(coefficients, self.accuracy, point.weights))
         if not self.rational:
             return series
         rational = best(coefficients, point.weights, self.accuracy, series.reach, self.safety)
@@ -153,9 +153,8 @@ def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> A
     else:
         from continuation import jets
 
-        evaluator.counts.residuals += order - 1
         evaluator.methods.add(GRIEWANK_WALTHER)
-        coefficients = jets.path_series(homotopy.residual, point.u, point.tangent, point.solve, order)
+        coefficients = jets.path_series(evaluator.called, point.u, point.tangent, point.solve, order)
     if not np.isfinite(coefficients.sum()):
         raise EvaluationError("the Taylor coefficients are not finite")
     return coefficients

@@ -15,7 +15,7 @@ from continuation.events.scan import first_terminal, scan_events
 from continuation.path import LocatedEvent
 from continuation.point.arc import angle_between, arc_between, cut, length_between, position
 from continuation.point.linearization import Linearization
-from continuation.point.projection import PathSolver, midpoint_on_path
+from continuation.point.projection import PathSolver, arc_on_path
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.status import Kind
@@ -71,7 +71,7 @@ class Examiner:
                     return _rejected(attempt, Rejection.ORIENTATION)
                 crossed.append((index, branch))
                 orientation = arrival.orientation
-            if not midpoint_on_path(self.solver, arc):
+            if not arc_on_path(self.solver, arc, attempt.correction.distance):
                 return _rejected(attempt, Rejection.MIDPOINT)
             ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
             found, monitors = scan_events(self.solver, events, state.monitors, ending.arc)

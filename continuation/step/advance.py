@@ -7,14 +7,14 @@ from collections.abc import Callable
 
 from attrs import evolve, field, frozen
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array
 from continuation.controllers import StepMeasures
 from continuation.ends.divergence import divergence
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.landing import Landing
 from continuation.ends.target import Target
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.metric import norm
+from continuation.metric import SupportsExtent, norm
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import angle_between, length_between
 from continuation.point.linearization import Linearization
@@ -75,6 +75,12 @@ class Advance:
     target: Target = field(init=False)
     landing: Landing | None = field(init=False)
     examiner: Examiner = field(init=False)
+    extent: SupportsExtent | None = field(init=False)
+
+    @extent.default
+    def _extent(self) -> SupportsExtent | None:
+        # Asked once: a look for the methods of a Protocol takes as long as a residual.
+        return self.settings.metric if isinstance(self.settings.metric, SupportsExtent) else None
 
     @stepper.default
     def _stepper(self) -> Stepper:
@@ -104,12 +110,18 @@ class Advance:
             if limit is not None:
                 return Stopped(singular_end(limit), limit.u)
         h, memory = min(state.h, prediction.reach), state.controller
+        if self.extent is not None:
+            h = min(h, self.extent.longest)
         if math.isinf(h):
             # A controller made for series with a predictor that has no range: begin with the size of the point.
             h = 1.0 + norm(point.weights, point.u)
         landing = self.landing and self.landing.attempt(point, prediction, h, state.last_failed_landing)
         if landing is not None:
-            if isinstance(landing, Arrival):
+            # The controller judges this one too: a long correction says that the path is not what was predicted.
+            if (
+                isinstance(landing, Arrival)
+                and controller.update(memory, self._measures(landing, prediction, 0)).accept
+            ):
                 found = self.examiner.examine(point, state, landing, prediction, landed=True)
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
@@ -154,6 +166,12 @@ class Advance:
             attempt.h, order, rejections, found.iterations, found.contraction, found.distance, attempt.angle
         )
 
+    def _weights(self, arrival: Linearization, state: State) -> Array:
+        """The metric where a step arrived."""
+        if self.extent is not None:
+            return self.extent.grown(arrival.weights, state.origin.u, arrival.u)
+        return self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights)
+
     def _moved(
         self,
         point: Linearization,
@@ -166,8 +184,11 @@ class Advance:
         """Make the arrival the current point: metric, history, divergence, and the step's record."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
-        monitor, diverged = divergence(state.divergence_monitor, arrival.u, largest(state.origin.u[:-1]))
-        moved = arrival.with_weights(self.settings.metric.weights(arrival.u, arrival.tangent, arrival.weights))
+        monitor, infinity = divergence(state.divergence_monitor, arrival.u, state.origin, state.origin_weights)
+        moved = arrival.with_weights(self._weights(arrival, state))
+        if self.extent is not None:
+            # The same step in the new metric: the path has become longer, not the step.
+            h *= norm(moved.weights, arrival.tangent) / norm(arrival.weights, arrival.tangent)
         angle = attempt.angle if ending.whole else angle_between(point, arrival)
         step = self.recorder.record(
             moved,
@@ -205,4 +226,4 @@ class Advance:
             index=step.index,
         )
         event = accepted.events[-1].name if accepted.events else ""
-        return Moved(moved, step, state, accepted.events, arc_ended(ending, diverged, event))
+        return Moved(moved, step, state, accepted.events, arc_ended(ending, infinity, event))

@@ -11,9 +11,10 @@ from continuation.arrays import Array
 from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import Metric, norm
+from continuation.metric import Metric, SupportsExtent, norm
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
+from continuation.step.extent import FIRST, initial_extent
 
 
 class StartError(ArithmeticError):
@@ -30,14 +31,21 @@ CORRECTING = BorderedNewton(max_iterations=20)
 STEEP = 1e-8
 """The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
 
+RESOLVED = 4.0
+"""Units in the last place that a correction at the tolerance is to be: fewer, and round-off keeps it from being met."""
+
+NEARBY = 1.0
+"""A start that has no point of the path at its parameter may be brought to one at most an extent away: what is farther
+has nothing to do with what was given."""
+
 ALIGNED = 1.0 - 1e-6
 """The cosine between kernels found with two borders that are one: an angle of 1e-3, far from that of two at random."""
 
 
 def first_point(
     solver: PathSolver, u: Array, metric: Metric, direction: int, target: float | None
-) -> Linearization:
-    """The start on the path, with the tangent that leads to the target.
+) -> tuple[Linearization, float]:
+    """The start on the path, with the tangent that leads to the target, and a first step length.
 
     Parameters
     ----------
@@ -56,24 +64,38 @@ def first_point(
         residual = evaluator.residual(u)
     except EvaluationError as error:
         raise StartError(f"At the start {error}.") from error
-    point = _regular(evaluator, u, unit)
-    if tolerance.measure(point.solve(-residual), u) > 1.0:
+    point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
+    if tolerance.measure(point.solve(-residual), point.weights) > 1.0:
         u = _correct_start(solver, point, u, unit)
-        point = _regular(evaluator, u, unit)
-    point = point.with_weights(metric.weights(u, point.tangent, None))
+        there = evaluator.residual(u)
+        point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, there)
     wanted = direction
     if wanted == 0:
         wanted = 1 if target is None or target >= u[-1] else -1
     if point.tangent[-1] * wanted < 0:
         point = evolve(point, tangent=-point.tangent, orientation=-point.orientation)
-    return point
+    return point, FIRST * norm(point.weights, extent)
+
+
+def measured(
+    solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
+) -> tuple[Linearization, Array]:
+    """The start in the metric of the trace, and how far each component goes before the path turns.
+
+    What goes less far than the tolerance can see in numbers of its size is measured by that.
+    """
+    seen = RESOLVED * np.spacing(np.abs(point.u)) / solver.tolerance.relative
+    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual), seen)
+    if isinstance(metric, SupportsExtent):
+        return point.with_weights(metric.of_extent(extent)), extent
+    return point.with_weights(metric.weights(point.u, point.tangent, None)), extent
 
 
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
     """Correct the start, at its parameter value if that works, else along the shortest way."""
     for border in (unit, point.border):
         correction = CORRECTING.correct(solver.evaluator, point, u, border, solver.tolerance)
-        if correction.converged:
+        if correction.converged and (border is unit or correction.distance <= NEARBY):
             return correction.u
     raise StartError(f"The corrector says: {correction.rejected(0.0)}.")
 
@@ -86,7 +108,7 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
     """
     ones = np.ones_like(u)
     try:
-        point = linearize(evaluator, u, ones, unit, 0)
+        point = linearize(evaluator, u, ones, unit)
         if _well_conditioned(point):
             return point
     except EvaluationError:
@@ -96,7 +118,7 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
     for _ in range(2):
         border = generator.standard_normal(u.size)
         try:
-            found.append(linearize(evaluator, u, ones, border / norm(ones, border), 0))
+            found.append(linearize(evaluator, u, ones, border / norm(ones, border)))
         except EvaluationError as error:
             raise SingularStartError(f"({error}.)") from error
     alignment = abs(float(np.dot(found[0].tangent, found[1].tangent)))
@@ -127,7 +149,9 @@ def point_and_direction(start: Any) -> tuple[Array, Array]:
     return u, v
 
 
-def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: int, metric: Metric) -> Linearization:
+def point_from_tangent(
+    solver: PathSolver, start: tuple[Array, Array], size: int, metric: Metric, target: float | None
+) -> tuple[Linearization, float]:
     """Begin at a given point in a given direction; the determinant sign there becomes the orientation.
 
     Raises
@@ -136,11 +160,13 @@ def point_from_tangent(evaluator: Evaluator, start: tuple[Array, Array], size: i
         If `start` is no pair (u, v) of vectors of the right size, or v vanishes.
     SingularStartError
     """
-    u, v = point_and_direction(start)
+    evaluator, (u, v) = solver.evaluator, point_and_direction(start)
     if u.size != size:
         raise ValueError(f"start: expected (u, v) of shape ({size},) each, found {u.shape} and {v.shape}")
     weights = metric.weights(u, v, None)
     try:
-        return linearize(evaluator, u, weights, weights * (v / norm(weights, v)), 0)
+        point = linearize(evaluator, u, weights, weights * (v / norm(weights, v)))
+        point, extent = measured(solver, point, metric, target, evaluator.residual(u))
     except EvaluationError as error:
         raise SingularStartError(f"({error}.)") from error
+    return point, FIRST * norm(point.weights, extent)

@@ -52,7 +52,7 @@ class State:
     occurrences: tuple[int, ...]
     origin: Knot
     origin_weights: Array
-    divergence_monitor: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    divergence_monitor: tuple[float, ...] = ()
     last_failed_landing: float = float("inf")
     last_failed_endgame: float = float("inf")
     index: int = 0

@@ -107,7 +107,7 @@ class Stepper:
                 accuracy = max(REFINED, TANGENT * self.solver.tolerance.relative)
                 arrival = relinearize(evaluator, correction.u, weights, anchor, border, True, accuracy)
             else:
-                arrival = linearize(evaluator, correction.u, weights, border, 0)
+                arrival = linearize(evaluator, correction.u, weights, border)
         except EvaluationError as error:
             return Rejected(h, error.rejection, str(error), correction.contraction)
         # Both are of unit length in this metric.

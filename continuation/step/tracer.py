@@ -10,7 +10,6 @@ import numpy as np
 
 from continuation.citation import references_of, unique
 from continuation.counts import Counts
-from continuation.ends.divergence import divergence
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events.scan import monitored
@@ -193,22 +192,21 @@ class Tracer:
             if not report.correct:
                 raise ValueError(f"jacobian: {report}")
         if self._start is None:
-            point = first_point(self._solver, u0, settings.metric, settings.direction, settings.target)
+            point, h = first_point(self._solver, u0, settings.metric, settings.direction, settings.target)
         else:
-            point = point_from_tangent(self._evaluator, self._start, u0.size, settings.metric)
-        here = Knot(0.0, point.u, point.tangent)
+            point, h = point_from_tangent(self._solver, self._start, u0.size, settings.metric, settings.target)
+        here, bounds = Knot(0.0, point.u, point.tangent), settings.controller.bounds
         state = State(
             history=(here,),
             weights=point.weights,
             anchor=(point.anchor.u, point.anchor.border),
             orientation=point.orientation,
-            h=settings.controller.bounds.cap(settings.controller.bounds.initial),
+            h=bounds.cap(h if bounds.initial is None else bounds.initial),
             controller=settings.controller.init(),
             monitors=tuple(monitored(event, point) for event in settings.events),
             occurrences=(0,) * len(settings.events),
             origin=here,
             origin_weights=point.weights,
-            divergence_monitor=divergence((0.0, 0.0, 0.0), point.u, 0.0)[0],
         )
         # The state last: whatever interrupts before it, a resumed trace begins again and lacks nothing.
         self._record(self._recorder.record(point, 0, 0.0, Kind.START), state)
@@ -249,7 +247,9 @@ class Tracer:
         """The point after one step, or None where the path has ended."""
         state = self.state
         assert state is not None
-        found = self._advance.advance(point, state)
+        # Overflow is looked for where it counts: by a step that is not finite.
+        with np.errstate(all="ignore"):
+            found = self._advance.advance(point, state)
         end, verdict = None, found.verdict
         if isinstance(found, Stopped):
             end = found.end

@@ -89,13 +89,14 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
     return Verdict(status, f"Last reason: {last}.", rejected=rejected)
 
 
-def arc_ended(end: ArcEnd, diverged: bool, event: str) -> Verdict | None:
+def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
     """An accepted arc ends the path: by where it ends, else because the path runs off to infinity.
 
     Parameters
     ----------
     end : ArcEnd
-    diverged : bool
+    infinity : str
+        How the path runs off to infinity, in words; empty if it does not.
     event : str
         Name of the last event on the arc, if there is one.
     """
@@ -109,4 +110,4 @@ def arc_ended(end: ArcEnd, diverged: bool, event: str) -> Verdict | None:
         return Verdict(Status.CLOSED)
     if end.at is EndsAt.START_PARAMETER:
         return Verdict(Status.TURNED_BACK)
-    return Verdict(Status.DIVERGED) if diverged else None
+    return Verdict(Status.DIVERGED, infinity) if infinity else None

@@ -151,7 +151,7 @@ def _check_order(subject: Subject, place: Place, point: Linearization, c: Array)
     for k in range(2, COMPARED_ORDER + 1):
         if abs(along[k]) > SERIES_ERROR * float(np.abs(c[k]).max()) + 1e-12:
             fail(f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}")
-    h = 0.5 * min(series_reach(c, 1e-3), 1.0 + float(np.abs(c[0]).max()))
+    h = 0.5 * min(series_reach(c, 1e-3, point.weights), 1.0 + float(np.abs(c[0]).max()))
     powers = np.arange(COMPARED_ORDER + 1)
     sizes = []
     for t in (h, 0.5 * h):

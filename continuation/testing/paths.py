@@ -22,6 +22,7 @@ from continuation.auditing import audit
 from continuation.budget import Budget
 from continuation.path import Path
 from continuation.status import Status
+from continuation.testing.protocol import difference
 from continuation.testing.subject import Place, Subject, called, directions, fail
 
 MAX_STEP_ERROR = 1e-6
@@ -132,8 +133,8 @@ def archive(subject: Subject) -> None:
             found = np.asarray(homotopy.residual(place.y, place.lam))
         wanted = np.asarray(subject.homotopy.residual(place.y, place.lam))
         if not np.array_equal(found, wanted, equal_nan=True):
-            difference = float(np.abs(found - wanted).max()) if found.shape == wanted.shape else math.inf
-            fail(f"archive: {place.where} the homotopy read back has another residual, by {difference:.3g}")
+            apart = difference(found, wanted)
+            fail(f"archive: {place.where} the homotopy read back has another residual, by {apart:.3g}")
 
 
 def _named(tree: Any) -> list[Any]:
@@ -176,12 +177,10 @@ def _same_path(name: str, wanted: Path, found: Path) -> None:
     for p, q in zip(wanted.steps, found.steps):
         if not np.array_equal(p.u, q.u):
             fail(f"{name}: step {p.index} (lam = {p.lam:.6g}) differs by {float(np.abs(p.u - q.u).max()):.3g}")
-        if dict(p.observed) != dict(q.observed) and not _both_nan(p.observed, q.observed):
+        # By name, as an archive has an order of its own; a scalar that is NaN in both is the same.
+        scalars = list(p.observed.values()), [q.observed.get(key, math.inf) for key in p.observed]
+        if len(p.observed) != len(q.observed) or not np.array_equal(scalars[0], scalars[1], equal_nan=True):
             fail(f"{name}: step {p.index} observed {dict(p.observed)}, found {dict(q.observed)}")
     for event, other in zip(wanted.events, found.events):
         if event.name != other.name or not np.array_equal(event.u, other.u):
             fail(f"{name}: the event {event.name!r} at lam = {event.lam:.6g} is {other.name!r} at {other.lam:.6g}")
-
-
-def _both_nan(p: Any, q: Any) -> bool:
-    return list(p) == list(q) and np.array_equal(list(p.values()), list(q.values()), equal_nan=True)

@@ -192,7 +192,7 @@ def picklable(subject: Subject) -> None:
         with called("residual of the pickled copy", place.where):
             found, wanted = (h.residual(place.y, place.lam) for h in (again, subject.homotopy))
         if not np.array_equal(found, wanted):
-            fail(f"picklable: {place.where} the copy's residual differs by {_difference(found, wanted):.3g}")
+            fail(f"picklable: {place.where} the copy's residual differs by {difference(found, wanted):.3g}")
 
 
 def _calls(subject: Subject, place: Place) -> list[tuple[str, Call, tuple[Any, ...]]]:
@@ -227,8 +227,9 @@ def _numbers(answer: Any, place: Place) -> list[Array]:
 def _same(name: str, place: Place, before: list[Array], after: list[Array], sentence: str) -> None:
     for p, q in zip(before, after, strict=True):
         if not np.array_equal(p, q, equal_nan=True):
-            fail(f"{name}: {place.where} {sentence}, by up to {_difference(p, q):.3g}")
+            fail(f"{name}: {place.where} {sentence}, by up to {difference(p, q):.3g}")
 
 
-def _difference(p: Array, q: Array) -> float:
+def difference(p: Array, q: Array) -> float:
+    """The largest one; infinite where the shapes differ."""
     return float(np.abs(p - q).max()) if np.shape(p) == np.shape(q) else math.inf

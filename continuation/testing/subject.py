@@ -113,11 +113,11 @@ class Subject:
         aside = 1e-2 * (1.0 + np.abs(start.u)) * generator.uniform(0.5, 1.0, start.u.size)
         aside *= generator.choice((-1.0, 1.0), start.u.size)
         beside = Place("beside the start", start.u + aside * self.room(start.u, aside))
-        found = [start, beside] if self.finite(beside) else [start]
-        for k in self._sampled():
-            step = self.path.steps[k]
-            found.append(Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u))
-        return tuple(found)
+        return (start, *([beside] if self.finite(beside) else []), *map(self._at, self._sampled()))
+
+    def _at(self, k: int) -> Place:
+        step = self.path.steps[k]
+        return Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u)
 
     def _sampled(self) -> list[int]:
         """Two steps inside the path: its end may be singular."""
@@ -150,7 +150,7 @@ class Subject:
         target = getattr(self.homotopy, "target", 0.0)
         with called("start", "linearized"):
             try:
-                return first_point(PathSolver(self.evaluator, Tolerance()), self.start.u, metric, 0, target)
+                return first_point(PathSolver(self.evaluator, Tolerance()), self.start.u, metric, 0, target)[0]
             except StartError as error:
                 verdict = refused_start(error)
                 fail(f"{verdict.status.name}: {verdict}")
@@ -208,10 +208,7 @@ class Subject:
             step = self.path.steps[k]
             border = step.tangent / float(np.linalg.norm(step.tangent))
             with called("bordered" if self.has("bordered") else "jacobian", f"at step {k} of the path"):
-                yield (
-                    Place(f"at step {k} of the path (lam = {step.lam:.6g})", step.u),
-                    linearize(self.evaluator, step.u, np.ones_like(step.u), border, 0),
-                )
+                yield self._at(k), linearize(self.evaluator, step.u, np.ones_like(step.u), border)
 
     def derivative(self, place: Place) -> Array:
         """[H_y, H_lam] as a dense matrix, shape (N, N + 1): by `jacobian`, else from the residual."""

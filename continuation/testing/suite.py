@@ -107,10 +107,6 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
         A small instance: matrices are made dense, and the path is traced about ten times.
     steps : int, optional
         How many steps of the path are looked at: 60 where there is a target, 12 where there is none.
-
-    Returns
-    -------
-    tuple of Check
     """
     subject = Subject(homotopy, steps)
     called_for = (rule for rule in RULES if not rule.capability or subject.has(rule.capability))

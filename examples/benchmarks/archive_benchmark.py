@@ -1,6 +1,7 @@
-"""The archive, measured: cost a step, kills, many small paths.
+"""The archive, measured: cost a step, and of checksums; memory of a long path; kills; many small paths.
 
-    python examples/benchmarks/archive_benchmark.py [cost] [kills] [small] [--kills N] [--damage N] [--seed S]
+    python examples/benchmarks/archive_benchmark.py [cost] [checksums] [memory] [kills] [small] [--points N]
+        [--kills N] [--damage N] [--seed S]
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from archive_kills import kill
 from attrs import evolve
 
 from continuation import Budget, Step, Tracer, trace
-from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
+from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume, store
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import Circle, ExponentialCosine
 
@@ -74,6 +75,60 @@ def _cost(file: Path, unknowns: int, steps: int, durable: bool) -> tuple[float, 
     log.close()
     file.unlink()
     return 1e6 * seconds / (steps - 1), 1e6 * busy / (steps - 1)
+
+
+def checksums(folder: Path) -> None:
+    """What of that the checksums take: processor time with them and without, by turns."""
+    print("cost a step, microseconds of the processor: with checksums, without, their share; least of 9 runs each")
+    for unknowns, steps in ((10, 30_000), (1000, 4_000)):
+        seals, found = (store.seal, _unsealed), ([], [])
+        for k in range(18):
+            store.seal = seals[k % 2]
+            found[k % 2].append(_cost(folder / "sealed.h5", unknowns, steps, False)[1])
+        store.seal = seals[0]
+        given, bare = min(found[0]), min(found[1])
+        print(f"  N = {unknowns:<5} {given:6.2f} {bare:6.2f}; {100 * (given - bare) / given:.1f} %")
+
+
+def _unsealed(block, start: int):
+    stop = start + len(next(iter(block.values())))
+    return np.array([stop & 0xFFFFFFFF, stop >> 32, *[0] * len(block)], dtype="u4")
+
+
+class Round:
+    """Two unknowns on the unit circle, which the parameter goes round for ever."""
+
+    target = None
+
+    def start(self):
+        return np.array([1.0, 0.0]), 0.0
+
+    def residual(self, y, lam):
+        return y - (np.cos(lam), np.sin(lam))
+
+    def jacobian(self, y, lam):
+        return np.eye(2), np.array([np.sin(lam), -np.cos(lam)])
+
+
+def memory(folder: Path, points: int) -> None:
+    """MiB above the start while a long path is traced with ``keep="ends"``."""
+    options = {"controller": Fixed(bounds=Bounds(initial=0.01))}
+    trace(Round(), archive=PathLog(folder / "first.h5", keep="ends"), budget=Budget(steps=600), **options)
+    begin, most = _resident(), 0.0
+    tracer = Tracer(
+        Round(), observers=(PathLog(folder / "long.h5", keep="ends"),), budget=Budget(steps=points - 1), **options
+    )
+    for step in tracer:
+        if not step.index % 1000:
+            most = max(most, _resident() - begin)
+    size = (folder / "long.h5").stat().st_size / 2**20
+    print(f"{len(tracer.path)} points of 2 unknowns: {most:.1f} MiB above the start at most; a file of {size:.0f} MiB")
+    middle = tracer.path.steps[points // 2]
+    print(f"  one of them, read: lam = {middle.lam:.6f}; {_resident() - begin:.1f} MiB above the start then")
+
+
+def _resident() -> float:
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 HOMOTOPY = ExponentialCosine(5)
@@ -164,10 +219,14 @@ def small(folder: Path, count: int = 10_000) -> None:
               f"group by path {1e3 * (grouped - opened):.0f} ms")
 
 
+PARTS = {"cost": cost, "checksums": checksums, "memory": memory, "kills": kills, "small": small}
+
+
 def main() -> int:
     """What is asked for; the campaigns end with status 1 if anything went wrong."""
     parser = argparse.ArgumentParser(description="The archive, measured.")
-    parser.add_argument("parts", nargs="*", help="cost, kills, small; all of them without a campaign")
+    parser.add_argument("parts", nargs="*", help=f"{', '.join(PARTS)}; all of them without a campaign")
+    parser.add_argument("--points", type=int, default=100_000, metavar="N", help="of the path that `memory` traces")
     parser.add_argument("--kills", type=int, default=0, metavar="N", help="kill N processes at work with archives")
     parser.add_argument("--damage", type=int, default=0, metavar="N", help="damage N archives")
     parser.add_argument("--seed", type=int, default=0)
@@ -175,8 +234,8 @@ def main() -> int:
     campaigns = {"kill": arguments.kills, "damage": arguments.damage}
     good = True
     with tempfile.TemporaryDirectory() as name:
-        for part in arguments.parts or ([] if any(campaigns.values()) else ["cost", "kills", "small"]):
-            {"cost": cost, "kills": kills, "small": small}[part](Path(name))
+        for part in arguments.parts or ([] if any(campaigns.values()) else PARTS):
+            PARTS[part](Path(name), *([arguments.points] if part == "memory" else []))
         for campaign in (kill, damage):
             count = campaigns[campaign.__name__]
             if count:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
 import random
@@ -110,6 +111,9 @@ class Judge:
     def __init__(self, file: Path) -> None:
         self.content = content(file)
         self.path = trace(HOMOTOPY, **OPTIONS)
+        with open_archive(file) as archive:
+            # A few steps more than it has.
+            self.budget = Budget(steps=len(archive[-1]) + 4)
 
     def operations(self, file: Path) -> dict[str, Callable[[], bool]]:
         """Each returns whether what came out is right."""
@@ -117,7 +121,7 @@ class Judge:
         return {
             "read": lambda: self._is(content(file)),
             "describe": lambda: bool(_described(file)),
-            "resume": lambda: self._follows(resume(file, archive=again, budget=Budget(steps=70))),
+            "resume": lambda: self._follows(resume(file, archive=again, budget=self.budget)),
             "recover": lambda: self._recovered(recover(file)),
         }
 
@@ -164,6 +168,7 @@ def case(judge: Judge, file: Path) -> dict[str, str]:
     process = os.fork()
     if not process:
         warnings.simplefilter("error")
+        gc.freeze()  # What the parent has is not looked through again in each child.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

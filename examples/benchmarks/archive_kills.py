@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import random
+import select
 import shutil
 import signal
 import time
@@ -34,8 +35,9 @@ from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import Cusp, ExponentialCosine
 
 HOMOTOPY = ExponentialCosine(3)
-OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.02))}
+OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.06))}
 SWEEP = [Cusp(splitting) for splitting in np.linspace(0.3, 2.0, 6)]
+SHORT = {"budget": Budget(steps=12)}
 
 
 class Campaign:
@@ -44,7 +46,7 @@ class Campaign:
     def __init__(self, folder: Path, seed: int) -> None:
         self.folder, self.generator, self.tally = folder, random.Random(seed), Counter()
         self.path = trace(HOMOTOPY, **OPTIONS)
-        self.sweep = [trace(homotopy) for homotopy in SWEEP]
+        self.sweep = [trace(homotopy, **SHORT) for homotopy in SWEEP]
         self.half, self.left, self.whole = (folder / name for name in ("half.h5", "left.h5", "whole.h5"))
         steps = len(self.path) // 2
         trace(HOMOTOPY, archive=self.half, budget=Budget(steps=steps), **OPTIONS)
@@ -66,7 +68,7 @@ class Campaign:
             "recover": (self.left, lambda: recover(file)),
             "merge": (self.whole, lambda: merge([file, file], target)),
             "export": (self.whole, lambda: export(file, target)),
-            "sweep": (None, lambda: trace_many(SWEEP, archive=file)),
+            "sweep": (None, lambda: trace_many(SWEEP, archive=file, **SHORT)),
             "pool": (None, lambda: _pooled(file)),
         }
 
@@ -102,10 +104,8 @@ class Campaign:
             return f"UNREADABLE: {error}".upper()
 
     def _found(self, name: str, file: Path, target: Path) -> str:
-        if name in ("merge", "export") and target.exists():
-            with open_archive(target) as archive:
-                if not archive.closed_by_writer or not all(self._same(path) for path in archive):
-                    return "HALF-WRITTEN"
+        if name in ("merge", "export"):
+            return self._copied(file, target)
         if name in ("sweep", "pool"):
             return self._swept(file)
         if not file.exists():
@@ -115,7 +115,7 @@ class Campaign:
             if before and not self._same(archive.path(0)):
                 return "WRONG ROWS"
         least = {"resume": len(self.path) // 2, "recover": len(self.path) // 2 - 9, "trace": 0}
-        if before < least.get(name, len(self.path)):
+        if before < least[name]:
             return "LOST ROWS"
         recover(file)
         if not before:
@@ -125,6 +125,15 @@ class Campaign:
                 return "complete"
         again = resume(file, budget=Budget())
         return "resumed to the same path" if self._same(again, whole=True) else "RESUMED TO ANOTHER PATH"
+
+    def _copied(self, file: Path, target: Path) -> str:
+        if file.read_bytes() != self.whole.read_bytes():
+            return "SOURCE CHANGED"
+        if not target.exists():
+            return "no new file"
+        with open_archive(target) as archive:
+            whole = archive.closed_by_writer and all(self._same(path, whole=True) for path in archive)
+        return "complete" if whole else "HALF-WRITTEN"
 
     def _same(self, found, *, whole: bool = False) -> bool:
         path = self.path
@@ -142,14 +151,14 @@ class Campaign:
                 for member, path in zip(archive.paths["member"], archive):
                     if path.u.tobytes() != self.sweep[member].u[: len(path)].tobytes():
                         return "WRONG ROWS"
-        with trace_many(SWEEP, archive=file) as archive:
+        with trace_many(SWEEP, archive=file, **SHORT) as archive:
             same = all(a.u.tobytes() == b.u.tobytes() for a, b in zip(archive, self.sweep))
             return "ran again" if same and len(archive) == len(SWEEP) else "RAN AGAIN OTHERWISE"
 
 
 def _pooled(file: Path) -> None:
     with ProcessPoolExecutor(2, mp_context=get_context("fork")) as executor:
-        trace_many(SWEEP, executor, file)
+        trace_many(SWEEP, executor, file, **SHORT)
 
 
 def _in_child(work: Callable[[], object], seconds: float | None) -> bool:
@@ -162,11 +171,13 @@ def _in_child(work: Callable[[], object], seconds: float | None) -> bool:
             work()
         finally:
             os._exit(0)
-    end = None if seconds is None else time.monotonic() + seconds
-    while end is None or time.monotonic() < end:
-        if os.waitpid(process, 0 if end is None else os.WNOHANG)[0]:
+    ended = os.pidfd_open(process)
+    try:
+        if select.select([ended], [], [], seconds)[0]:
+            os.waitpid(process, 0)
             return False
-        time.sleep(0.0005)
+    finally:
+        os.close(ended)
     try:
         os.killpg(process, signal.SIGKILL)
     except ProcessLookupError:

@@ -49,10 +49,7 @@ def wave():
     """y_k = cos(lam + k), k = 1..N: a smooth path without end, with residual and derivative that cost little."""
     eye, k = np.eye(N), np.arange(1.0, N + 1.0)
     return from_functions(
-        lambda y, lam: y - np.cos(lam + k),
-        lambda y, lam: (eye, np.sin(lam + k)),
-        start=(np.cos(k), 0.0),
-        target=None,
+        lambda y, lam: y - np.cos(lam + k), lambda y, lam: (eye, np.sin(lam + k)), start=(np.cos(k), 0.0), target=None
     )
 
 

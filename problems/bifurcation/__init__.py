@@ -11,13 +11,5 @@ from problems.bifurcation.freudenstein_roth import FreudensteinRoth
 from problems.bifurcation.pitchfork import Pitchfork
 
 __all__ = [
-    "Aircraft",
-    "Bratu1D",
-    "Bratu2D",
-    "Circle",
-    "Cusp",
-    "ExponentialCosine",
-    "FreudensteinRoth",
-    "Pitchfork",
-    "truth",
-]
+    "Aircraft", "Bratu1D", "Bratu2D", "Circle", "Cusp", "ExponentialCosine", "FreudensteinRoth", "Pitchfork", "truth",
+]  # fmt: skip

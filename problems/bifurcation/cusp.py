@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 import numpy as np
-from attrs import field, frozen
+from attrs import field, fields, frozen
 
 from continuation.arrays import Array
 from problems.bibliography import GOLUBITSKY_SCHAEFFER
@@ -35,6 +35,8 @@ class Cusp:
 
     @target.default
     def _mirrored_start(self) -> float:
+        # Defaults are made before anything is validated.
+        finite(self, fields(Cusp).splitting, self.splitting)
         return -self.start()[1]
 
     def start(self) -> tuple[Array, float]:

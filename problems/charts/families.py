@@ -55,13 +55,9 @@ def obstacle(random: np.random.Generator, n: int) -> Matrix:
 
 
 FAMILIES: Mapping[str, Draw] = {
-    "semidefinite": semidefinite,
-    "scaled P": scaled_p,
-    "N": n_matrix,
-    "copositive": copositive,
-    "indefinite": indefinite,
-    "obstacle": obstacle,
-}
+    "semidefinite": semidefinite, "scaled P": scaled_p, "N": n_matrix, "copositive": copositive,
+    "indefinite": indefinite, "obstacle": obstacle,
+}  # fmt: skip
 """By name."""
 
 

@@ -11,7 +11,7 @@ from attrs import frozen
 import continuation
 from continuation.chart import END_POINT, Problem, Results, Row, Study, Sweep, Table, orders, reference, traced
 from continuation.chart.catalogue import Size
-from continuation.chart.style import Figure, handle, legend_below, line_style, panels, tidy
+from continuation.chart.style import Figure, legend_below, line_style, panels, tidy
 from continuation.controllers import SeriesRange
 from continuation.predictors import Taylor
 from continuation.predictors.taylor import best_order
@@ -121,7 +121,6 @@ class CostModel:
         axes.set_yscale("log")
         axes.set_xlabel("order K")
         axes.set_ylabel("time a step (s)")
-        axes.set_title(f"Cost of a step, {method}: points measured, lines b (f + K)", fontsize="medium")
-        tidy(axes)
-        legend_below(figure, [handle(line_style(k)) for k in range(len(labels))], labels)
+        tidy(axes, f"Cost of a step, {method}: points measured, lines b (f + K)")
+        legend_below(figure, labels, "")
         return figure

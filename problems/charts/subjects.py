@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.integrate import quad
 
@@ -11,8 +13,6 @@ from continuation.events import TargetValue
 from problems.bifurcation import Bratu1D, Bratu2D, ExponentialCosine, FreudensteinRoth
 from problems.bifurcation.truth import exponential_cosine, freudenstein_roth
 from problems.charts.chandrasekhar import Chandrasekhar
-
-ROUND_THE_FOLD = {"target": None, "direction": 1}
 
 
 def freudenstein() -> Problem:
@@ -49,21 +49,19 @@ def cosine(n: int) -> Problem:
 
 def bratu(n: int) -> Problem:
     """Bratu's problem on an interval, through the fold to lam = 1 on the upper branch; the truth is a reference."""
-    options = {**ROUND_THE_FOLD, "events": (TargetValue(1.0, direction=-1),)}
-    subject = Bratu1D(n)
-    return Problem(f"Bratu 1D, n = {n}", subject, reference(subject, **options), options, n, "Bratu 1D (banded)")
+    return _round_the_fold(Bratu1D(n), 1.0, f"Bratu 1D, n = {n}", n, "Bratu 1D (banded)")
 
 
 def bratu_square(m: int) -> Problem:
     """Bratu's problem on a square of m x m points, through the fold to lam = 2 on the upper branch."""
-    options = {**ROUND_THE_FOLD, "events": (TargetValue(2.0, direction=-1),)}
-    subject = Bratu2D(m)
-    truth = reference(subject, **options)
-    return Problem(f"Bratu 2D, n = {m * m}", subject, truth, options, m * m, "Bratu 2D (sparse)")
+    return _round_the_fold(Bratu2D(m), 2.0, f"Bratu 2D, n = {m * m}", m * m, "Bratu 2D (sparse)")
 
 
 def chandrasekhar(n: int) -> Problem:
     """Chandrasekhar's equation, through the fold to lam = 0.5 on the returning branch."""
-    options = {**ROUND_THE_FOLD, "events": (TargetValue(0.5, direction=-1),)}
-    subject = Chandrasekhar(n)
-    return Problem(f"H-equation, n = {n}", subject, reference(subject, **options), options, n, "H-equation (dense)")
+    return _round_the_fold(Chandrasekhar(n), 0.5, f"H-equation, n = {n}", n, "H-equation (dense)")
+
+
+def _round_the_fold(subject: Any, lam: float, name: str, n: int, family: str) -> Problem:
+    options = {"target": None, "direction": 1, "events": (TargetValue(lam, direction=-1),)}
+    return Problem(name, subject, reference(subject, **options), options, n, family)

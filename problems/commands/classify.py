@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from continuation.cli import SUCCESS, Subparsers
+from continuation.cli.parser import positive
 from problems.commands.arguments import PROBLEM_FORMATS, named
 
 
@@ -16,7 +17,7 @@ def register(subparsers: Subparsers) -> None:
         description="Every class test on A in exact arithmetic; floats are taken as the rationals that they are.",
     )
     parser.add_argument("file", metavar="FILE", help=f"A, alone or beside q: {PROBLEM_FORMATS}")
-    parser.add_argument("--width", type=int, default=110, help="longest evidence in characters (default: 110)")
+    parser.add_argument("--width", type=positive, default=110, help="longest evidence in characters (default: 110)")
     parser.set_defaults(run=run)
 
 

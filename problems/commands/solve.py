@@ -12,6 +12,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
+from continuation.cli.archives import complaints
 from problems.commands.arguments import PROBLEM_FORMATS, named
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
@@ -56,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     from problems.lcp.data.files import read_problem, read_program, read_vector
 
     _check_outputs(arguments)
-    with named(_ARGUMENTS):
+    with complaints("--archive", new="--archive"), named(_ARGUMENTS):
         program = read_program(arguments.file) if arguments.q is None else None
         problem = read_problem(arguments.file, arguments.q) if program is None else program.problem
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
@@ -160,14 +161,10 @@ def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
 
 def _draw(solution: Any, n: int, file: str) -> None:
     from continuation.cli.figures import save
-    from continuation.plot import MOST_COMPONENTS, plot_components, plot_steps
+    from continuation.plot import MOST_COMPONENTS, plot_components
 
     components = range(min(n, MOST_COMPONENTS))
     names = [f"$x_{{{i}}}$" for i in components]
 
-    def draw(figure: Any) -> None:
-        above, below = figure.subplots(2, 1, height_ratios=(3, 1))
-        plot_components(solution.path, above, names=names, components=components)
-        plot_steps(solution.path, below)
-
-    save(file, draw)
+    path = solution.path
+    save(file, path, "", lambda axes: plot_components(path, axes, names=names, components=components))

@@ -66,10 +66,6 @@ def _signed(draw: Draw, rows: Rows) -> Rows:
     return [[s * t * v for t, v in zip(signs, row, strict=True)] for s, row in zip(signs, rows, strict=True)]
 
 
-def _any(draw: Draw, n: int) -> Rows:
-    return _square(draw, n)
-
-
 def _psd(draw: Draw, n: int) -> Rows:
     return _add(_gram(draw, n), _skew(draw, n))
 
@@ -170,17 +166,9 @@ def _copositive(draw: Draw, n: int) -> Rows:
 
 
 _BUILDERS: Mapping[str, Callable[[Draw, int], Rows]] = {
-    "any": _any,
-    "P": _p,
-    "P0": _p0,
-    "PSD": _psd,
-    "K": _k,
-    "Z": _z,
-    "N": _n,
-    "nondegenerate": _nondegenerate,
-    "row_sufficient": _row_sufficient,
-    "copositive": _copositive,
-}
+    "any": _square, "P": _p, "P0": _p0, "PSD": _psd, "K": _k, "Z": _z, "N": _n, "nondegenerate": _nondegenerate,
+    "row_sufficient": _row_sufficient, "copositive": _copositive,
+}  # fmt: skip
 
 CLASSES: tuple[str, ...] = tuple(_BUILDERS)
 """The class names that `matrices` knows."""

@@ -12,15 +12,6 @@ from problems.nonlinear.fixed_point import FixedPointHomotopy, fixed_point
 from problems.nonlinear.newton import NewtonHomotopy, newton
 
 __all__ = [
-    "BrownAlmostLinear",
-    "ComplementaritySolution",
-    "Differentiable",
-    "FixedPointHomotopy",
-    "InteriorHomotopy",
-    "MixedComplementarity",
-    "NewtonHomotopy",
-    "brown",
-    "fixed_point",
-    "newton",
-    "solve_complementarity",
-]
+    "BrownAlmostLinear", "ComplementaritySolution", "Differentiable", "FixedPointHomotopy", "InteriorHomotopy",
+    "MixedComplementarity", "NewtonHomotopy", "brown", "fixed_point", "newton", "solve_complementarity",
+]  # fmt: skip

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TurningPoint, trace
+from continuation import Status, TurningPoint, trace
 from continuation.auditing import audit
 from problems.bifurcation import Aircraft
 from problems.bifurcation.truth import aircraft
+
+from ..util import every_preset
 
 # Columns e, x1, ..., x5, x7 as published, ten digits.
 TABLE = np.array(
@@ -26,7 +28,7 @@ every_elevator = pytest.mark.parametrize("elevator", aircraft.ELEVATORS)
 
 
 @every_elevator
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+@every_preset
 @pytest.mark.parametrize("aileron", ["falling", "rising"])
 def test_every_limit_point_in_order(elevator, preset, aileron):
     expected = aircraft.limit_points(elevator, aileron)

@@ -3,21 +3,12 @@
 import numpy as np
 import pytest
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TargetValue, trace
+from continuation import Status, TargetValue, trace
 from continuation.auditing import audit
 from problems.bifurcation import Bratu1D, Bratu2D
+from problems.bifurcation.truth import bratu
 
-# n: lam and max u at the fold.
-INTERVAL = {
-    100: (3.513651506259, 1.186668404831),
-    200: (3.513785470018, 1.186798294404),
-    500: (3.513823435897, 1.186835106661),
-    1000: (3.513828894680, 1.186840399612),
-}
-SQUARE = {10: 6.795336259705, 20: 6.804690882680, 30: 6.806555879189, 50: 6.807546291652}
-# At n = 1000 to full precision, by an independent Newton method on Moore and Spence's system.
-FOLD_1000 = 3.5138288946800
-every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+from ..util import every_preset
 
 
 def upper_branch(homotopy, lam, **options):
@@ -29,10 +20,10 @@ def upper_branch(homotopy, lam, **options):
 
 
 @every_preset
-@pytest.mark.parametrize("n", INTERVAL)
+@pytest.mark.parametrize("n", bratu.FOLD_1D)
 def test_the_fold_in_one_dimension(n, preset):
     _, fold = upper_branch(Bratu1D(n), 1.0, preset=preset)
-    lam, height = INTERVAL[n]
+    lam, height = bratu.FOLD_1D[n]
     assert fold.lam == pytest.approx(lam, abs=1e-12)
     assert fold.y.max() == pytest.approx(height, abs=3e-12)
 
@@ -40,20 +31,20 @@ def test_the_fold_in_one_dimension(n, preset):
 def test_the_upper_branch_within_forty_factorisations():
     path, fold = upper_branch(Bratu1D(1000), 0.99)
     assert path.counts.factorizations <= 40
-    assert fold.lam == pytest.approx(FOLD_1000, abs=1e-12)
+    assert fold.lam == pytest.approx(bratu.FOLD_1D[1000][0], abs=1e-12)
 
 
-@pytest.mark.parametrize("m", SQUARE)
+@pytest.mark.parametrize("m", [10, 20, 30, 50])
 def test_the_fold_in_two_dimensions(m):
     _, fold = upper_branch(Bratu2D(m), 2.0)
-    assert fold.lam == pytest.approx(SQUARE[m], abs=1e-11)
+    assert fold.lam == pytest.approx(bratu.FOLD_2D[m], abs=1e-11)
 
 
 def test_the_square_within_fifty_factorisations():
     path, fold = upper_branch(Bratu2D(50), 1.99)
     assert path.counts.factorizations <= 50
-    assert fold.lam == pytest.approx(SQUARE[50], abs=1e-11)
-    assert fold.y.max() == pytest.approx(1.390069754724, abs=1e-11)
+    assert fold.lam == pytest.approx(bratu.FOLD_2D[50], abs=1e-11)
+    assert fold.y.max() == pytest.approx(bratu.FOLD_MAX_2D[50], abs=1e-11)
 
 
 def test_the_number_of_steps_does_not_grow_with_the_grid():

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
+from continuation import Status, trace
 from continuation.auditing import arclength, audit
 from problems.nonlinear import brown, fixed_point, newton
+
+from ..util import every_preset
 
 LENGTHS = {5: 2.7114077076, 10: 3.7199286259, 20: 5.1259069338, 30: 6.1886027468}
 
@@ -15,7 +17,7 @@ def from_zero(n):
     return fixed_point(F, np.zeros(n), F.jacobian)
 
 
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+@every_preset
 @pytest.mark.parametrize("n", LENGTHS)
 def test_the_root_and_the_length(n, preset):
     path = trace(from_zero(n), preset=preset)

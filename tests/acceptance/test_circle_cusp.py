@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TargetValue, trace
+from continuation import Status, TargetValue, trace
 from continuation.auditing import arclength, audit
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp
 
-every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+from ..util import every_preset
 
 
 @every_preset

@@ -6,26 +6,24 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
+from continuation import Status, trace
 from continuation.auditing import arclength, audit
 from continuation.controllers import Bounds, Geometric
+from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance
 from problems.bifurcation import ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
+from ..util import every_preset
+
 # n: x1 at the end, arclength, turning points of lam.
 TABLE = {
-    2: (1.1003509626909, 1.6199408163807, 0),
-    3: (0.37472756109156, 5.1124703543198, 4),
-    4: (0.42145547339476, 6.5195070281339, 4),
-    5: (1.5875828159969, 14.828190064503, 10),
-    6: (1.9949909313114, 17.260258578309, 12),
-    7: (2.3730945655736, 24.433767691728, 18),
+    2: (1.1003509626909, 1.6199408163807, 0), 3: (0.37472756109156, 5.1124703543198, 4),
+    4: (0.42145547339476, 6.5195070281339, 4), 5: (1.5875828159969, 14.828190064503, 10),
+    6: (1.9949909313114, 17.260258578309, 12), 7: (2.3730945655736, 24.433767691728, 18),
     8: (0.39859096762391, 48.712616148201, 24),
-}
-
-every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+}  # fmt: skip
 
 
 @every_preset
@@ -68,7 +66,7 @@ def test_the_audit_agrees(n, backwards):
 @pytest.fixture
 def unguarded(monkeypatch):
     """The engine without the guard that refuses arcs whose middle is off the path: with it, nothing jumps here."""
-    monkeypatch.setattr(acceptance, "midpoint_on_path", lambda solver, arc: True)
+    monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance: True)
 
 
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
@@ -81,7 +79,7 @@ def test_the_guard_keeps_even_the_papers_controller_on_the_path(n):
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
 @pytest.mark.usefixtures("unguarded")
 def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
-    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric())
+    path = trace(ExponentialCosine(n), predictor=Tangent(), controller=Geometric(), metric=Euclidean())
     assert path.status is Status.REACHED_TARGET
     assert len(path.turning_points) != TABLE[n][2]
     assert not audit(ExponentialCosine(n), path).same
@@ -89,6 +87,6 @@ def test_the_audit_finds_the_jumps_of_the_papers_controller(n):
 
 @pytest.mark.usefixtures("unguarded")
 def test_a_path_that_jumped_has_no_length():
-    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=Geometric())
+    path = trace(ExponentialCosine(5), predictor=Tangent(), controller=Geometric(), metric=Euclidean())
     with pytest.raises(ArithmeticError, match="are not joined"):
         arclength(ExponentialCosine(5), path)

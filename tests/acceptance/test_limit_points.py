@@ -8,10 +8,12 @@ from numpy.polynomial import Polynomial
 from scipy.integrate import quad
 
 import continuation
-from continuation import CONSERVATIVE, DEFAULT, FAST, TurningPoint, trace
+from continuation import TurningPoint, trace
 from continuation.auditing import arclength, audit
 from continuation.controllers import AllgowerGeorg, Bounds, Curvature, IterationCount
 from problems.bifurcation import FreudensteinRoth
+
+from ..util import every_preset
 
 TABLE = [
     ("turning point of component 0", (14.28309125009385, -1.741376892197492, 0.258577871376728)),
@@ -30,7 +32,7 @@ def assert_all_limit_points(path):
     assert path.endpoint.lam == 1.0
 
 
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+@every_preset
 def test_freudenstein_roth_under_every_preset(preset):
     assert_all_limit_points(trace(FreudensteinRoth(), events=[TurningPoint(0)], preset=preset))
 

@@ -61,10 +61,7 @@ def paths() -> dict[str, tuple[Callable[[], Any], dict[str, Any]]]:
     for n in range(2, 7):
         found[f"exponential-cosine-{n}"] = (lambda n=n: ExponentialCosine(n), {})
     for example in EXAMPLES:
-        found[f"example-{example.number}"] = (
-            lambda e=example: lcp.KKTHomotopy(e.problem, e.x0, e.z1, e.z2),
-            {},
-        )
+        found[f"example-{example.number}"] = (lambda e=example: lcp.KKTHomotopy(e.problem, e.x0, e.z1, e.z2), {})
     return found
 
 

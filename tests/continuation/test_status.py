@@ -11,11 +11,7 @@ from problems.bifurcation import Circle, Cusp
 
 
 def test_a_status_is_true_exactly_where_the_path_came_to_an_end_that_was_asked_for():
-    assert {status for status in Status if status} == {
-        Status.REACHED_TARGET,
-        Status.STOPPED_AT_EVENT,
-        Status.CLOSED,
-    }
+    assert {status for status in Status if status} == {Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED}
     assert all(bool(status) == status.success == Path(status=status).success for status in Status)
 
 

@@ -1,12 +1,14 @@
 """The data of the paper: consistent with each other, with what is printed, and with exact arithmetic."""
 
 from fractions import Fraction
-from itertools import combinations, permutations
+from itertools import combinations
 
 import numpy as np
 import pytest
 
 from problems.paper import COUNTEREXAMPLES, EXAMPLES, Counterexample, Example
+
+from ..exact import determinant
 
 examples = pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: f"{example.number}-{example.label}")
 counterexamples = pytest.mark.parametrize("counterexample", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
@@ -15,19 +17,6 @@ counterexamples = pytest.mark.parametrize("counterexample", COUNTEREXAMPLES, ids
 def decimals(array):
     """The decimal numbers as printed, exactly."""
     return np.vectorize(lambda value: Fraction(repr(float(value))), otypes=[object])(array)
-
-
-def determinant(matrix):
-    """Leibniz's formula, so that nothing is shared with the code under test."""
-    n = len(matrix)
-    total = Fraction(0)
-    for order in permutations(range(n)):
-        sign = (-1) ** sum(order[i] > order[j] for i, j in combinations(range(n), 2))
-        term = Fraction(sign)
-        for i, j in enumerate(order):
-            term *= matrix[i][j]
-        total += term
-    return total
 
 
 def principal_minors(matrix):

@@ -54,14 +54,14 @@ def _by_supports(matrix: ExactMatrix, name: str, build: Build, words: tuple[str,
     return Membership(name, False, Evidence(sentence, support, vector=x), cited)
 
 
-def _all_negative(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
-    block = columns(matrix, support)
-    return [at_most(block[i], -1) for i in support]
+def _all_at_most(bound: int) -> Build:
+    """Ax at most so much wherever x is positive: negative for -1, as the condition is homogeneous."""
 
+    def build(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
+        block = columns(matrix, support)
+        return [at_most(block[i], bound) for i in support]
 
-def _all_nonpositive(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
-    block = columns(matrix, support)
-    return [at_most(block[i]) for i in support]
+    return build
 
 
 def _homogeneous_solution(matrix: ExactMatrix, support: Indices) -> list[Constraint]:
@@ -73,14 +73,14 @@ def _homogeneous_solution(matrix: ExactMatrix, support: Indices) -> list[Constra
 def is_semimonotone(matrix: ExactMatrix) -> Membership:
     """E0: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i >= 0."""
     words = ("(Ax)_i < 0 wherever x_i > 0", "no x has (Ax)_i < 0 wherever x_i > 0")
-    return _by_supports(matrix, "E0", _all_negative, words, CPS + ", section 3.9")
+    return _by_supports(matrix, "E0", _all_at_most(-1), words, CPS + ", section 3.9")
 
 
 @matrix_class
 def is_strictly_semimonotone(matrix: ExactMatrix) -> Membership:
     """E: every nonzero x >= 0 has an i with x_i > 0 and (Ax)_i > 0."""
     words = ("(Ax)_i <= 0 wherever x_i > 0", "no x has (Ax)_i <= 0 wherever x_i > 0")
-    return _by_supports(matrix, "E", _all_nonpositive, words, CPS + ", section 3.9")
+    return _by_supports(matrix, "E", _all_at_most(0), words, CPS + ", section 3.9")
 
 
 @matrix_class
@@ -93,13 +93,13 @@ def is_r0(matrix: ExactMatrix) -> Membership:
 @matrix_class
 def is_copositive(matrix: ExactMatrix) -> Membership:
     """Copositive (C0): x'Ax >= 0 for x >= 0. For the symmetric part that is E0 (CPS, section 3.9)."""
-    return _copositive(matrix, "copositive", _all_negative, "nonnegative")
+    return _copositive(matrix, "copositive", _all_at_most(-1), "nonnegative")
 
 
 @matrix_class
 def is_strictly_copositive(matrix: ExactMatrix) -> Membership:
     """Strictly copositive (C): x'Ax > 0 for nonzero x >= 0. For the symmetric part that is E (CPS, section 3.9)."""
-    return _copositive(matrix, "strictly copositive", _all_nonpositive, "positive")
+    return _copositive(matrix, "strictly copositive", _all_at_most(0), "positive")
 
 
 def _copositive(matrix: ExactMatrix, name: str, build: Build, wanted: str) -> Membership:

@@ -16,6 +16,8 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 
+from problems.options import sound_sparse
+
 IntRow = Sequence[int]
 Indices = tuple[int, ...]
 
@@ -70,7 +72,13 @@ class ExactMatrix:
         """
         if isinstance(A, ExactMatrix):
             return A
-        dense = np.array(A.toarray() if sp.issparse(A) else A, dtype=object)
+        if np.ma.isMaskedArray(A) and np.ma.getmaskarray(A).any():
+            raise ValueError("A: expected real numbers, found a masked array with masked entries; fill them first")
+        if sp.issparse(A):
+            # Looked at for what it refuses: floats hold no more than 53 bits of an integer.
+            sound_sparse("A", A)
+            A = (A.astype(np.int64) if A.dtype.kind in "iu" and A.dtype.itemsize < 8 else A).toarray()
+        dense = np.array(A, dtype=object)
         if dense.ndim != 2 or dense.shape[0] != dense.shape[1] or dense.size == 0:
             raise ValueError(f"A: expected a square matrix, found shape {dense.shape}")
         n = dense.shape[0]
@@ -158,10 +166,6 @@ def principal_minors(rows: Sequence[IntRow]) -> list[int]:
     complement. Where the pivot is zero, the diagonal entry is raised by one: the determinant is linear in it, so the
     minors without the index, which are known, undo the change exactly.
 
-    Parameters
-    ----------
-    rows : sequence of n sequences of n int
-
     Returns
     -------
     list of int, length 2^n
@@ -196,11 +200,6 @@ def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[in
     Fraction-free Gauss-Jordan elimination: every intermediate number is a minor, so every division is exact. At the
     orders of the class tests it is faster than `problems.lcp.proof.rational.solve_exactly` (floats: 0.9 against 2.9 ms
     at order 12), and slower beyond order 20 or so (1.07 against 0.12 s at order 60), so there are two.
-
-    Parameters
-    ----------
-    rows : sequence of m sequences of m int
-    right : sequence of m sequences of k int
     """
     work = [[*row, *b] for row, b in zip(rows, right, strict=True)]
     m, previous = len(work), 1

@@ -112,9 +112,7 @@ def is_n_of_exact_order(A: Any, k: int | None = None) -> Membership:
     k : int, optional
         1 <= k < n. Without it, any k serves, and the one found is the certificate's value.
     """
-    return of_exact_order(
-        A, "N", k, lambda matrix, name, last: judge(matrix, name, two_signs("negative", last, "positive"), EXACT_ORDER)
-    )
+    return of_exact_order(A, "N", k, _up_to("negative"))
 
 
 def is_n0_of_exact_order(A: Any, k: int | None = None) -> Membership:
@@ -126,12 +124,11 @@ def is_n0_of_exact_order(A: Any, k: int | None = None) -> Membership:
     k : int, optional
         As for `is_n_of_exact_order`.
     """
-    return of_exact_order(
-        A,
-        "N0",
-        k,
-        lambda matrix, name, last: judge(matrix, name, two_signs("nonpositive", last, "positive"), EXACT_ORDER),
-    )
+    return of_exact_order(A, "N0", k, _up_to("nonpositive"))
+
+
+def _up_to(low: str) -> Callable[[ExactMatrix, str, int], Membership]:
+    return lambda matrix, name, last: judge(matrix, name, two_signs(low, last, "positive"), EXACT_ORDER)
 
 
 def of_exact_order(A: Any, base: str, k: int | None, test: Callable[[ExactMatrix, str, int], Membership]) -> Membership:

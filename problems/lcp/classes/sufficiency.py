@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 from attrs import evolve
@@ -76,9 +76,9 @@ def is_row_sufficient(matrix: ExactMatrix) -> Membership:
 
 def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
     cited = "Cottle, Pang and Venkateswaran, Linear Algebra Appl. 114/115 (1989) 231-249; " + CPS + ", section 3.5"
-    shortcut = _known_class(matrix)
-    if shortcut is not None:
-        return Membership(name, True, Evidence(shortcut), cited)
+    for smaller, test in (("PSD", is_psd), ("P", is_p)):
+        if test(matrix).holds:
+            return Membership(name, True, Evidence(f"{smaller}, hence sufficient"), cited)
     p0 = is_p0(matrix)
     if matrix.n > LARGEST_SIGNED:
         if p0.holds is False:
@@ -94,28 +94,18 @@ def _sufficient(matrix: ExactMatrix, name: str, symbol: str) -> Membership:
     return Membership(name, False, Evidence(sentence, support, vector=x), cited)
 
 
-def _known_class(matrix: ExactMatrix) -> str | None:
-    if is_psd(matrix).holds:
-        return "PSD, hence sufficient"
-    return "P, hence sufficient" if is_p(matrix).holds else None
-
-
 def _reversed_vector(matrix: ExactMatrix) -> tuple[Indices, Point] | None:
     """An x with x_i (Ax)_i <= 0 for all i and < 0 for some i: one exact linear program a sign vector, up to x -> -x."""
     for mask in index_sets(matrix.n):
         support = indices(mask)
         block = columns(matrix, support)
-        for signs in _signs(len(support)):
+        for signs in ((1, *rest) for rest in itertools.product((1, -1), repeat=len(support) - 1)):
             rows = [[s * t * v for t, v in zip(signs, block[i])] for s, i in zip(signs, support)]
             total = [sum(column) for column in zip(*rows)]
             found = positive_point([*(at_most(row) for row in rows), at_most(total, -1)], len(support))
             if found is not None:
                 return support, embed(matrix.n, support, [s * v for s, v in zip(signs, found)])
     return None
-
-
-def _signs(m: int) -> Iterator[tuple[int, ...]]:
-    return ((1, *rest) for rest in itertools.product((1, -1), repeat=m - 1))
 
 
 @matrix_class

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import re
+import warnings
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping
@@ -23,6 +24,7 @@ import scipy.sparse as sp
 from continuation.archive.datasets import dataset, member, subgroup
 from continuation.archive.image import Image
 from continuation.arrays import Array, Matrix
+from problems.lcp.data.matlab import read_level5
 from problems.lcp.data.models import MODEL_FORMATS, read_model
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.data.program import Program, from_lp, from_qp
@@ -40,6 +42,9 @@ _UNREADABLE = (
 )  # fmt: skip
 
 _BOUNDS = ("lower", "upper")
+
+_CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
+"""In the name of a file that holds named arrays."""
 
 _PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *_BOUNDS, "rows_lower")
 """The arguments of `from_qp`; a container with c in place of q is one of a program."""
@@ -125,6 +130,8 @@ def read_program(path: str | PathLike[str]) -> Program | None:
             return read_model(fspath(path))
         except (ValueError, ImportError) as error:
             raise InputError("path", f"{error}, in {_shown(path)}") from None
+    if not _CONTAINERS.search(fspath(path)):
+        return None
     contents = _contents("path", path)
     if "c" not in contents or "q" in contents or "A" in contents:
         return None
@@ -267,9 +274,16 @@ def _json(file: str) -> Mapping[str, Any]:
 
 
 def _mat(file: str) -> Mapping[str, Any]:
+    raw = Path(file).read_bytes()
+    if 0 not in raw[:4]:
+        return read_level5(raw, LIMIT)
+    # Level 4, which begins with small numbers.
     _claims(8 * sum(math.prod(shape) for _, shape, kind in scipy.io.whosmat(file) if kind != "sparse"), file)
-    stored = scipy.io.loadmat(file)
-    return {name: value for name, value in stored.items() if not name.startswith("__")}
+    try:
+        with warnings.catch_warnings(action="error"):
+            return {name: value for name, value in scipy.io.loadmat(file).items() if not name.startswith("__")}
+    except UserWarning as warning:
+        raise ValueError(str(warning)) from None
 
 
 def _matrix_market(file: str) -> Mapping[str, Any]:

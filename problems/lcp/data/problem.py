@@ -311,3 +311,15 @@ class LCP(MixedLCP):
 
 def _all(value: float, q: Array) -> Array:
     return np.broadcast_to(np.array(value), q.shape)
+
+
+def require_lcp(problem: Any) -> None:
+    """Raise TypeError unless the argument `problem` is an LCP."""
+    if not isinstance(problem, LCP):
+        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+
+
+def require_problem(problem: Any) -> None:
+    """Raise TypeError unless the argument `problem` is an LCP, with bounds or without."""
+    if not isinstance(problem, MixedLCP):
+        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")

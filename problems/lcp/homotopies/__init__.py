@@ -13,15 +13,6 @@ from problems.lcp.homotopies.two_vector import (
 )
 
 __all__ = [
-    "KKTHomotopy",
-    "KojimaMegiddoMizunoHomotopy",
-    "Start",
-    "Structure",
-    "TwoVectorHomotopy",
-    "WangHomotopy",
-    "XuHomotopy",
-    "YuHomotopy",
-    "ZhaoHomotopy",
-    "default_start",
-    "random_start",
-]
+    "KKTHomotopy", "KojimaMegiddoMizunoHomotopy", "Start", "Structure", "TwoVectorHomotopy", "WangHomotopy",
+    "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "default_start", "random_start",
+]  # fmt: skip

@@ -67,12 +67,7 @@ class OwnMetric:
 
 
 def longest_step(value: Array, direction: Array) -> float:
-    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components.
-
-    Parameters
-    ----------
-    value, direction : Array
-    """
+    """The largest h, or inf, with ``value + t direction > 0`` for all t in [0, h), by components."""
     falling = direction < 0.0
     if not falling.any():
         return np.inf
@@ -81,13 +76,7 @@ def longest_step(value: Array, direction: Array) -> float:
 
 
 def observed(problem: MixedLCP, x: Array) -> dict[str, float]:
-    """The natural residual and the gap x'w, with w = A x + q; with bounds the distance to the one that w_i points to.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x : Array of shape (n,)
-    """
+    """The natural residual and the gap x'w; with bounds the distance to that to which w_i points in place of x_i."""
     w = problem.w(x)
     distance = x
     if not problem.standard:

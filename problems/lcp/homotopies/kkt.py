@@ -13,7 +13,7 @@ from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, require_lcp
 from problems.lcp.homotopies.interior import RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.kkt_system import KKTSystem, factor_kkt
 from problems.lcp.homotopies.references import DUTTA_DAS_JANA
@@ -83,8 +83,7 @@ class KKTHomotopy:
         structure: Structure | None = None,
         refine: bool = True,
     ) -> None:
-        if not isinstance(problem, LCP):
-            raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+        require_lcp(problem)
         origin = _start(problem, x0, z1, z2, w0)
         self.__attrs_init__(problem, origin, structure if structure is not None else Structure(problem), refine)
 

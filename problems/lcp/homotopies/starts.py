@@ -124,10 +124,6 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
     """Sizes (of x, of w) at which A x and q balance: |q|_inf over the largest row norm of A, and |q|_inf.
 
     One where A or q is zero.
-
-    Parameters
-    ----------
-    problem : MixedLCP
     """
     squares = problem.A.multiply(problem.A) if problem.sparse else problem.A * problem.A
     row = float(np.sqrt(np.max(squares.sum(axis=1))))
@@ -136,14 +132,7 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 
 
 def relaxed_w(problem: MixedLCP, x0: Array, margin: float | Array) -> Array:
-    """A x0 + q where all of it is positive, else max(A x0 + q, 0) + margin, componentwise.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x0 : Array of shape (n,)
-    margin : float or Array
-    """
+    """A x0 + q where all of it is positive, else max(A x0 + q, 0) + margin, componentwise."""
     w = problem.w(x0)
     return w if (w > 0.0).all() else np.maximum(w, 0.0) + margin
 

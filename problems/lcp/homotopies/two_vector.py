@@ -16,7 +16,7 @@ from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
@@ -178,10 +178,9 @@ def YuHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Positive; ones by default. With bounds strictly between them; by default at a distance of one, or in the middle.
-    y0 : array_like, shape (n,), optional
-        Positive; 1/x0 by default, which makes the second equation the published x y = l e.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; by default ones, and 1/x0, which makes the second equation the published x y = l e. With bounds x0 is
+        between them, and y0 has a number for each.
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -258,10 +257,8 @@ def WangHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Positive; ones by default. With bounds strictly between them; by default at a distance of one, or in the middle.
-    y0 : array_like, shape (n,), optional
-        Positive; max(1, |q|) by default.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; by default ones, and max(1, |q|). With bounds x0 is between them, and y0 has a number for each.
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -287,10 +284,9 @@ def KojimaMegiddoMizunoHomotopy(
     Parameters
     ----------
     problem : LCP
-    x0 : array_like, shape (n,), optional
-        Positive; ones by default. With bounds strictly between them; by default at a distance of one, or in the middle.
-    y0 : array_like, shape (n,), optional
-        Positive; max(A x0 + q, 0) + max(1, |q|) by default, so that b > 0.
+    x0, y0 : array_like, shape (n,), optional
+        Positive; by default ones, and max(A x0 + q, 0) + max(1, |q|), so that b > 0. With bounds x0 is between
+        them, and y0 has a number for each.
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -308,8 +304,7 @@ def KojimaMegiddoMizunoHomotopy(
 
 def _inside(problem: MixedLCP, x0: Any) -> Array:
     """x0 between the bounds, checked; by default at a distance of one from them."""
-    if not isinstance(problem, MixedLCP):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    require_problem(problem)
     if problem.fixed.any():
         i = int(np.argmax(problem.fixed))
         raise ValueError(f"problem: expected lower < upper, found a fixed unknown {i}; lcp.solve eliminates it")
@@ -322,8 +317,7 @@ def _on_free(sides: Sides) -> int | Array:
 
 
 def _order(problem: LCP) -> int:
-    if not (isinstance(problem, MixedLCP) and problem.standard):
-        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+    require_lcp(problem)
     return problem.n
 
 

@@ -11,7 +11,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
+from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
 from problems.lcp.data.scaling import units
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
@@ -111,9 +111,12 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
     Raises
     ------
+    TypeError
+        If the problem is none.
     ValueError
         If x is not a finite vector of n numbers.
     """
+    require_problem(problem)
     if problem.n == 0:
         nothing = np.zeros(0)
         return Certificate(nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -243,6 +246,7 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
     ValueError
         If x is not a finite vector of n numbers, or its active set is too large.
     """
+    require_problem(problem)
     x = finite_vector("x", x, problem.n)
     rows = integer_rows(problem.A, problem.q)
     first: ExactCertificate | None = None

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions_of, inequalities
 from problems.lcp.proof.rational import IntegerRow, Integers, integers, solve_exactly
@@ -147,6 +147,7 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     ----------
     Farkas 1902; Cottle, Pang and Stone, Theorem 2.7.9.
     """
+    require_problem(problem)
     return _multiplier(problem, strict=True)
 
 

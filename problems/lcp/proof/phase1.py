@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from scipy.optimize import linprog
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, require_lcp
 from problems.lcp.proof.compensated import accurate_w
 from problems.lcp.proof.farkas import Farkas, empty_interior, scaled_data, scales
 
@@ -54,6 +54,7 @@ def strictly_feasible_start(problem: LCP) -> Array:
     ----------
     Dutta, Das and Jana, "Bounded Homotopy Path Approach", which needs such a start and does not say how to find it.
     """
+    require_lcp(problem)
     margin = float("nan")
     for program in (_unit_margin, _largest_margin):
         x0, margin = program(problem)

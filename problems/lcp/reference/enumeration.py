@@ -15,7 +15,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from problems.lcp.classes.exact import Indices, indices, over_common_denominator
 from problems.lcp.classes.faces import FacePoint, bounds_over, face_point, piece_point
-from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.problem import LCP, MixedLCP, require_lcp
 
 LARGEST_FACES = 14
 """Largest order: 2^14 faces (1.2 s for integers of one digit); so many pieces where there are bounds."""
@@ -102,11 +102,9 @@ def solve_by_enumeration(problem: LCP) -> Enumeration:
     Where the principal submatrix of a face is singular, the face is a linear feasibility problem, solved exactly by the
     simplex method. There is no tolerance anywhere, and no shortcut in floats.
     """
-    n = problem.n
-    if n > LARGEST_FACES:
-        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
+    require_lcp(problem)
     entries, q, scale = _integers(problem)
-    on_face = {mask: face_point(entries, q, indices(mask)) for mask in range(1 << n)}
+    on_face = {mask: face_point(entries, q, indices(mask)) for mask in range(1 << problem.n)}
     wide = [mask for mask, point in on_face.items() if point is not None and not point.only]
     distinct = {point.x: point for point in on_face.values() if point is not None}
     return Enumeration(tuple(_solution(point, scale, wide) for point in distinct.values()))
@@ -176,8 +174,6 @@ def exhaust(problem: MixedLCP, seconds: float = math.inf) -> Exhaustion | None:
     ValueError
         If n is larger.
     """
-    if not decidable(problem):
-        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
     entries, q, _ = _integers(problem)
     bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
     end = time.perf_counter() + seconds
@@ -202,8 +198,10 @@ def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
 
 
 def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
-    """The entries of A and of q as integers over one scale."""
+    """The entries of A and of q as integers over one scale; ValueError where the faces are too many."""
     n = problem.n
+    if not decidable(problem):
+        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
     dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     flat, scale = over_common_denominator([Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())])
     return [flat[i * n : (i + 1) * n] for i in range(n)], flat[n * n :], scale

@@ -54,20 +54,27 @@ def lemke(problem: LCP, covering: Array | None = None, max_pivots: int | None = 
     tableau = np.hstack([np.eye(n), -dense, -d[:, None], problem.q[:, None]])
     z0 = 2 * n
     basis = np.arange(n)
-    row = _first_row(tableau, d)
+    # Afterwards every row of [q, B^-1] is lexicographically positive.
+    row = _lexicographic_least(_lexicographic_rows(tableau, basis), d)
     entering = z0
     for pivots in range(1, budget + 1):
         leaving = int(basis[row])
         _pivot(tableau, row, entering)
         basis[row] = entering
         if leaving == z0:
-            return at_point(problem, _solution(problem, dense, tableau, basis), pivots, 1,
-                            "The last basis is too ill-conditioned: its point does not pass the residual test.")
+            return at_point(
+                problem,
+                _solution(problem, dense, tableau, basis),
+                pivots,
+                1,
+                "The last basis is too ill-conditioned: its point does not pass the residual test.",
+            )
         entering = leaving + n if leaving < n else leaving - n
         found = _leaving_row(tableau, basis, entering, z0)
         if found is None:
-            return without_point(pivots, 0, f"Ended on a secondary ray after {pivots} pivots.",
-                                 _ray(tableau, basis, entering))
+            return without_point(
+                pivots, 0, f"Ended on a secondary ray after {pivots} pivots.", _ray(tableau, basis, entering)
+            )
         row = found
     return without_point(budget, 0, f"No solution within {budget} pivots; try a larger max_pivots.")
 
@@ -97,11 +104,6 @@ def _lexicographic_rows(tableau: Array, candidates: NDArray[np.intp]) -> Array:
     n = tableau.shape[0]
     rows: Array = np.hstack([tableau[candidates, -1:], tableau[candidates, :n]])
     return rows
-
-
-def _first_row(tableau: Array, d: Array) -> int:
-    """The row that z0 enters by: afterwards every row of [q, B^-1] is lexicographically positive."""
-    return _lexicographic_least(_lexicographic_rows(tableau, np.arange(d.size)), d)
 
 
 def _leaving_row(tableau: Array, basis: NDArray[np.intp], entering: int, z0: int) -> int | None:

@@ -53,7 +53,7 @@ LONGEST = 60
 LARGEST_FRESH = 150
 """Up to this order a factorisation costs no more than the solves by which an old one is refined."""
 
-TRACE_TOLERANCE = Tolerance(absolute=1e-4, relative=5e-2)
+TRACE_TOLERANCE = Tolerance(relative=5e-2)
 """Of the last increment; with Newton's method the error is near its square. The end is exact by the finish."""
 
 

@@ -16,8 +16,10 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive import PathLog
+from continuation.archive.atomic import as_file
 from continuation.arrays import Array, largest
 from continuation.budget import Budget
+from continuation.checks import instance_with
 from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
@@ -25,7 +27,7 @@ from continuation.step.options import PART_OPTIONS, PartOptions, check_names, ch
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
-from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import balanced, extreme
 from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
@@ -124,13 +126,13 @@ def solve(
             tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
         )  # fmt: skip
         return of_program(problem, found)
-    if not isinstance(problem, MixedLCP):
-        raise TypeError(f"problem: expected an LCP or a MixedLCP, found {type(problem).__name__}")
+    require_problem(problem)
     if problem.standard and not isinstance(problem, LCP):
         problem = LCP(problem.A, problem.q)
+    if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
+        given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
+        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
     automatic = homotopy == "auto"
-    if not automatic and homotopy not in HOMOTOPIES:
-        raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {homotopy!r}")
     if not automatic and not problem.standard and not HOMOTOPIES[homotopy].bounds:
         known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
@@ -162,7 +164,7 @@ def solve(
         Finish(Faces(structure), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
-        None if archive is None else PathLog(archive),
+        None if archive is None else PathLog(as_file("archive", archive)),
         progress,
         dict(options),
     )
@@ -198,8 +200,8 @@ def _check_arguments(
         raise ValueError(f"tolerance: expected a number between 0 and 1, found {tolerance!r}")
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
-    if executor is not None and not hasattr(executor, "submit"):
-        raise TypeError(f"executor: expected a concurrent.futures.Executor, found {executor!r}")
+    if executor is not None:
+        instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
     if not isinstance(seed, Integral) or seed < 0:
         raise ValueError(f"seed: expected an integer, at least 0, found {seed!r}")
     if not isinstance(finish, bool):

@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from continuation import Status, Tracer, trace
+from continuation import Budget, Status, Tracer, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
 from continuation.archive.store import Store
 from continuation.controllers import Bounds, Fixed
@@ -84,15 +84,17 @@ class Death(BaseException):
 
 def dying(monkeypatch, flushes):
     """Let the writer die after so many flushes, in the first or the second phase of a commit."""
-    left = [flushes]
+    left, stores = [flushes], []
 
     def flush(self):
+        stores.append(self)
         if not left[0]:
             raise Death
         left[0] -= 1
         self._h5.flush()
 
     monkeypatch.setattr(Store, "_flush", flush)
+    return stores
 
 
 def leave(log, steps=None):
@@ -127,6 +129,26 @@ def test_death_between_the_phases(tmp_path, monkeypatch, flushes):
             assert np.array_equal(checkpoint.state.here.u, path.u[checkpoint.state.index])
     if flushes > 2:
         assert np.array_equal(resume(tmp_path / "run.h5").u, path.u)
+
+
+@pytest.mark.parametrize("rows", [3, 4, 5, 6])
+@pytest.mark.parametrize("recovered", [False, True])
+def test_death_in_the_first_commits_of_a_resumed_path(tmp_path, monkeypatch, rows, recovered):
+    """The checkpoint that the file was resumed from is not what the first new one is written over."""
+    path, file = trace(FreudensteinRoth()), tmp_path / "run.h5"
+    trace(FreudensteinRoth(), archive=PathLog(file, limits=Limits(rows=rows)), budget=Budget(steps=12))
+    for _ in range(3):
+        with monkeypatch.context() as patch:
+            # Four flushes make the copy; the fifth would end the first phase of the commit that ends the path.
+            stores = dying(patch, 4)
+            with pytest.raises(Death):
+                resume(file, budget=Budget())
+        stores[-1].close()
+        if recovered:
+            recover(file)
+    found = resume(file, budget=Budget())
+    assert np.array_equal(found.u, path.u)
+    assert found.counts == path.counts
 
 
 def test_a_torn_checkpoint_gives_way_to_the_one_before(tmp_path):

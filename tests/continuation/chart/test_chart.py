@@ -10,70 +10,14 @@ from attrs import evolve
 import continuation
 from continuation import chart
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
-from continuation.chart import catalogue
-from continuation.chart.front import FLOOR
-from continuation.chart.profile import profile_table, ratios
 from continuation.chart.report import report
-from continuation.chart.scaling import scaling_table
-from continuation.cli import charts
-from continuation.cli.parser import Parser, UsageError
 from continuation.counts import Counts
-from continuation.predictors import Hermite, Taylor
+from continuation.predictors import Hermite
 from problems.bifurcation import Circle, ExponentialCosine
 from problems.bifurcation.truth import circle, exponential_cosine
+from problems.charts.subjects import cosine
 
 mpl.use("Agg")
-
-
-def cosine(n):
-    truth = chart.Truth(
-        end=exponential_cosine.curve(n, np.array(exponential_cosine.end(n))),
-        turning_points=exponential_cosine.turning_points(n),
-        arclength=exponential_cosine.arclength(n),
-        nearest=lambda u: exponential_cosine.curve(n, u[:, :-1].sum(axis=1)),
-    )
-    return chart.Problem(f"cosine {n}", ExponentialCosine(n), truth, family="cosine")
-
-
-def boom(problem, rung):
-    raise ArithmeticError("on purpose")
-
-
-def jump(problem, rung):
-    """Arrives, with two turning points unseen: what a tracer says that has left out a loop."""
-    answer = chart.traced("jump").run(problem, rung)
-    answer.path.events = answer.path.events[2:]
-    return answer
-
-
-@pytest.fixture(scope="module")
-def study():
-    return chart.Study(
-        name="closed",
-        title="Closed forms",
-        problems=[cosine(5)],
-        methods=[
-            chart.traced("Hermite", predictor=Hermite()),
-            chart.Method("jumps", jump),
-            chart.traced("broke", budget=continuation.Budget(steps=3)),
-            chart.Method("raises", boom, laddered=False),
-            chart.Method(
-                "lies",
-                lambda problem, rung: chart.Answer(Counts(factorizations=1), end=problem.truth.end + 0.1),
-                laddered=False,
-            ),
-        ],
-        ladder=chart.tolerances(1e-4, 1e-8),
-        errors=[chart.END_POINT, chart.TURNING_POINTS, chart.ARCLENGTH, chart.CURVE_DISTANCE],
-        work=["factorizations", "seconds"],
-        figures=[chart.Precision("end_point", "factorizations"), chart.Profile("factorizations")],
-        repeats=1,
-    )
-
-
-@pytest.fixture(scope="module")
-def results(study):
-    return chart.run(study)
 
 
 def row(results, method, rung=1e-8):
@@ -143,21 +87,13 @@ def test_shorter_steps_make_better_dense_output():
         name="steps",
         problems=[cosine(3)],
         methods=[chart.traced("Hermite")],
-        ladder=chart.longest_steps(0.3, 0.03),
+        ladder=chart.longest_steps(0.3, 0.01),
         errors=[chart.CURVE_DISTANCE],
         repeats=0,
     )
     long, short = chart.run(study).rows
     assert short.errors["curve_distance"] < 0.1 * long.errors["curve_distance"]
     assert short.counts.accepted > 3 * long.counts.accepted
-
-
-def test_the_ladder_of_orders_sets_the_order_and_needs_a_series():
-    rung = chart.orders(7).rungs[0]
-    assert rung.apply({"predictor": Taylor(accuracy=1e-3)})["predictor"] == Taylor(7, accuracy=1e-3)
-    assert rung.apply({"preset": continuation.SERIES})["predictor"].order == 7
-    with pytest.raises(TypeError, match="predictor: expected a Taylor predictor"):
-        rung.apply({})
 
 
 def test_a_reference_knows_what_the_closed_form_knows():
@@ -194,76 +130,6 @@ def test_what_was_out_of_budget_is_not_run_on_larger_problems():
     del ran[:]
     chart.run(evolve(study, give_up=False))
     assert len(ran) == len(rows)
-
-
-def test_profiles_reach_as_far_as_anything_is_solved():
-    figure = chart.draw_profile(made(("a", 1.0, 1, ""), ("b", 1.0, 700, ""), ("c", 1.0, 1, "jump")), "factorizations")
-    (panel,) = figure.axes
-    assert panel.get_xlim() == (1.0, 1000.0)
-    steps = [line for line in panel.get_lines() if line.get_linestyle() != "None"]
-    assert [line.get_ydata()[-1] for line in steps] == [1.0, 1.0, 0.0]
-
-
-def made(*points):
-    """Results of one problem: (method, error, factorisations, failure)."""
-    rows = [
-        chart.Row("p", "p", 1, -1, name, 1.0, failure, "", {"e": error}, Counts(factorizations=work), 0, 1.0, 1)
-        for name, error, work, failure in points
-    ]
-    return chart.Results("s", "t", "tolerance", {"e": "error"}, ("factorizations",), tuple(rows))
-
-
-def test_the_front_is_what_nothing_beats():
-    results = made(
-        ("cheap", 1e-2, 10, ""),
-        ("middle", 1e-4, 20, ""),
-        ("beaten", 1e-3, 30, ""),
-        ("exact", FLOOR / 10, 50, ""),
-        ("also exact", FLOOR / 2, 50, ""),
-        ("dearer", FLOOR / 100, 60, ""),
-        ("failed", 1e-9, 1, "jump"),
-    )
-    front = [r.method for r in chart.on_front(results.rows, "e", "factorizations")]
-    assert front == ["cheap", "middle", "exact", "also exact"]
-    far = {method: value for (_, method, _), value in chart.excess(results, "e", "factorizations").items()}
-    assert far == {
-        "cheap": 1.0, "middle": 1.0, "beaten": 1.5, "exact": 1.0, "also exact": 1.0, "dearer": 1.2, "failed": math.inf
-    }  # fmt: skip
-    table = chart.summary(results)
-    lines = {line[0]: line for line in table.rows}
-    assert lines["beaten"][-2:] == (1.5, 1.5)
-    assert lines["failed"][1:4] == (1, 0, "1 jump")
-
-
-def test_profiles_count_failures_as_unsolved():
-    results = made(("a", 1.0, 10, ""), ("b", 1.0, 15, ""), ("c", 1.0, 1, "jump"))
-    assert {name: values.tolist() for name, values in ratios(results, "factorizations").items()} == {
-        "a": [1.0], "b": [1.5], "c": [math.inf]
-    }  # fmt: skip
-    assert profile_table(results, "factorizations").rows == (
-        ("p", "a", 1, 1.0, 1.0, 1.0, 1.0),
-        ("p", "b", 1, 0.0, 1.0, 1.0, 1.0),
-        ("p", "c", 1, 0.0, 0.0, 0.0, 0.0),
-    )
-
-
-def test_exponents_are_fitted_to_the_larger_sizes():
-    one = made(("a", 1.0, 1, "")).rows[0]
-    sizes = [1, 2, 10, 20, 40]
-    rows = tuple(
-        evolve(one, problem=str(n), n=n, counts=Counts(factorizations=1000 if n < 10 else n**3)) for n in sizes
-    )
-    results = evolve(made(), rows=rows)
-    assert chart.exponents(results, "factorizations")["p", "a"] == pytest.approx(3.0)
-    assert scaling_table(results, "factorizations").rows[0][-1] == pytest.approx(3.0)
-    assert math.isnan(chart.exponents(evolve(results, rows=rows[:2]), "factorizations")["p", "a"])
-
-
-def test_tables_as_text_csv_and_markdown():
-    table = chart.Table(("name", "n"), [("a|b", 1), ("c", math.nan)])
-    assert table.text() == "name    n\n----  ---\na/b     1\nc"
-    assert table.markdown() == "| name |   n |\n| ---- | --: |\n| a/b  |   1 |\n| c    |     |"
-    assert table.csv() == "name,n\na|b,1\nc,\n"
 
 
 def same(a, b):
@@ -333,108 +199,10 @@ def test_an_unknown_axis_is_named(results, bad):
         chart.draw(results, **{"error": "end_point", "work": "seconds", **bad})
 
 
-def test_a_study_refuses_equal_names():
-    problem = cosine(2)
-    with pytest.raises(ValueError, match="methods: expected distinct names, found 'a' twice"):
-        chart.Study(
-            name="s", problems=[problem], methods=[chart.traced("a"), chart.traced("a")], errors=[chart.END_POINT]
-        )
-
-
-@pytest.mark.parametrize(
-    ("change", "kind", "complaint"),
-    [
-        ({"problems": []}, ValueError, "problems: expected at least one"),
-        ({"problems": cosine(2)}, TypeError, "problems: expected a list"),
-        ({"problems": [Circle()]}, TypeError, "problems: expected problems of continuation.chart"),
-        ({"errors": ["end_point"]}, TypeError, "errors: expected errors of continuation.chart, found 'end_point'"),
-        ({"work": ("flops",)}, ValueError, "work: expected a list of some of factorizations, .*'flops'"),
-    ],
-    ids=["none", "no list", "no problem", "no error", "no work"],
-)
-def test_a_study_refuses_what_is_none(change, kind, complaint):
-    whole = {"problems": [cosine(2)], "methods": [chart.traced("a")], "errors": [chart.END_POINT]}
-    with pytest.raises(kind, match=complaint):
-        chart.Study(name="s", **{**whole, **change})
-
-
-def test_a_misspelt_option_and_a_bad_rung_are_refused_at_once():
-    with pytest.raises(TypeError, match=r"predictr: expected one of the options budget, .*; did you mean predictor\?"):
-        chart.traced("a", predictr=Hermite())
-    for bad in ((), (-1.0,), ("a",), (math.inf,)):
-        with pytest.raises(ValueError, match="values: expected positive numbers"):
-            chart.tolerances(*bad)
-
-
 @pytest.mark.parametrize("kind", ["problems", "methods"])
 def test_what_is_not_there_is_not_drawn(results, kind):
     with pytest.raises(ValueError, match=f"{kind}: expected some of"):
         chart.draw(results, "end_point", "seconds", **{kind: ["none"]})
-
-
-def test_errors_that_agree_to_three_digits_are_equal():
-    results = made(("cheap", 1.0004e-3, 10, ""), ("dear", 1.0e-3, 20, ""), ("better", 0.9e-3, 30, ""))
-    assert [r.method for r in chart.on_front(results.rows, "e", "factorizations")] == ["cheap", "better"]
-
-
-@pytest.fixture
-def installed(monkeypatch):
-    """A small study as if a package had registered it."""
-    small = chart.Study(
-        name="closed",
-        problems=[cosine(2)],
-        methods=[chart.traced("Hermite"), chart.Method("raises", boom, laddered=False)],
-        ladder=chart.tolerances(1e-6),
-        errors=[chart.END_POINT],
-        figures=[chart.Precision("end_point", "factorizations"), chart.Profile("factorizations")],
-        repeats=0,
-    )
-
-    class Point:
-        name, value, dist = "closed", "package:studies", None
-
-        def load(self):
-            return lambda size, compare: [small]
-
-    points = [Point()]
-    monkeypatch.setattr(catalogue, "entry_points", lambda group: points)
-    return points
-
-
-def command(*arguments):
-    parser = Parser()
-    charts.register(parser.add_subparsers())
-    parsed = parser.parse_args(["chart", *arguments])
-    return parsed.run(parsed)
-
-
-def test_the_command_writes_everything(installed, tmp_path, capsys):
-    folder = tmp_path / "out"
-    for _ in range(2):
-        assert command("closed", "--smoke", "--output", str(folder)) == 0
-    assert sorted(file.name for file in folder.iterdir()) == [
-        "closed-end_point-factorizations.png", "closed-profile-factorizations.png", "closed.csv", "closed.h5",
-        "closed.md",
-    ]  # fmt: skip
-    assert "1 exception" in capsys.readouterr().out
-    page = (folder / "closed.md").read_text()
-    assert "| exception |" in page
-    assert "threads: " in page
-
-
-def test_the_command_lists_the_studies_and_names_a_wrong_one(installed, capsys):
-    assert command() == 0
-    assert capsys.readouterr().out == "closed\n"
-    with pytest.raises(UsageError, match="NAME: expected all or one of closed, found 'open'"):
-        command("open")
-
-
-def test_two_packages_with_one_name_are_an_error(installed):
-    other = type(installed[0])()
-    other.value = "other:studies"
-    installed.append(other)
-    with pytest.raises(ValueError, match="found package:studies and other:studies"):
-        catalogue.catalogue()
 
 
 def test_without_matplotlib_there_are_no_figures(study, results, tmp_path, monkeypatch):

@@ -197,7 +197,7 @@ def test_paper_names_bad_input(run, tmp_path):
     assert "--output: expected a directory, or a new one" in err
     status, _, err = run("paper", "--output", tmp_path, "--methods", "kkt,gauss")
     assert status == BAD_INPUT
-    assert "--methods: expected all or some of kkt, literal" in err
+    assert "--methods: expected all or some of kkt, wang" in err
     assert "'gauss'" in err
 
 

@@ -39,7 +39,7 @@ def test_a_failure_is_rejected_and_shortens_the_step(controller):
 
 @every_controller
 def test_failures_reach_the_floor(controller):
-    state, h = controller.init(), controller.bounds.initial
+    state, h = controller.init(), controller.bounds.initial or 0.1
     for count in range(200):
         decision = controller.update(state, evolve(FAILED, h=h, rejections=count))
         state, h = decision.state, decision.h
@@ -80,7 +80,7 @@ def test_an_easy_step_is_lengthened_but_not_after_a_rejection(controller):
 
 def test_the_papers_backtracking():
     controller = Geometric(ratio=0.6, bounds=Bounds(minimum=1e-6, initial=1.0))
-    h, steps = controller.bounds.initial, []
+    h, steps = controller.bounds.initial or 0.1, []
     for l in range(4):
         steps.append(h)
         h = controller.update((), evolve(FAILED, h=h, rejections=l)).h

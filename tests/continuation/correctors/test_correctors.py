@@ -13,16 +13,11 @@ from problems.bifurcation import Circle, ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
 CORRECTORS = [
-    BorderedNewton(),
-    BorderedNewton(reuse=0.0),
-    BorderedNewton(reuse=1.0, max_iterations=20),
-    Chord(),
-    Broyden(),
-    MoorePenrose(),
-    NaturalParameter(),
-]
+    BorderedNewton(), BorderedNewton(reuse=0.0), BorderedNewton(reuse=1.0, max_iterations=20), Chord(), Broyden(),
+    MoorePenrose(), NaturalParameter(),
+]  # fmt: skip
 every_corrector = pytest.mark.parametrize("corrector", CORRECTORS, ids=repr)
-TOLERANCE = Tolerance(1e-10, 1e-10)
+TOLERANCE = Tolerance(1e-10)
 
 
 class Setting:
@@ -34,7 +29,7 @@ class Setting:
         u = u if u is not None else exponential_cosine.curve(4, 0.5)
         unit = np.zeros(u.size)
         unit[-1] = 1.0
-        self.point = linearize(self.evaluator, u, np.ones(u.size), unit, 0)
+        self.point = linearize(self.evaluator, u, np.ones(u.size), unit)
         self.predicted = self.point.u + h * self.point.tangent
         self.before = self.evaluator.counts.copy()
 
@@ -76,7 +71,7 @@ def test_kellers_kind_stays_in_the_plane(corrector):
 def test_moore_penrose_lands_at_the_foot_of_the_perpendicular():
     setting = Setting()
     correction = setting.correct(MoorePenrose())
-    end = linearize(setting.evaluator, correction.u, np.ones(5), setting.point.border, 0)
+    end = linearize(setting.evaluator, correction.u, np.ones(5), setting.point.border)
     back = correction.u - setting.predicted
     # The angle between the way back and the path is a right one up to terms of the second order in the distance.
     cosine = np.dot(back, end.tangent) / np.linalg.norm(back)
@@ -117,7 +112,7 @@ def test_a_reused_factorisation_may_serve_the_tangent():
 
 def test_newton_is_quadratic_and_chord_linear_with_broyden_between():
     iterations = {
-        type(corrector): Setting(0.05).correct(corrector, Tolerance(1e-13, 1e-13)).iterations
+        type(corrector): Setting(0.05).correct(corrector, Tolerance(1e-13)).iterations
         for corrector in (BorderedNewton(reuse=0.0), Broyden(), Chord(max_iterations=40))
     }
     assert iterations[BorderedNewton] < iterations[Broyden] < iterations[Chord]
@@ -167,7 +162,7 @@ def test_values_that_are_not_finite_end_the_attempt(corrector):
 
 @every_corrector
 def test_the_residual_is_judged_where_a_bound_is_given(corrector):
-    loose, strict = Tolerance(1e-2, 1e-2), Tolerance(1e-2, 1e-2, residual=1e-9)
+    loose, strict = Tolerance(1e-2), Tolerance(1e-2, residual=1e-9)
     early, late = Setting().correct(corrector, loose), Setting().correct(corrector, strict)
     assert early.converged
     assert late.converged

@@ -4,22 +4,21 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import Status
+from continuation import DEFAULT, FAST, SERIES, Status
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import WangHomotopy
 
-PRESETS = [continuation.FAST, continuation.DEFAULT, continuation.SERIES]
+from ...util import by_preset
+from ..util import scalar
+
+presets = by_preset(FAST, DEFAULT, SERIES)
 
 
 def power(w):
-    return continuation.from_functions(
-        lambda y, lam: np.array([y[0] ** w - lam]),
-        lambda y, lam: (np.array([[w * y[0] ** (w - 1)]]), np.array([-1.0])),
-        start=([1.0], 1.0),
-    )
+    return scalar(lambda y, lam: y**w - lam, lambda y, lam: (w * y ** (w - 1), -1.0), start=(1.0, 1.0), target=0.0)
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@presets
 @pytest.mark.parametrize("w", [2, 3, 4])
 def test_powers_of_the_parameter(w, preset):
     path = continuation.trace(power(w), preset=preset)
@@ -30,14 +29,14 @@ def test_powers_of_the_parameter(w, preset):
     assert f"^(1/{w})" in path.message
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@presets
 def test_a_regular_end_is_landed_on_and_not_extrapolated(preset):
     path = continuation.trace(power(1), preset=preset)
     assert path.endpoint.u.tolist() == [0.0, 0.0]
     assert path.winding_number is None
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@presets
 def test_two_coupled_roots_where_the_jacobian_loses_two_ranks(preset):
     homotopy = continuation.from_functions(
         lambda y, lam: np.array([y[0] ** 2 - lam, y[1] ** 2 - 2.0 * lam * (1.0 + y[0])]), start=([1.0, 2.0], 1.0)
@@ -47,7 +46,7 @@ def test_two_coupled_roots_where_the_jacobian_loses_two_ranks(preset):
     np.testing.assert_allclose(path.endpoint.y, 0.0, atol=1e-11)
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@presets
 def test_a_root_that_mixes_with_regular_components(preset):
     homotopy = continuation.from_functions(
         lambda y, lam: np.array([(y[0] - 1.0) ** 2 - lam * (1.0 + y[1]), y[1] - np.sin(y[0]) - lam]),
@@ -57,7 +56,7 @@ def test_a_root_that_mixes_with_regular_components(preset):
     np.testing.assert_allclose(path.endpoint.y, [1.0, np.sin(1.0)], atol=1e-11)
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@presets
 def test_a_double_end_of_a_complementarity_problem(preset):
     # x = 0 and w = 0 at once in both components: x ~ sqrt(lam).
     problem = LCP(np.array([[2.0, 1.0], [1.0, 2.0]]), np.zeros(2))
@@ -69,7 +68,7 @@ def test_a_double_end_of_a_complementarity_problem(preset):
     assert path.end_error <= 1e-8
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@presets
 @pytest.mark.parametrize("size", [0.0, 1.0, 10.0, 100.0])
 def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_the_path(preset, size):
     """H_y = lam^2: round-off of `size` 1e-16 in H leaves y 1e-6 at lam = 1e-4, and at the target any y solves H = 0.
@@ -88,13 +87,11 @@ def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_th
     assert abs(path.endpoint.y[0] - 1.0) <= 10.0 * path.end_error + 1e-14
 
 
-@pytest.mark.parametrize("preset", PRESETS, ids=lambda p: p.name)
+@presets
 def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
     """A homotopy that jumps at the target itself: the path has the limit 0, where H(0, 0) = -1."""
-    homotopy = continuation.from_functions(
-        lambda y, lam: np.array([y[0] - lam if lam > 0.0 else y[0] - 1.0]),
-        lambda y, lam: (np.array([[1.0]]), np.array([-1.0])),
-        start=([1.0], 1.0),
+    homotopy = scalar(
+        lambda y, lam: y - lam if lam > 0.0 else y - 1.0, lambda y, lam: (1.0, -1.0), start=(1.0, 1.0), target=0.0
     )
     path = continuation.trace(homotopy, preset=preset)
     # It is followed to the jump and no farther, and nothing is claimed of an end.

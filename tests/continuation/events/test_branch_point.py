@@ -5,9 +5,7 @@ import pytest
 from attrs import evolve
 
 from continuation import (
-    CONSERVATIVE,
     DEFAULT,
-    FAST,
     BranchPoint,
     Budget,
     Kind,
@@ -22,7 +20,8 @@ from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from problems.bifurcation import Pitchfork
 
-every_preset = pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+from ...util import every_preset
+from ..util import scalar
 
 
 def branch_points(path):
@@ -30,21 +29,11 @@ def branch_points(path):
 
 
 def shifted_pitchfork(at):
-    return from_functions(
-        lambda y, lam: (lam - at) * y - y**3,
-        lambda y, lam: ((lam - at - 3.0 * y * y)[:, None], 1.0 * y),
-        start=([0.0], -1.0),
-        target=1.0,
-    )
+    return scalar(lambda y, lam: (lam - at) * y - y**3, lambda y, lam: (lam - at - 3.0 * y * y, y), start=(0.0, -1.0))
 
 
 def transcritical(start):
-    return from_functions(
-        lambda y, lam: lam * y - y**2,
-        lambda y, lam: ((lam - 2.0 * y)[:, None], 1.0 * y),
-        start=(start, -1.0),
-        target=1.0,
-    )
+    return scalar(lambda y, lam: lam * y - y**2, lambda y, lam: (lam - 2.0 * y, y), start=(start, -1.0))
 
 
 def line_through_circle(start=(-1.0, -2.0)):
@@ -88,13 +77,13 @@ def test_steps_that_would_creep_up_to_the_branch_point_pass_it():
 
 
 @every_preset
-@pytest.mark.parametrize("start", [[0.0], [-1.0]])
+@pytest.mark.parametrize("start", [0.0, -1.0])
 def test_the_transcritical_one_is_located_from_both_branches(preset, start):
     path = trace(transcritical(start), preset=preset)
     assert path.status is Status.REACHED_TARGET
     (event,) = branch_points(path)
     np.testing.assert_allclose(event.u, 0.0, rtol=0, atol=1e-10)
-    np.testing.assert_allclose(path.endpoint.u, (-start[0], 1.0), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(path.endpoint.u, (-start, 1.0), rtol=0, atol=1e-10)
 
 
 @every_preset
@@ -140,7 +129,7 @@ def test_both_branches_of_the_pitchfork_are_followed():
 
 
 def test_the_other_branch_of_the_transcritical_one():
-    homotopy = transcritical([0.0])
+    homotopy = transcritical(0.0)
     (event,) = branch_points(trace(homotopy))
     ends = set()
     for start in switch_branch(homotopy, event):
@@ -174,10 +163,10 @@ def test_two_unknowns():
 @pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3])
 def test_a_hairpin_is_no_branch_point(width):
     # A parabola so narrow that a step over its vertex flips the determinant.
-    homotopy = from_functions(
+    homotopy = scalar(
         lambda y, lam: y * y - width**2 * (1.0 - lam),
-        lambda y, lam: ((2.0 * y)[:, None], np.array([width**2])),
-        start=([width], 0.0),
+        lambda y, lam: (2.0 * y, width**2),
+        start=(width, 0.0),
         target=None,
     )
     path = trace(homotopy, direction=1, events=[TargetValue(0.0)], metric=Euclidean())

@@ -5,14 +5,15 @@ from math import pi
 import numpy as np
 import pytest
 
-from continuation import Kind, Monitor, Status, TargetValue, TurningPoint, from_functions, trace
+from continuation import Kind, Monitor, Status, TargetValue, TurningPoint, trace
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp, ExponentialCosine, FreudensteinRoth
 
-LINE = from_functions(
-    lambda y, lam: y - 2.0 * lam, lambda y, lam: (np.eye(1), np.array([-2.0])), start=([0.0], 0.0), target=1.0
-)
+from ..util import scalar
+
+LINE = scalar(lambda y, lam: y - 2.0 * lam, lambda y, lam: (1.0, -2.0))
+FLAT = scalar(lambda y, lam: y, lambda y, lam: (1.0, 0.0))
 
 
 def giant_steps():
@@ -78,10 +79,9 @@ def test_directions(direction, expected):
 
 def test_the_direction_counts_for_a_zero_exactly_on_a_knot():
     # Steps of 0.25 in lam: 0.5 is a knot to the last bit, where lam - 0.5 rises.
-    flat = from_functions(lambda y, lam: y, lambda y, lam: (np.eye(1), np.zeros(1)), start=([0.0], 0.0), target=1.0)
     for direction, count in ((1, 1), (0, 1), (-1, 0)):
         path = trace(
-            flat,
+            FLAT,
             events=[TargetValue(0.5, terminal=0, direction=direction)],
             controller=Fixed(Bounds(initial=0.25)),
             metric=Euclidean(),
@@ -91,17 +91,15 @@ def test_the_direction_counts_for_a_zero_exactly_on_a_knot():
 
 
 def test_never_twice_when_the_zero_is_a_knot():
-    flat = from_functions(lambda y, lam: y, lambda y, lam: (np.eye(1), np.zeros(1)), start=([0.0], 0.0), target=1.0)
     events = [TargetValue(0.5, terminal=0), Monitor(lambda u, v: u[-1] - 0.75, "at 0.75")]
-    path = trace(flat, events=events, controller=Fixed(Bounds(initial=0.25)), metric=Euclidean())
+    path = trace(FLAT, events=events, controller=Fixed(Bounds(initial=0.25)), metric=Euclidean())
     assert [event.name for event in path.events] == ["lam = 0.5", "at 0.75"]
 
 
 def test_a_zero_behind_a_knot_that_was_one_too():
     # Zeros at 0.25, a knot, and at 0.4, within the next step.
-    flat = from_functions(lambda y, lam: y, lambda y, lam: (np.eye(1), np.zeros(1)), start=([0.0], 0.0), target=1.0)
     pair = Monitor(lambda u, v: (u[-1] - 0.25) * (u[-1] - 0.4), "pair")
-    path = trace(flat, events=[pair], controller=Fixed(Bounds(initial=0.25)), metric=Euclidean())
+    path = trace(FLAT, events=[pair], controller=Fixed(Bounds(initial=0.25)), metric=Euclidean())
     np.testing.assert_allclose([event.lam for event in path.events], [0.25, 0.4], rtol=0, atol=1e-12)
 
 
@@ -191,18 +189,13 @@ def test_a_turning_point_as_the_end():
 
 def test_no_false_turning_point_where_the_parameter_dies_out():
     # y = -log lam: the parameter falls for ever, ever more slowly.
-    homotopy = from_functions(
-        lambda y, lam: np.exp(-y) - lam,
-        lambda y, lam: (-np.exp(-y)[:, None], -np.ones(1)),
-        start=([0.0], 1.0),
-        target=None,
+    homotopy = scalar(
+        lambda y, lam: np.exp(-y) - lam, lambda y, lam: (-np.exp(-y), -1.0), start=(0.0, 1.0), target=None
     )
     path = trace(homotopy, events=[TargetValue(600.0, component=0)], direction=-1)
     assert path.turning_points == []
 
 
 def test_no_false_turning_point_on_a_path_of_constant_parameter_rate():
-    flat = from_functions(
-        lambda y, lam: y - 1.0, lambda y, lam: (np.eye(1), np.zeros(1)), start=([1.0], 0.0), target=1.0
-    )
+    flat = scalar(lambda y, lam: y - 1.0, lambda y, lam: (1.0, 0.0), start=(1.0, 0.0))
     assert trace(flat, events=[TurningPoint(0)]).events == []

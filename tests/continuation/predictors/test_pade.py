@@ -32,7 +32,7 @@ def test_exact_on_a_rational_curve_far_beyond_its_radius(pole, where):
 def test_the_pole_ends_the_range():
     c = rational_curve(0.7, 10)
     assert first_pole(approximant(c, np.ones(3)).denominator) == pytest.approx(0.7, rel=1e-8)
-    rational = best(c, np.ones(3), 1e-3, series_reach(c, 1e-3), 1.0)
+    rational = best(c, np.ones(3), 1e-3, series_reach(c, 1e-3, np.ones(3)), 1.0)
     assert rational is None or rational.reach < 0.7
 
 
@@ -43,7 +43,7 @@ def test_reaches_beyond_the_circle_of_convergence():
     even = np.where(k % 2 == 0, (-1.0) ** (k // 2), 0.0)
     odd = np.where(k % 2 == 1, (-1.0) ** (k // 2) / np.maximum(k, 1), 0.0)
     c = np.stack([even, odd], axis=1)
-    reach = series_reach(c, 1e-6)
+    reach = series_reach(c, 1e-6, np.ones(c.shape[1]))
     rational = best(c, np.ones(2), 1e-6, reach, 0.95)
     assert reach < 0.7
     assert rational is not None

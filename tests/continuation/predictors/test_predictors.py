@@ -8,29 +8,12 @@ from continuation import from_functions
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import linearize
-from continuation.predictors import (
-    AdamsBashforth,
-    Hermite,
-    Knot,
-    Polynomial,
-    RungeKutta,
-    Secant,
-    Tangent,
-)
+from continuation.predictors import AdamsBashforth, Hermite, Knot, Polynomial, RungeKutta, Secant, Tangent
 
 PREDICTORS = [
-    Tangent(),
-    Secant(),
-    Hermite(),
-    Polynomial(2),
-    Polynomial(3),
-    Polynomial(4),
-    RungeKutta(2),
-    RungeKutta(4),
-    AdamsBashforth(2),
-    AdamsBashforth(3),
-    AdamsBashforth(4),
-]
+    Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(3), Polynomial(4), RungeKutta(2), RungeKutta(4),
+    AdamsBashforth(2), AdamsBashforth(3), AdamsBashforth(4),
+]  # fmt: skip
 every_predictor = pytest.mark.parametrize("predictor", PREDICTORS, ids=repr)
 
 PARABOLA = from_functions(
@@ -62,7 +45,7 @@ def prediction(predictor, h, s=0.4, evaluator=None):
     # Steps of unequal length, as a tracer makes them.
     history = [knot(s - back * h) for back in (3.9, 2.7, 1.2, 0.0)[-max(predictor.memory, 1) :]]
     here = history[-1]
-    point = linearize(evaluator, here.u, np.ones(2), here.tangent, 0)
+    point = linearize(evaluator, here.u, np.ones(2), here.tangent)
     return predictor.prepare(evaluator, point, history)
 
 
@@ -91,7 +74,7 @@ def test_it_runs_ahead_at_unit_speed(predictor):
 def test_the_first_step_has_no_history_and_is_tangent_at_least(predictor):
     evaluator = Evaluator(PARABOLA, Counts())
     here = knot(0.4)
-    point = linearize(evaluator, here.u, np.ones(2), here.tangent, 0)
+    point = linearize(evaluator, here.u, np.ones(2), here.tangent)
     ahead = predictor.prepare(evaluator, point, [here])
     errors = [error(ahead(h), here) for h in (0.04, 0.02)]
     assert np.log2(errors[0] / errors[1]) > 1.7
@@ -106,7 +89,7 @@ def test_straight_lines_are_predicted_exactly(predictor):
     v = np.array([2.0, 1.0]) / np.sqrt(5.0)
     history = [Knot(s, s * v, v) for s in (0.1, 0.25, 0.3, 0.5)[-max(predictor.memory, 1) :]]
     evaluator = Evaluator(line, Counts())
-    point = linearize(evaluator, history[-1].u, np.ones(2), v, 0)
+    point = linearize(evaluator, history[-1].u, np.ones(2), v)
     np.testing.assert_allclose(predictor.prepare(evaluator, point, history)(0.7), 1.2 * v, rtol=0, atol=1e-13)
 
 
@@ -133,7 +116,7 @@ def test_a_rough_history_lowers_the_degree():
     history = [Knot(s, knot(s).u + 1e-2 * rng.standard_normal(2), knot(s).tangent) for s in (0.1, 0.2, 0.3, 0.4, 0.5)]
     evaluator = Evaluator(PARABOLA, Counts())
     here = history[-1]
-    point = linearize(evaluator, here.u, np.ones(2), here.tangent, 0)
+    point = linearize(evaluator, here.u, np.ones(2), here.tangent)
     assert len(Polynomial(5).prepare(evaluator, point, history).coefficients) < 6
 
 

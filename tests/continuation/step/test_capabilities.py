@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Budget, Status, check_jacobian, trace
+from continuation import Budget, Status, check_jacobian, trace
 from continuation.predictors import Hermite, Polynomial, Taylor
 from continuation.step.capabilities import interior_fraction, max_step_of
 from problems.bifurcation import FreudensteinRoth
+
+from ...util import every_preset
 
 
 class Straight:
@@ -82,7 +84,7 @@ class OneBuffer:
         return self.kept[1], self.kept[2]
 
 
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+@every_preset
 def test_a_homotopy_may_reuse_its_arrays(preset):
     path = trace(OneBuffer(FreudensteinRoth(), jacobian=True), preset=preset)
     np.testing.assert_array_equal(path.u, trace(FreudensteinRoth(), preset=preset).u)

@@ -8,31 +8,30 @@ from hypothesis import HealthCheck, assume, find, given, settings
 from hypothesis import strategies as st
 from hypothesis.errors import NoSuchExample
 
-from continuation import CONSERVATIVE, DEFAULT, SERIES, Kind, Status, trace
+from continuation import Kind, Status, trace
 from problems.lcp import LCP, KKTHomotopy, Outcome, certify, solve, solve_by_enumeration
 from problems.lcp.classes import is_n, is_nondegenerate, is_p0, is_row_sufficient
 from problems.lcp.strategies import feasible_lcps, matrices
 from problems.paper import COUNTEREXAMPLES
 
+from ...util import for_interior_paths
+from .util import x_at_end
+
 HUNT = settings(
     max_examples=2000, derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck)
 )
-PRESETS = pytest.mark.parametrize("preset", [DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
 
 
 def stationary(pair):
     """Whether the path from z1 = z2 = e arrives at lambda = 0 and its end does not solve the LCP, not even nearly."""
     problem, x0 = pair
     path = trace(KKTHomotopy(problem, x0))
-    x = np.maximum(path.endpoint.y[: problem.n], 0.0)
+    x = x_at_end(problem, path)
     return path.status is Status.REACHED_TARGET and not certify(problem, x, 1e-3).solves(1e-3)
 
 
 def unsolvable(pair):
     return not solve_by_enumeration(pair[0]).solvable and stationary(pair)
-
-
-# --- the false theorems, refuted by search -----------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -88,20 +87,16 @@ def test_row_sufficiency_is_the_exact_class(A):
     assert wrong
 
 
-# --- the two counterexamples, in closed form ---------------------------------------------------------------
-
-
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("counterexample", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
 def test_the_path_of_a_counterexample_ends_where_the_algebra_says(counterexample, preset):
     """P0: (1 + x)(1 + x - x^2) = x at the end, that is x^3 = x + 1; nondegenerate: x = (2, 0), w = (1, 0)."""
     problem = counterexample.problem
     path = trace(KKTHomotopy(problem, counterexample.x0), preset=preset)
     plastic = max(np.roots([1, 0, -1, -1]), key=np.real).real
-    x, w, z2 = {
-        "P0": ([plastic, 1], [0, 1], [1 + plastic, 0]),
-        "nondegenerate": ([2, 0], [1, 0], [0, 3]),
-    }[counterexample.matrix_class]
+    x, w, z2 = {"P0": ([plastic, 1], [0, 1], [1 + plastic, 0]), "nondegenerate": ([2, 0], [1, 0], [0, 3])}[
+        counterexample.matrix_class
+    ]
     assert path.status is Status.REACHED_TARGET
     assert not path.events
     np.testing.assert_allclose(path.endpoint.y[:2], x, rtol=0, atol=1e-9)
@@ -128,13 +123,11 @@ def test_a_counterexample_is_never_called_solved(counterexample, name):
     assert ("does not solve the LCP" in solution.message) == (name == "kkt")
 
 
-# --- a regular value that is none: the pitchfork of order one ----------------------------------------------
-
 HILL = LCP([[-1]], [2])
 """min x (2 - x): its solutions are 0 and 2, and between them, at x = 1, a maximum, which is stationary too."""
 
 
-@PRESETS
+@for_interior_paths
 def test_the_start_in_the_middle_meets_a_branch_point_and_ends_on_the_top(preset):
     """Theorem 3.1 holds for almost every start, not for every: from x0 = 1 the path is x = 1, z1 = z2 = lambda.
 
@@ -149,7 +142,7 @@ def test_the_start_in_the_middle_meets_a_branch_point_and_ends_on_the_top(preset
     assert solve(HILL, "kkt", x0=[1.0], finish=False).outcome is Outcome.STATIONARY
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("offset", [1e-2, 1e-4, 1e-6])
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_start_beside_the_middle_turns_off_to_a_solution(preset, offset, side):
@@ -161,7 +154,7 @@ def test_a_start_beside_the_middle_turns_off_to_a_solution(preset, offset, side)
     assert (np.sign(path.y[:, 0] - 1.0) == side).all()
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("offset", [1e-7, 1e-8, 1e-9, 1e-10, 1e-12])
 def test_a_start_nearer_than_the_tolerance_turns_off_or_names_the_branch_point(preset, offset):
     """Where the two arms are as near as the tolerance a leap is possible, and never silent."""

@@ -5,26 +5,15 @@ The rule asserted throughout: an end that is claimed is right, and where it cann
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
-from continuation import CONSERVATIVE, DEFAULT, SERIES, Kind, Status, trace
+from continuation import Kind, Status, trace
 from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, solve, solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, near_singular_lcps, planted_lcps
 
-PRESETS = pytest.mark.parametrize("preset", [DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
-
-
-def share(examples):
-    """So many examples in the default profile, a hundred times as many in the nightly one."""
-    return settings(max_examples=settings.default.max_examples * examples // 100)
-
-
-def x_at_end(problem, path):
-    return np.maximum(path.endpoint.y[: problem.n], 0.0)
-
-
-# --- turning points that come close ------------------------------------------------------------------------
+from ...util import for_interior_paths
+from .util import share, x_at_end
 
 MERGE = 3.9121535
 """Where the two turning points of the family below merge, from their distance at eight values of a beyond."""
@@ -36,7 +25,7 @@ def folding(a):
     return KKTHomotopy(problem, [2.0, 1.0])
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("a", [4.5, MERGE + 4e-3, MERGE + 1e-3])
 def test_two_close_turning_points_are_found_and_are_folds(preset, a):
     """H_y is singular at each, the path between them runs backwards, and all presets agree to nine digits."""
@@ -62,7 +51,7 @@ def test_the_gap_between_them_shrinks_as_at_a_cusp():
     assert list(gaps.values()) == pytest.approx([0.206] * 4, rel=3e-3)
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("d", [-1e-2, -1e-3, -1e-6, 1e-6, 1e-4])
 def test_close_to_the_merger_none_or_both_are_found_and_the_end_is_the_same(preset, d):
     """A pair inside one step may be missed, never one of the two: the orientation goes on as it was."""
@@ -73,9 +62,6 @@ def test_close_to_the_merger_none_or_both_are_found_and_the_end_is_the_same(pres
     np.testing.assert_allclose(path.endpoint.y[:2], 0.0, atol=1e-8)
 
 
-# --- folds that are nearly singular otherwise too ----------------------------------------------------------
-
-
 def twins(d):
     """Two blocks of the family above, of which the one folds at a = 4.5, the other at 4.5 + d."""
     A = np.zeros((4, 4))
@@ -83,7 +69,7 @@ def twins(d):
     return KKTHomotopy(LCP(A, [5, 2, 5, 2]), [2.0, 1.0, 2.0, 1.0])
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("d", [1e-2, 1e-4, 1e-6])
 def test_near_singular_folds_are_passed_one_after_the_other(preset, d):
     """At a fold of one block H_y of the other is singular but for a root of d, which makes the second singular value.
@@ -103,7 +89,7 @@ def test_near_singular_folds_are_passed_one_after_the_other(preset, d):
     assert values[-2] / values[-3] == pytest.approx(0.7 * d**0.5, rel=0.1)
 
 
-@PRESETS
+@for_interior_paths
 def test_a_double_fold_is_a_branch_point_and_is_named(preset):
     """Two blocks that are one: the kernel has two dimensions, four arms meet, and passing it is not passed over."""
     path = trace(twins(0.0), preset=preset)
@@ -115,9 +101,6 @@ def test_a_double_fold_is_a_branch_point_and_is_named(preset):
         np.testing.assert_allclose(path.endpoint.y[:4], 0.0, atol=1e-8)
     else:
         assert path.status is Status.STEP_TOO_SMALL
-
-
-# --- near-singular and badly scaled matrices ---------------------------------------------------------------
 
 
 @share(60)
@@ -168,7 +151,7 @@ def test_weights_of_a_ratio_of_1e8_do_not_matter(data):
     assert certify(problem, x_at_end(problem, path), 1e-8).solves(1e-8)
 
 
-@PRESETS
+@for_interior_paths
 def test_one_heavy_and_one_light_weight(preset):
     """The extreme, 1e4 against 1e-4 in every pair: the unique solution of a P-matrix, still to ten digits."""
     problem = LCP([[2, 1, 0], [-3, 2, 1], [1, -2, 4]], [-4, 5, -1])
@@ -185,7 +168,7 @@ FACES = {
 }
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("name", FACES)
 def test_an_end_inside_a_face_of_solutions(name, preset):
     """Row sufficient, A singular, all w = 0 on a segment: near its inside the condition of H' is about 1/lambda^2.
@@ -217,10 +200,7 @@ def test_extreme_units_end_without_a_warning():
     assert solve(problem).x == pytest.approx([5 * 2.0**-25], rel=1e-15)
 
 
-# --- ends: degenerate, double, without a solution ----------------------------------------------------------
-
-
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("n", [1, 2, 8])
 @pytest.mark.parametrize("make", [KKTHomotopy, WangHomotopy])
 def test_all_pairs_zero_is_an_end_of_half_powers(make, n, preset):
@@ -256,7 +236,7 @@ def test_degenerate_vertices_of_any_matrix(pair):
         assert solution.outcome in (Outcome.STATIONARY, Outcome.NOT_FOUND)
 
 
-@PRESETS
+@for_interior_paths
 @pytest.mark.parametrize("q", [1e-2, 1e-4])
 def test_two_solutions_close_together(preset, q):
     """LCP(q, -1) has the solutions 0 and q; the path ends at one of them, not between (q/2 is stationary)."""

@@ -17,42 +17,25 @@ from problems.lcp import strategies as mine
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import solve_by_enumeration
 
+from ...exact import exact_w, solves
+
 TESTS = {
-    "P": classes.is_p,
-    "P0": classes.is_p0,
-    "PSD": classes.is_psd,
-    "K": classes.is_k,
-    "Z": classes.is_z,
-    "N": classes.is_n,
-    "nondegenerate": classes.is_nondegenerate,
-    "row_sufficient": classes.is_row_sufficient,
+    "P": classes.is_p, "P0": classes.is_p0, "PSD": classes.is_psd, "K": classes.is_k, "Z": classes.is_z,
+    "N": classes.is_n, "nondegenerate": classes.is_nondegenerate, "row_sufficient": classes.is_row_sufficient,
     "copositive": classes.is_copositive,
-}
+}  # fmt: skip
 
 HUNT = settings(max_examples=5000, database=None, suppress_health_check=list(HealthCheck))
 
 
-def slack(problem, x):
-    """A x + q in rational arithmetic."""
-    rows = zip(problem.A.tolist(), problem.q.tolist(), strict=True)
-    return [sum((Fraction(a) * Fraction(v) for a, v in zip(row, x, strict=True)), Fraction(q)) for row, q in rows]
-
-
-def solves(problem, x):
-    w = slack(problem, x)
-    return min(*x, *w) >= 0 and not any(a * b for a, b in zip(map(Fraction, x), w, strict=True))
-
-
 @pytest.mark.parametrize("cls", TESTS)
-def test_matrices_belong_to_their_class(cls):
-    @given(mine.matrices(cls))
-    def belongs(A):
-        assert A.dtype == np.float64
-        assert A.shape == (len(A), len(A))
-        membership = TESTS[cls](A)
-        assert membership.holds, str(membership)
-
-    belongs()
+@given(data=st.data())
+def test_matrices_belong_to_their_class(cls, data):
+    A = data.draw(mine.matrices(cls))
+    assert A.dtype == np.float64
+    assert A.shape == (len(A), len(A))
+    membership = TESTS[cls](A)
+    assert membership.holds, str(membership)
 
 
 def test_every_class_has_a_test_here():
@@ -60,14 +43,11 @@ def test_every_class_has_a_test_here():
 
 
 @pytest.mark.parametrize("cls", mine.CLASSES)
-def test_the_order_asked_for_is_the_order_drawn(cls):
-    @given(mine.matrices(cls, 3), mine.matrices(cls, st.sampled_from((2, 5))))
-    @settings(max_examples=20)
-    def has_order(A, B):
-        assert A.shape == (3, 3)
-        assert len(B) in (2, 5)
-
-    has_order()
+@given(data=st.data())
+@settings(max_examples=20)
+def test_the_order_asked_for_is_the_order_drawn(cls, data):
+    assert data.draw(mine.matrices(cls, 3)).shape == (3, 3)
+    assert len(data.draw(mine.matrices(cls, st.sampled_from((2, 5))))) in (2, 5)
 
 
 HUNTED = {
@@ -106,21 +86,18 @@ def test_lcps_have_the_matrix_asked_for(problem):
 
 
 @pytest.mark.parametrize("cls", ["any", "P0", "copositive"])
-def test_the_start_of_feasible_problems_is_strictly_feasible(cls):
-    @given(mine.feasible_lcps(cls))
-    def strictly_feasible(pair):
-        problem, x0 = pair
-        assert min(x0) > 0
-        assert min(slack(problem, x0)) > 0
-
-    strictly_feasible()
+@given(data=st.data())
+def test_the_start_of_feasible_problems_is_strictly_feasible(cls, data):
+    problem, x0 = data.draw(mine.feasible_lcps(cls))
+    assert min(x0) > 0
+    assert min(exact_w(problem, x0)) > 0
 
 
 @given(mine.planted_lcps("strict", "P0"))
 def test_a_planted_strict_solution_solves_and_is_strictly_complementary(pair):
     problem, x = pair
     assert solves(problem, x)
-    assert all(a + b > 0 for a, b in zip(x, slack(problem, x), strict=True))
+    assert all(a + b > 0 for a, b in zip(x, exact_w(problem, x), strict=True))
     assert tuple(map(Fraction, x)) in {s.x for s in solve_by_enumeration(problem).solutions if s.isolated} or not (
         solve_by_enumeration(problem).complete
     )
@@ -130,7 +107,7 @@ def test_a_planted_strict_solution_solves_and_is_strictly_complementary(pair):
 def test_a_planted_degenerate_solution_solves_and_has_a_zero_pair(pair):
     problem, x = pair
     assert solves(problem, x)
-    assert any(a == b == 0 for a, b in zip(x, slack(problem, x), strict=True))
+    assert any(a == b == 0 for a, b in zip(x, exact_w(problem, x), strict=True))
 
 
 @given(mine.two_solution_lcps(), mine.planted_lcps("many"))
@@ -155,7 +132,7 @@ def test_unknown_kinds_are_refused(arguments, words):
 def test_near_singular_problems_are_a_power_of_two_from_singular_and_strictly_feasible(pair):
     problem, x0 = pair
     assert min(x0) > 0
-    assert min(slack(problem, x0)) > 0
+    assert min(exact_w(problem, x0)) > 0
     whole = np.round(problem.A)
     moved = np.abs(problem.A - whole)
     assert np.count_nonzero(moved) == 1
@@ -168,7 +145,7 @@ def test_badly_scaled_problems_keep_their_class_and_start(pair):
     problem, x0 = pair
     assert classes.is_p(problem.A).holds
     assert min(x0) > 0
-    assert min(slack(problem, x0)) > 0
+    assert min(exact_w(problem, x0)) > 0
     assert len(solve_by_enumeration(problem).solutions) == 1
 
 

@@ -4,25 +4,21 @@ Numbers are those of Dutta, Das and Jana, "Bounded Homotopy Path Approach to Fin
 Problems". Where their statement is wrong (3.7, 3.9) or unproven (3.4) the test is of what is true in its place.
 """
 
-from fractions import Fraction
-
 import numpy as np
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from continuation import Status, Tracer, trace
-from problems.lcp import LCP, KKTHomotopy, certify, random_start
+from problems.lcp import KKTHomotopy, certify, random_start
 from problems.lcp.classes.exact import ExactMatrix
-from problems.lcp.classes.exact import determinant as integer_determinant
 from problems.lcp.strategies import feasible_lcps, lcps
+from problems.paper import COUNTEREXAMPLES
+
+from ...exact import determinant
+from .util import share
 
 SMALL = 1e-7
 """Relative size below which a number at the end of a path counts as zero; most ends are good to 1e-12."""
-
-
-def share(examples):
-    """So many examples in the default profile, a hundred times as many in the nightly one."""
-    return settings(max_examples=settings.default.max_examples * examples // 100)
 
 
 def kkt_path(pair, **options):
@@ -31,17 +27,15 @@ def kkt_path(pair, **options):
     return trace(KKTHomotopy(problem, x0), **options)
 
 
-def determinant(M):
-    """Exact, in the units of the floats of M."""
-    exact = ExactMatrix.of(M)
-    return Fraction(integer_determinant(exact.entries), exact.scale**exact.n)
+def with_the_counterexamples(test):
+    """Of feasible problems, and the two whose path ends where no solution is."""
+    for pair in ((item.problem, item.x0) for item in COUNTEREXAMPLES):
+        test = example(pair)(test)
+    return given(feasible_lcps())(test)
 
 
 def small(value, *sizes):
     return np.abs(value) <= SMALL * (1.0 + max(float(np.abs(size).max()) for size in sizes))
-
-
-# --- the start ---------------------------------------------------------------------------------------------
 
 
 @share(50)
@@ -69,9 +63,6 @@ def test_the_determinant_is_negative_in_the_positive_direction(pair):
     tracer = Tracer(homotopy)
     assert next(iter(tracer)).tangent[-1] < 0
     assert tracer.state.orientation == homotopy.bordered(y0, lam0, tau).sign == -1
-
-
-# --- the course --------------------------------------------------------------------------------------------
 
 
 @share(40)
@@ -129,13 +120,8 @@ def test_semidefinite_matrices_give_monotone_paths_and_definite_matrices(pair):
         assert step.tangent[-1] < 0
 
 
-# --- the end -----------------------------------------------------------------------------------------------
-
-
 @share(60)
-@given(feasible_lcps())
-@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
-@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+@with_the_counterexamples
 def test_the_quadratic_identity_at_the_end(pair):
     """With dx = x - z2, dw = w - z1: A' dx = -dw and x_i w_i + z1_i z2_i = dx_i dw_i >= 0 (from Remark 2)."""
     problem, _ = pair
@@ -153,9 +139,7 @@ def test_the_quadratic_identity_at_the_end(pair):
 
 
 @share(60)
-@given(feasible_lcps())
-@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
-@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+@with_the_counterexamples
 def test_complementarity_index_by_index(pair):
     """Theorem 3.6, read index by index: x_i w_i = 0 exactly where dx_i dw_i = 0 or z1_i + z2_i > 0.
 
@@ -177,9 +161,7 @@ def test_complementarity_index_by_index(pair):
 
 
 @share(100)
-@given(feasible_lcps())
-@example((LCP([[0, 1], [0, 0]], [-1, 1]), np.array([1.0, 2.0])))
-@example((LCP([[1, 1], [1, -1]], [-1, -2]), np.array([4.0, 1.0])))
+@with_the_counterexamples
 def test_where_the_end_is_no_solution_a_matrix_is_singular(pair):
     """Theorem 3.8: if diag(w) + diag(x) A' is nonsingular at the end, then x solves the LCP."""
     problem, _ = pair

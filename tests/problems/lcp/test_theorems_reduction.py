@@ -5,34 +5,24 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from attrs import frozen
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from continuation import Kind, trace
 from problems.lcp import LCP, KKTHomotopy, KojimaMegiddoMizunoHomotopy, WangHomotopy, XuHomotopy, YuHomotopy
-from problems.lcp.classes.exact import ExactMatrix
-from problems.lcp.classes.exact import determinant as integer_determinant
 from problems.lcp.strategies import feasible_lcps
 from problems.paper import EXAMPLES
 
+from ...exact import determinant, fractions
+from .util import share
+
 TWO_TURNS = (EXAMPLES[9].problem, EXAMPLES[9].x0)
-
-
-def share(examples):
-    """So many examples in the default profile, a hundred times as many in the nightly one."""
-    return settings(max_examples=settings.default.max_examples * examples // 100)
-
-
-def determinant(M):
-    """Exact, in the units of the entries of M."""
-    exact = ExactMatrix.of(M)
-    return Fraction(integer_determinant(exact.entries), exact.scale**exact.n)
 
 
 def reduced_matrix(A, x, z1, z2, w, lam):
     """G = (1 - lam) [A + A' + diag(z1/x) + A' diag(z2/w) A] + lam I, in rational arithmetic."""
     n = len(A)
-    A, x, z1, z2, w = (np.vectorize(Fraction, otypes=[object])(part) for part in (A, x, z1, z2, w))
+    A, x, z1, z2, w = map(fractions, (A, x, z1, z2, w))
     inner = A + A.T + np.diag(z1 / x) + A.T @ ((z2 / w)[:, None] * A)
     lam = Fraction(lam)
     return (1 - lam) * inner + lam * np.array([[Fraction(i == j) for j in range(n)] for i in range(n)])
@@ -133,14 +123,9 @@ def test_reduced_and_full_steps_agree(pair):
 
 
 @pytest.mark.parametrize("make", [YuHomotopy, XuHomotopy, WangHomotopy, KojimaMegiddoMizunoHomotopy])
-def test_reduced_and_full_steps_agree_for_the_earlier_homotopies(make):
+@share(8)
+@given(pair=feasible_lcps("PSD", st.integers(1, 3)))
+def test_reduced_and_full_steps_agree_for_the_earlier_homotopies(make, pair):
     """The same with n + 1 and 2n + 1, on positive definite matrices, where all of them arrive."""
-
-    @share(8)
-    @given(feasible_lcps("PSD", st.integers(1, 3)))
-    def agree(pair):
-        problem, x0 = pair
-        definite = LCP(problem.A + np.eye(problem.n), problem.q)
-        assert_same_path(make(definite, x0))
-
-    agree()
+    problem, x0 = pair
+    assert_same_path(make(LCP(problem.A + np.eye(problem.n), problem.q), x0))

@@ -17,6 +17,8 @@ from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.farkas import FloatFarkas, infeasibility
 from problems.lcp.reference.enumeration import exhaust
 
+from .util import powers
+
 Outcome = lcp.Outcome
 BENCHMARK = Path(__file__).parents[3] / "examples" / "benchmarks" / "lcp" / "units.py"
 
@@ -29,13 +31,6 @@ def benchmark():
     return module
 
 
-def powers(rng, n, largest):
-    return 2.0 ** rng.integers(-largest, largest + 1, n)
-
-
-# --- the benchmark, in small ------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("mode", "number"), [("units", 60), ("factor", 20), ("truth", 60)])
 def test_the_benchmark_of_units_finds_nothing_wrong(benchmark, capsys, mode, number):
     run, _ = benchmark.MODES[mode]
@@ -45,9 +40,6 @@ def test_the_benchmark_of_units_finds_nothing_wrong(benchmark, capsys, mode, num
 def test_the_benchmark_can_fail(benchmark, monkeypatch):
     monkeypatch.setattr(benchmark, "same_outcome", lambda one, other, exact: False)
     assert benchmark.units(3, 0) == 3
-
-
-# --- units of their own -----------------------------------------------------------------------------------------
 
 
 @given(st.integers(0, 2**32 - 1), st.booleans(), st.booleans())
@@ -106,9 +98,6 @@ def test_a_game_of_unconnected_parts_and_a_diagonal_matrix_take_their_units_from
     scaled = balanced(lcp.LCP(np.diag([1e5, 1e-5]), [-1e-9, 1e9])).problem
     for values in (scaled.A.diagonal(), np.abs(scaled.q)):
         assert 0.4 < values.min() <= values.max() < 2.5
-
-
-# --- certificates -----------------------------------------------------------------------------------------------
 
 
 @given(st.integers(0, 2**32 - 1))
@@ -182,9 +171,6 @@ def test_rows_beyond_the_range_of_floats_are_as_exact_as_others(seed, sparse):
         size = sum(map(abs, products))
         assert abs(Fraction(terms.w[i]) * unit - sum(products)) <= size * Fraction(1, 2**52)
         assert abs(Fraction(terms.size[i]) * unit - size) <= size * Fraction(1, 2**50)
-
-
-# --- outcomes ---------------------------------------------------------------------------------------------------
 
 
 def test_solutions_that_no_float_holds_are_not_claimed():

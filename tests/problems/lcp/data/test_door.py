@@ -152,7 +152,7 @@ NUMBERS = {
     "half": np.array(A, np.float16),
     "other bytes": np.array(A, ">f8"),
     "nothing masked": np.ma.masked_array(A),
-    "a matrix": np.matrix(A),
+    "a matrix": np.array(A).view(np.matrix),
     "negative strides": np.array(A)[::-1, ::-1],
     "scalars as arrays": [[np.array(2.0), np.array(1.0)], [np.array(1.0), np.array(2.0)]],
 }

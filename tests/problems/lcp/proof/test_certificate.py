@@ -16,38 +16,14 @@ from problems.lcp.proof.compensated import accurate_w
 from problems.lcp.proof.rational import PRIMES, solve_exactly
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
+from ....exact import check_farkas, exact_w, gauss_jordan, solves
+
 SMALL = st.integers(-2, 2)
 WIDE = st.floats(-1e40, 1e40, allow_nan=False).filter(lambda v: v == 0 or abs(v) > 1e-40)
 
 
-def fraction_array(values):
-    return np.vectorize(Fraction, otypes=[object])(np.asarray(values, dtype=float))
-
-
-def exact_w(problem, x):
-    A = problem.A.toarray() if problem.sparse else problem.A
-    return fraction_array(A) @ fraction_array(x) + fraction_array(problem.q)
-
-
 def dense_or_sparse(A, q, sparse):
     return LCP(sp.csr_array(A) if sparse else A, q)
-
-
-def cramer_free_solve(rows, right):
-    """Gauss-Jordan in Fractions; None if singular. Shares nothing with the library."""
-    n = len(rows)
-    work = [[Fraction(v) for v in row] + [Fraction(b)] for row, b in zip(rows, right)]
-    for k in range(n):
-        pivot = next((i for i in range(k, n) if work[i][k] != 0), None)
-        if pivot is None:
-            return None
-        work[k], work[pivot] = work[pivot], work[k]
-        work[k] = [v / work[k][k] for v in work[k]]
-        for i in range(n):
-            if i != k and work[i][k] != 0:
-                factor = work[i][k]
-                work[i] = [a - factor * b for a, b in zip(work[i], work[k])]
-    return [row[-1] for row in work]
 
 
 def has_feasible_point(A, q):
@@ -56,13 +32,10 @@ def has_feasible_point(A, q):
     rows = [[int(i == j) for j in range(n)] for i in range(n)] + A.astype(int).tolist()
     least = [0] * n + (-q.astype(int)).tolist()
     for chosen in combinations(range(2 * n), n):
-        x = cramer_free_solve([rows[i] for i in chosen], [least[i] for i in chosen])
+        x, _ = gauss_jordan([rows[i] for i in chosen], [least[i] for i in chosen])
         if x is not None and all(sum(a * b for a, b in zip(row, x)) >= bound for row, bound in zip(rows, least)):
             return True
     return False
-
-
-# --- compensated arithmetic -------------------------------------------------------------------------------------
 
 
 @given(st.data(), st.integers(1, 5), st.booleans())
@@ -110,9 +83,6 @@ def test_ragged_sparse_rows():
     np.testing.assert_array_equal(w, A @ x - 1)
 
 
-# --- the floating-point certificate -----------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("sparse", [False, True])
 def test_certificate_of_the_ten_examples(sparse):
     for item in EXAMPLES:
@@ -155,9 +125,6 @@ def test_bad_points_are_named():
             certify_exactly(EXAMPLES[0].problem, x)
 
 
-# --- rational linear algebra ------------------------------------------------------------------------------------
-
-
 def test_primes_are_prime():
     for prime in PRIMES:
         assert all(prime % k for k in range(2, int(prime**0.5) + 1))
@@ -180,7 +147,7 @@ def test_solve_exactly_against_gauss_jordan(data, m, k):
         augmented = np.hstack([matrix, np.array(right, dtype=object)[:, None]])
         assert exact_rank(augmented) == exact_rank(matrix) + 1
     if m == k:
-        truth = cramer_free_solve(matrix.tolist(), right)
+        truth, _ = gauss_jordan(matrix.tolist(), right)
         if truth is not None:
             assert [Fraction(v, found[1]) for v in found[0]] == truth
 
@@ -206,9 +173,6 @@ def test_a_determinant_divisible_by_the_first_prime():
     assert solve_exactly(matrix, [1, 2], np.array([0.0, 2.0])) == ([1, 2 * PRIMES[0]], PRIMES[0])
 
 
-# --- the exact certificate --------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("sparse", [False, True])
 @pytest.mark.parametrize("noise", [0.0, 1e-9])
 def test_exact_certificates_of_the_ten_examples(sparse, noise):
@@ -220,15 +184,10 @@ def test_exact_certificates_of_the_ten_examples(sparse, noise):
             certificate = certify_exactly(problem, x + noise * rng.standard_normal(x.size))
             assert certificate.solves
             np.testing.assert_allclose(certificate.x_rounded, x, rtol=1e-13)
-            assert list(exact_w_of(problem, certificate.x)) == list(certificate.w)
-            assert all(a * b == 0 and a >= 0 and b >= 0 for a, b in zip(certificate.x, certificate.w))
+            assert list(exact_w(problem, certificate.x)) == list(certificate.w)
+            assert solves(problem, certificate.x)
             if item.number not in (5, 10):  # the others' decimals are exact in binary
                 assert certificate.x == solution
-
-
-def exact_w_of(problem, x):
-    A = problem.A.toarray() if problem.sparse else problem.A
-    return fraction_array(A) @ np.array(x, dtype=object) + fraction_array(problem.q)
 
 
 @given(st.data(), st.integers(1, 4))
@@ -241,13 +200,9 @@ def test_exact_certificate_is_sound_and_finds_planted_solutions(data, n):
     problem = LCP(A, w - A @ x)
     certificate = certify_exactly(problem, x.astype(float))
     assert certificate.solves
-    assert list(exact_w_of(problem, certificate.x)) == list(certificate.w)
+    assert list(exact_w(problem, certificate.x)) == list(certificate.w)
     anywhere = certify_exactly(problem, data.draw(arrays(float, n, elements=st.floats(-2, 4))))
-    if anywhere.solves:
-        values = exact_w_of(problem, anywhere.x)
-        assert min(values) >= 0
-        assert min(anywhere.x) >= 0
-        assert all(a * b == 0 for a, b in zip(anywhere.x, values))
+    assert not anywhere.solves or solves(problem, anywhere.x)
 
 
 def test_no_exact_certificate_without_a_solution():
@@ -306,20 +261,6 @@ def test_large_problem_with_a_small_active_set_and_a_refusal():
         certify_exactly(LCP(A, -q), np.ones(n))
 
 
-# --- Farkas -----------------------------------------------------------------------------------------------------
-
-
-def check_farkas(problem, proof):
-    """The multiplier in Fractions, independently of the library."""
-    A = problem.A.toarray() if problem.sparse else problem.A
-    y = np.array(proof.y, dtype=object)
-    assert min(y) >= 0
-    assert max(fraction_array(A).T @ y) <= 0
-    assert fraction_array(problem.q) @ y == proof.gap
-    assert proof.gap < 0
-    assert proof.no_feasible_point
-
-
 @given(st.data(), st.integers(1, 3), st.booleans())
 @settings(deadline=None, max_examples=150)
 def test_farkas_against_exact_truth(data, n, sparse):
@@ -329,6 +270,7 @@ def test_farkas_against_exact_truth(data, n, sparse):
     proof = farkas(problem)
     assert (proof is None) == has_feasible_point(A, q)
     if proof is not None:
+        assert proof.no_feasible_point
         check_farkas(problem, proof)
 
 
@@ -345,7 +287,7 @@ def test_farkas_of_planted_multipliers_at_all_scales(data, n, exponent):
     scale = 8.0 ** (exponent * np.arange(n))
     problem = LCP(scale[:, None] * A, -scale)
     proof = farkas(problem)
-    assert proof is not None
+    assert proof.no_feasible_point
     check_farkas(problem, proof)
 
 
@@ -355,7 +297,7 @@ def test_farkas_whose_columns_are_all_tight(sparse):
     a, b = 912_345_678_901, 702_345_678_907
     problem = dense_or_sparse([[a, -a], [-b, b]], [-1.0, 1.0 / 3.0], sparse)
     proof = farkas(problem)
-    assert proof is not None
+    assert proof.no_feasible_point
     check_farkas(problem, proof)
     assert proof.y == (b, a)
 
@@ -368,7 +310,7 @@ def test_random_float_multiplier():
     A[0] = -A[1:5].sum(axis=0) - rng.random(n)
     problem = LCP(A, np.where(np.arange(n) < 5, -1.0, 1.0))
     proof = farkas(problem)
-    assert proof is not None
+    assert proof.no_feasible_point
     check_farkas(problem, proof)
 
 

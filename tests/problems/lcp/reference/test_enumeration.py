@@ -14,14 +14,15 @@ from problems.lcp.classes.simplex import at_least, feasible_point
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.enumeration import LARGEST_FACES, solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, lcps, near_singular_lcps, planted_lcps
+from problems.paper import EXAMPLES
+
+from ....exact import exact_w, solves
 
 ORDERS = st.integers(1, 4)
 
 
-def exactly_solves(problem, solution):
-    rows = zip(problem.A.tolist(), problem.q.tolist(), strict=True)
-    w = tuple(sum((Fraction(a) * v for a, v in zip(row, solution.x, strict=True)), Fraction(q)) for row, q in rows)
-    return w == solution.w and min(*solution.x, *w) >= 0 and not any(a * b for a, b in zip(solution.x, w, strict=True))
+def assert_exact(problem, found):
+    assert all(solves(problem, s.x) and tuple(exact_w(problem, s.x)) == s.w for s in found.solutions)
 
 
 def test_two_by_two_in_closed_form():
@@ -71,13 +72,12 @@ def test_a_continuum_is_reported_as_incomplete(A, q):
     found = solve_by_enumeration(problem)
     assert found.solvable
     assert not found.complete
-    assert all(exactly_solves(problem, s) for s in found.solutions)
+    assert_exact(problem, found)
 
 
 def test_a_singular_face_with_one_point_is_complete():
     """The paper's example 7: the solution is degenerate, and one of its faces has a singular submatrix."""
-    A = [[-1, 1, 1, 1], [1, 0, 0, 0], [1, 0, 0, -1], [1, 0, -1, 0]]
-    found = solve_by_enumeration(LCP(A, [-1, 1, -1, 1]))
+    found = solve_by_enumeration(EXAMPLES[6].problem)
     assert [s.x for s in found.solutions] == [(1, 0, 2, 0)]
     assert found.complete
     assert found.solutions[0].faces == ((0, 2), (0, 2, 3))
@@ -90,39 +90,20 @@ def test_a_singular_face_with_one_point_is_complete():
     assert touching.complete
 
 
-COUNTS = {
-    1: ([[-1, 2], [3, -1]], [1, -0.5], 1),
-    2: ([[1, -1], [-1, 1]], [-0.5, 2], 1),
-    3: ([[1, 1], [0, 0]], [-1, 1], 1),
-    4: ([[0, 1, 1], [2, 0, 1], [-4, -5, 0]], [-4, -7, 10], 3),
-    5: ([[-1, 2, 1], [1, -0.5, -0.25], [-0.5, -1, -1]], [-0.25, -0.1, 3], 2),
-    6: ([[1, -2, 0], [0, 1, -2], [-2, 0, 1]], [-1, 1, 7], 2),
-    8: ([[-2, -2, -2, 2], [-2, -1, -3, 3], [-2, -3, -1, 3], [2, 3, 3, 0]], [-1001, -500, -500, -500], 1),
-    9: (
-        [[0, 0, 0, 1, 2], [0, 0, -1, -1, 2], [0, -1, 0, -1, 1], [1, -1, -1, 0, 0], [2, 1, 0, 0, 0]],
-        [-2, -1, 7, 2, -1],
-        2,
-    ),
-    10: (
-        [[0, -90, -80, -70, 0], [-90, -2, -2, -2, 2], [-70, -2, -1, -3, 3], [-50, -2, -3, -0.8, 3], [0, 2, 3, 3, 0]],
-        [400, 50, 30, 20, -10],
-        2,
-    ),
-}
+COUNTS = {1: 1, 2: 1, 3: 1, 4: 3, 5: 2, 6: 2, 8: 1, 9: 2, 10: 2}
 
 
 @pytest.mark.parametrize("number", COUNTS)
 def test_the_number_of_solutions_of_the_papers_examples(number):
-    A, q, count = COUNTS[number]
-    found = solve_by_enumeration(LCP(A, q))
-    assert (len(found.solutions), found.complete) == (count, True)
+    found = solve_by_enumeration(EXAMPLES[number - 1].problem)
+    assert (len(found.solutions), found.complete) == (COUNTS[number], True)
     assert all(s.strictly_complementary for s in found.solutions)
 
 
 @given(lcps("any", ORDERS))
 def test_every_solution_solves_exactly_and_they_are_distinct(problem):
     found = solve_by_enumeration(problem)
-    assert all(exactly_solves(problem, s) for s in found.solutions)
+    assert_exact(problem, found)
     assert len({s.x for s in found.solutions}) == len(found.solutions)
     assert all(problem.relative_residual(point) < 1e-15 for point in found.points)
 
@@ -177,7 +158,7 @@ def test_scaling_and_permutation_move_the_solutions_and_nothing_else(pair, data)
 @given(st.one_of(near_singular_lcps(), badly_scaled_lcps()))
 def test_hard_numbers_are_exact_too(pair):
     problem, _ = pair
-    assert all(exactly_solves(problem, s) for s in solve_by_enumeration(problem).solutions)
+    assert_exact(problem, solve_by_enumeration(problem))
 
 
 def test_sparse_and_dense_agree():

@@ -1,0 +1,248 @@
+"""The same path in any units, wherever zero is: steps, events, ends and what is said of them."""
+
+import sys
+from pathlib import Path as File
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from continuation import (
+    CONSERVATIVE,
+    DEFAULT,
+    FAST,
+    SERIES,
+    Budget,
+    Kind,
+    Status,
+    TargetValue,
+    TurningPoint,
+    from_functions,
+    trace,
+)
+from problems.bifurcation import Bratu1D
+
+sys.path.insert(0, str(File(__file__).parents[2] / "examples" / "benchmarks" / "units"))
+import bends
+import run
+
+PRESETS = (FAST, DEFAULT, CONSERVATIVE, SERIES)
+every_preset = pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.name)
+
+
+# -- units and shifts ---------------------------------------------------------------------------------------------
+
+
+@every_preset
+@pytest.mark.parametrize("name", ["cusp", "Freudenstein-Roth", "Bratu 1D", "aircraft", "Brown", "exponential-cosine 3"])
+def test_random_units_change_nothing(name, preset):
+    """D, E and a of 1e-8 .. 1e8, zero up to 1e6 of the path's extent away; `run.py` does this 200 times each."""
+    wrong, ratios, work = run.compare(name, preset, 2, seed=11)
+    assert wrong == []
+    # Small numbers of factorisations differ by one or two: shifts by 1e6 leave ten digits, so that one more is needed.
+    assert all(ratio * work <= 1.3 * work + 3.0 for ratio in ratios)
+
+
+@every_preset
+@pytest.mark.parametrize("offset", [0.0, 273.15, 1e4])
+@pytest.mark.parametrize("a", [3.0, 1.5, 1.1])
+def test_turning_points_in_celsius_and_in_kelvin(preset, offset, a):
+    """lam = x + a sin x turns where cos x = -1 / a, whatever is added to x."""
+    homotopy = from_functions(
+        lambda y, lam: np.stack([y[0] - offset + a * np.sin(y[0] - offset) - lam]),
+        start=([offset], 0.0),
+        target=6.0 * np.pi,
+    )
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    first = np.arccos(-1.0 / a)
+    expected = [x + 2.0 * np.pi * k for k in range(3) for x in (first, 2.0 * np.pi - first)]
+    found = [event.y[0] - offset for event in path.turning_points]
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8)
+
+
+@every_preset
+@pytest.mark.parametrize(("y_unit", "lam_unit"), [(1e-8, 1.0), (1.0, 1e-8), (1e6, 1e-6), (1e-4, 1e8)])
+def test_a_reactor_in_other_units(preset, y_unit, lam_unit):
+    """A -> B in a stirred tank (Uppal, Ray and Poore 1974): on y_2 = 4.5 y_1 two folds, at roots of one equation."""
+
+    def residual(y, lam):
+        y, lam = y / y_unit, lam / lam_unit
+        rate = lam * (1.0 - y[0]) * np.exp(y[1])
+        return np.stack([rate - y[0], 18.0 * rate - 4.0 * y[1]])
+
+    path = trace(from_functions(residual, start=(np.zeros(2), 0.0), target=0.15 * lam_unit), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert {event.kind for event in path.events} == {Kind.TURNING_POINT}
+    # lam = y / ((1 - y) exp(4.5 y)) is extremal where 4.5 y (1 - y) = 1.
+    y = 0.5 + np.array([-1.0, 1.0]) * np.sqrt(0.25 - 1.0 / 4.5)
+    np.testing.assert_allclose([e.y[0] / y_unit for e in path.turning_points], y, rtol=1e-8)
+    np.testing.assert_allclose(
+        path.turning_points[0].lam / lam_unit, y[0] / ((1 - y[0]) * np.exp(4.5 * y[0])), rtol=1e-12
+    )
+
+
+@every_preset
+@pytest.mark.parametrize("width", bends.WIDTHS)
+def test_s_bends_inside_a_step(preset, width):
+    """Of widths down to a thousandth of the path; `bends.py` does this 100 times each. FAST may miss one in twelve."""
+    found = bends.missed(preset, width, 2)
+    assert found["right"] >= (6 if preset is not FAST else 5)
+
+
+# -- ends ---------------------------------------------------------------------------------------------------------
+
+POLES = [
+    (lambda lam: 1.0 / (lam - 0.5), lambda lam: -1.0 / (lam - 0.5) ** 2, "0.5", "1"),
+    (lambda lam: np.tan(0.5 * np.pi * lam), lambda lam: 0.5 * np.pi / np.cos(0.5 * np.pi * lam) ** 2, "1", "1"),
+    (lambda lam: 1.0 / (1.0 - lam) ** 2, lambda lam: 2.0 / (1.0 - lam) ** 3, "1", "2"),
+]
+
+
+@every_preset
+@pytest.mark.parametrize(("y", "slope", "pole", "order"), POLES, ids=["simple", "tangent", "double"])
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e6])
+def test_a_pole_is_named_and_no_point_beside_the_path_counts(preset, y, slope, pole, order, unit):
+    homotopy = from_functions(lambda u, lam: np.stack([u[0] - unit * y(lam)]), start=([unit * y(0.0)], 0.0), target=1.0)
+    path = trace(homotopy, preset=preset, budget=Budget(steps=500))
+    assert path.status is Status.DIVERGED
+    assert f"A pole: the unknowns grow like |lam - {pole}|^-{order}." in path.message
+    # The last place of lam, seen through the slope, is what a point can be known to.
+    lam = path.lam
+    known = unit * (np.abs(slope(lam)) * np.spacing(lam) + np.abs(y(lam)) * np.finfo(float).eps)
+    off = np.abs(path.y[:, 0] - unit * y(lam))
+    assert (off <= 1e5 * known).all()
+    assert (off <= 1e-6 * np.abs(path.y[:, 0]) + unit * 1e-6).all()
+
+
+@every_preset
+def test_an_asymptote_is_no_end(preset):
+    """lam = 3 x (1 - x) / (1 - exp(-5 x)) tends to 0 as x falls, and never is 0."""
+    x = -0.5
+    start = ([x], 3.0 * x * (1.0 - x) / (1.0 - np.exp(-5.0 * x)))
+    homotopy = from_functions(
+        lambda y, lam: np.stack([3.0 * y[0] * (1.0 - y[0]) - lam * (1.0 - np.exp(-5.0 * y[0]))]),
+        start=start,
+        target=0.0,
+    )
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.DIVERGED
+    assert "An asymptote: the parameter tends to 0 " in path.message
+
+
+@pytest.mark.parametrize("preset", [FAST, SERIES], ids=lambda preset: preset.name)
+def test_the_upper_branch_of_bratu_never_comes_to_zero(preset):
+    upper = trace(Bratu1D(20), events=[TargetValue(1.0)])
+    start = (upper.endpoint.u, upper.endpoint.tangent)
+    path = trace(Bratu1D(20), preset=preset, start=start, target=0.0, budget=Budget(steps=300))
+    assert path.status is not Status.REACHED_TARGET
+
+
+@every_preset
+@pytest.mark.parametrize("slope", [1e3, 1e8, 1e12])
+def test_a_straight_line_does_not_diverge(preset, slope):
+    path = trace(from_functions(lambda y, lam: y - slope * lam, start=([0.0], 0.0), target=1.0), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.y[0] == pytest.approx(slope, rel=1e-14)
+
+
+@every_preset
+def test_pressures_in_pascals_do_not_diverge(preset):
+    """p V = p0 V0 from p0 = 1e7 Pa to half the volume, in terms of p - p0."""
+    homotopy = from_functions(lambda y, lam: (y + 1e7) * (1.0 - lam) - 1e7, start=([0.0], 0.0), target=0.5)
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.y[0] == pytest.approx(1e7, rel=1e-12)
+
+
+@every_preset
+def test_a_target_just_beyond_a_fold_is_not_reached(preset):
+    """lam = 1 - 1e-9 - x^2; the denominators of Pade's approximants are singular on the way."""
+    homotopy = from_functions(lambda y, lam: np.stack([y[0] ** 2 + lam - 1.0 + 1e-9]), start=([-1.0], 0.0), target=1.0)
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.DIVERGED
+    assert [event.lam for event in path.turning_points] == pytest.approx([1.0 - 1e-9], abs=1e-14)
+
+
+# -- noise --------------------------------------------------------------------------------------------------------
+
+
+@every_preset
+def test_a_component_that_is_zero_has_no_turning_points(preset):
+    def residual(y, lam):
+        a, b = y
+        return np.stack(
+            [a**3 - 6.0 * a**2 + 8.0 * a + a * b**2 - 2.0 * b**2 - lam, a**2 * b - 4.0 * a * b + b**3 + 2.0 * b]
+        )
+
+    events = [TurningPoint(1), TargetValue(4.0, component=0)]
+    path = trace(from_functions(residual, start=([0.0, 0.0], 0.0), target=None), preset=preset, events=events)
+    assert path.status is Status.STOPPED_AT_EVENT
+    assert not [event for event in path.events if event.name == "turning point of component 1"]
+
+
+@every_preset
+@pytest.mark.parametrize("start", [(3.0, 6.0), (4.0, 5.0)])
+def test_a_monotone_parameter_has_no_turning_points(preset, start):
+    """Powell's badly scaled function: the parameter rises to a pole at which the first unknown vanishes."""
+
+    def powell(y):
+        return np.stack([1e4 * y[0] * y[1] - 1.0, np.exp(-y[0]) + np.exp(-y[1]) - 1.0001])
+
+    there = powell(np.array(start))
+    path = trace(
+        from_functions(lambda y, lam: powell(y) + (lam - 1.0) * there, start=(start, 0.0)), preset=preset, target=1.0
+    )
+    assert path.status is Status.DIVERGED
+    # As y_2 grows y_1 falls to 0: (1 - lam) times the second component is then -1e-4.
+    assert f"|lam - {1.0 - 1e-4 / -there[1]:.9g}|^-1." in path.message
+    assert path.turning_points == []
+
+
+# -- what is called -----------------------------------------------------------------------------------------------
+
+
+@every_preset
+@pytest.mark.parametrize("n", [1, 10, 300])
+def test_every_call_of_the_residual_is_counted(preset, n):
+    calls = 0
+
+    def residual(y, lam):
+        nonlocal calls
+        calls += 1
+        return y - lam * np.exp(np.cos(y.sum() / n))
+
+    path = trace(from_functions(residual, start=(np.zeros(n), 0.0), target=1.0), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.counts.residuals == calls
+
+
+@every_preset
+def test_a_sparse_matrix_times_the_unknowns(preset):
+    """SERIES evaluates the residual on jets, A @ u too."""
+    n = 50
+    A = (
+        sp.diags_array([np.ones(n - 1), -2.0 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1], format="csc")
+        * (n + 1.0) ** 2
+    )
+    homotopy = from_functions(
+        lambda u, lam: A @ u + lam * np.exp(u),
+        lambda u, lam: (A + sp.diags_array(lam * np.exp(u)), np.exp(u)),
+        start=(np.zeros(n), 0.0),
+        target=2.0,
+    )
+    assert trace(homotopy, preset=preset).status is Status.REACHED_TARGET
+
+
+@every_preset
+@pytest.mark.parametrize("scale", [1.0, 1e-3])
+def test_derivatives_of_a_residual_alone_wherever_zero_is(preset, scale):
+    """A path 1e5 of its extents away from zero: differences with steps of the size of y would see another function."""
+    homotopy = from_functions(
+        lambda y, lam: np.stack([(y[0] - 1e5) ** 3 * (1.0 - lam * scale) - 1.0]),
+        start=([1e5 + 1.0], 0.0),
+        target=0.5 / scale,
+    )
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.y[0] - 1e5 == pytest.approx(2.0 ** (1.0 / 3.0), rel=1e-9)

@@ -1,0 +1,174 @@
+"""What others do to a file while it is written, or to one that was left: children, threads, observers, bits."""
+
+import gc
+import os
+import threading
+
+import h5py
+import numpy as np
+import pytest
+
+from continuation import Tracer, trace
+from continuation.archive import ArchiveError, ArchiveExistsError, Limits, PathLog, open_archive, resume
+from continuation.controllers import Bounds, Fixed
+from problems.bifurcation import ExponentialCosine
+
+HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.05))}
+
+
+@pytest.fixture(scope="module")
+def path():
+    return trace(HOMOTOPY, **OPTIONS)
+
+
+def logged(file, *others):
+    return Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5)), *others), **OPTIONS)
+
+
+def ends(steps, tracer):
+    """As a process ends."""
+
+
+def collects(steps, tracer):
+    steps.close()
+    gc.collect()
+
+
+def goes_on(steps, tracer):
+    with pytest.raises(ArchiveError, match=r"is written by process \d+, of which this one is a child"):
+        list(steps)
+
+
+@pytest.mark.parametrize("act", [ends, collects, goes_on])
+def test_a_child_never_writes(tmp_path, path, act):
+    """Forked in the middle of a path: what it closes, ends or traces is its own copy."""
+    file = tmp_path / "run.h5"
+    tracer = logged(file)
+    steps = iter(tracer)
+    for step in steps:
+        if step.index == 12:
+            before = file.read_bytes()
+            process = os.fork()
+            if not process:
+                done = 1
+                try:
+                    act(steps, tracer)
+                    for log in tracer.observers:
+                        log.close()
+                    done = 0
+                finally:
+                    os._exit(done)
+            assert os.waitpid(process, 0)[1] == 0
+            assert file.read_bytes() == before
+    with open_archive(file) as archive:
+        assert archive.closed_by_writer
+        assert np.array_equal(archive.path(0).u, path.u)
+        assert archive.path(0).status is path.status
+
+
+class Raising:
+    """An observer that raises at the sixth step, or at the first event."""
+
+    def __init__(self, where):
+        self.where = where
+
+    def step(self, tracer, step):
+        if self.where == "step" and step.index == 6:
+            raise RuntimeError("of the observer")
+
+    def event(self, tracer, event):
+        if self.where == "event":
+            raise RuntimeError("of the observer")
+
+    def end(self, tracer):
+        pass
+
+
+@pytest.mark.parametrize("where", ["step", "event"])
+@pytest.mark.parametrize("first", [False, True])
+def test_an_observer_that_raises_leaves_a_path_to_resume(tmp_path, path, where, first):
+    file = tmp_path / "run.h5"
+    observers = [PathLog(file, limits=Limits(rows=3)), Raising(where)]
+    with pytest.raises(RuntimeError, match="of the observer"):
+        trace(HOMOTOPY, observers=observers[::-1] if first else observers, **OPTIONS)
+    assert np.array_equal(resume(file).u, path.u)
+
+
+def test_a_log_in_two_threads(tmp_path, path):
+    file = tmp_path / "run.h5"
+    tracer, complaints = logged(file), []
+    log = tracer.observers[0]
+
+    def second():
+        try:
+            trace(HOMOTOPY, archive=log, **OPTIONS)
+        except ArchiveError as error:
+            complaints.append(str(error))
+
+    for step in tracer:
+        if step.index == 7:
+            thread = threading.Thread(target=second)
+            thread.start()
+            thread.join()
+    assert complaints == [f"{file}: a path is being written already; a log writes one path after another"]
+    with open_archive(file) as archive:
+        assert np.array_equal(archive.path(0).u, path.u)
+
+
+def test_a_file_that_is_removed_while_it_is_written(tmp_path, path):
+    file = tmp_path / "run.h5"
+    tracer = logged(file)
+    for step in tracer:
+        if step.index == 7:
+            file.unlink()
+    assert np.array_equal(tracer.path.u, path.u)
+    assert not file.exists()
+
+
+def test_a_link_to_nothing_is_not_written_through(tmp_path):
+    (tmp_path / "link.h5").symlink_to("gone.h5")
+    with pytest.raises(ArchiveExistsError):
+        trace(HOMOTOPY, archive=tmp_path / "link.h5")
+    assert not (tmp_path / "gone.h5").exists()
+
+
+def test_flipped_bits_in_what_a_killed_writer_left(tmp_path, path):
+    """HDF5 waits for a checksum that is being written; nobody writes this one."""
+    file, process = tmp_path / "run.h5", os.fork()
+    if not process:
+        for step in logged(file):
+            if step.index == 20:
+                os._exit(0)
+    os.waitpid(process, 0)
+    raw, refused = file.read_bytes(), 0
+    places = [at for at in range(8, 2000) if raw[at]]
+    for at in places[::5]:
+        file.write_bytes(raw[:at] + bytes([raw[at] ^ 1]) + raw[at + 1 :])
+        found, complaint = read(file)
+        refused += bool(complaint)
+        assert "\n" not in complaint
+        assert np.array_equal(found, path.u[: len(found)])
+    assert refused > len(places[::5]) // 2
+
+
+def read(file):
+    """The points, or what is said instead."""
+    try:
+        with open_archive(file) as archive:
+            return archive.path(0).u, ""
+    except ArchiveError as error:
+        return np.zeros((0, 4)), str(error)
+
+
+def test_a_chunk_that_unfolds_to_more_than_anybody_needs(tmp_path):
+    file = tmp_path / "run.h5"
+    trace(HOMOTOPY, archive=file, **OPTIONS)
+    with h5py.File(file, "r+", libver="latest") as opened:
+        rows = len(opened["parameter"])
+        del opened["parameter"]
+        opened.create_dataset(
+            "parameter", (rows,), "f8", maxshape=(None,), chunks=(1 << 24,), compression="gzip", data=np.zeros(rows)
+        )
+    assert file.stat().st_size < 1 << 20
+    with open_archive(file) as archive, pytest.raises(ArchiveError, match=r"parameter is stored in chunks of"):
+        archive.path(0)

@@ -1,0 +1,146 @@
+"""What cannot be meant of the functions of archives is refused in one line that names the argument or the file."""
+
+import os
+
+import numpy as np
+import pytest
+
+from continuation import Budget, Status, trace
+from continuation.archive import Limits, PathLog, describe, export, merge, open_archive, recover, resume
+from continuation.events import Monitor
+from problems.bifurcation import Cusp, ExponentialCosine
+
+from .util import refused
+
+CUSP, NAN = Cusp(), np.nan
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A file that has ended, one out of its budget, and some that are no archives."""
+    place = tmp_path_factory.mktemp("bad")
+    trace(CUSP, archive=place / "good.h5")
+    trace(CUSP, archive=place / "half.h5", budget=Budget(steps=10))
+    (place / "junk.h5").write_bytes(b"junk" * 100)
+    (place / "empty.h5").touch()
+    (place / "folder.h5").mkdir()
+    os.mkfifo(place / "pipe.h5")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        yield place
+
+
+NO_NAMES = (None, 5, 1.5, b"good.h5", ["good.h5"])
+NO_FILES = ("gone.h5", "junk.h5", "empty.h5", "folder.h5", "pipe.h5", "", "a" * 300, "no/where.h5")
+READERS = {
+    "open_archive": open_archive,
+    "recover": recover,
+    "resume": resume,
+    "export": lambda file: export(file, "new.csv"),
+}
+
+
+@pytest.mark.parametrize("value", NO_NAMES, ids=repr)
+@pytest.mark.parametrize("reader", READERS)
+def test_no_name_of_a_file(folder, reader, value):
+    refused("file", lambda: READERS[reader](value))
+
+
+@pytest.mark.parametrize("name", NO_FILES)
+@pytest.mark.parametrize("reader", [*READERS, "merge"])
+def test_no_archive(folder, reader, name):
+    call = READERS.get(reader, lambda file: merge([file], "new.h5"))
+    refused(name or ".", lambda: call(name))
+    assert not (folder / "new.h5").exists()
+    assert not (folder / "new.csv").exists()
+
+
+@pytest.mark.parametrize("value", NO_NAMES, ids=repr)
+def test_no_name_of_a_new_file(folder, value):
+    refused("file", lambda: PathLog(value))
+    refused("target", lambda: merge(["good.h5"], value))
+    refused("target", lambda: export("good.h5", value))
+    if value is not None:
+        refused("archive", lambda: resume("half.h5", budget=Budget(), archive=value))
+
+
+@pytest.mark.parametrize("name", ["good.h5", "folder.h5", "no/where.h5", "a" * 300, "pipe.h5"])
+def test_no_place_for_a_new_file(folder, name):
+    for call in (
+        lambda: trace(CUSP, archive=name),
+        lambda: merge(["good.h5"], name),
+        lambda: resume("half.h5", budget=Budget(), archive=name),
+    ):
+        refused(name, call)
+
+
+OTHERS = {
+    "files, none": ("files", lambda: merge([], "m.h5")),
+    "files, one": ("files", lambda: merge("good.h5", "m.h5")),
+    "files, a number": ("files", lambda: merge(5, "m.h5")),
+    **{
+        f"compression {value!r}, {what.__name__}": ("compression", call)
+        for value in (99, -1, "a", None, 1.5)
+        for what, call in (
+            (merge, lambda value=value: merge(["good.h5"], "m.h5", compression=value)),
+            (export, lambda value=value: export("good.h5", "e.nc", compression=value)),
+        )
+    },
+    "suffix": ("target", lambda: export("good.h5", "e.txt")),
+    "limits": ("limits", lambda: PathLog("l.h5", limits=(1, 2, 3))),
+    **{f"rows {value!r}": ("rows", lambda value=value: Limits(rows=value)) for value in (0, -5, "a", 1.5, None)},
+    **{f"seconds {value!r}": ("seconds", lambda value=value: Limits(seconds=value)) for value in (NAN, -1, "a")},
+    **{
+        f"keep {value!r}": ("keep", lambda value=value: PathLog("l.h5", keep=value))
+        for value in ("some", "every 0", None, 3)
+    },
+    "a path described": ("archive", lambda: describe("good.h5")),
+    "no budget": ("half.h5", lambda: resume("half.h5")),
+    "ended": ("good.h5", lambda: resume("good.h5")),
+    "a budget of 5": ("budget", lambda: resume("half.h5", budget=5)),
+    "events": ("events", lambda: resume("half.h5", budget=Budget(), events=5)),
+    "observers": ("observers", lambda: resume("half.h5", budget=Budget(), observers=5)),
+    "start": ("start", lambda: resume("half.h5", budget=Budget(), start=(np.zeros(2), np.ones(2)))),
+    "state": ("state", lambda: resume("half.h5", budget=Budget(), state=None)),
+    "trust": ("trust", lambda: resume("half.h5", budget=Budget(), trust=[5])),
+    "another homotopy": ("homotopy", lambda: resume("half.h5", ExponentialCosine(1), budget=Budget())),
+    "another size": ("homotopy", lambda: resume("half.h5", ExponentialCosine(3), budget=Budget())),
+    "a class": ("homotopy", lambda: resume("half.h5", Cusp, budget=Budget())),
+    "a word of no encoding": (
+        "name", lambda: trace(CUSP, events=[Monitor(lambda u, v: u[0], name=5)], archive="w.h5"),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", OTHERS)
+def test_another_argument(folder, case):
+    refused(*OTHERS[case])
+
+
+VIEWS = {
+    "index 5": ("index", lambda archive: archive.path(5)),
+    "index 'a'": ("index", lambda archive: archive.path("a")),
+    "index 0.5": ("index", lambda archive: archive[0.5]),
+    "keep": ("keep", lambda archive: archive.path(0, keep="some")),
+    "column": ("column", lambda archive: archive.points["color"]),
+    "event": ("event", lambda archive: archive.select(event="color")),
+    "status, text": ("status", lambda archive: archive.select(status="REACHED_TARGET")),
+    "status, number": ("status", lambda archive: archive.select(status=99)),
+    "status, one of two": ("status", lambda archive: archive.select(status=[Status.TRACING, 5])),
+    "kind": ("kind", lambda archive: archive.select(kind="a")),
+    "parameter, three": ("parameter", lambda archive: archive.select(parameter=(1, 2, 3))),
+    "parameter, one": ("parameter", lambda archive: archive.select(parameter=1.0)),
+    "parameter, text": ("parameter", lambda archive: archive.select(parameter="ab")),
+}
+
+
+@pytest.mark.parametrize("case", VIEWS)
+def test_a_view(folder, case):
+    argument, call = VIEWS[case]
+    with open_archive("good.h5") as archive:
+        refused(argument, lambda: call(archive))
+
+
+def test_what_was_refused_has_left_nothing(folder):
+    kept = {"good.h5", "half.h5", "junk.h5", "empty.h5", "folder.h5", "pipe.h5"}
+    assert set(os.listdir(folder)) == kept

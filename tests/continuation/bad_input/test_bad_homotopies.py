@@ -1,0 +1,112 @@
+"""Homotopies whose methods return what they should not: refused at the start, in one line that names the method."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from continuation import trace
+
+from .util import refused
+
+
+class Line:
+    """y = (lam, lam^2)."""
+
+    target = 1.0
+
+    def start(self):
+        return np.zeros(2), 0.0
+
+    def residual(self, y, lam):
+        return np.array([y[0] - lam, y[1] - lam * lam])
+
+
+def with_methods(**methods):
+    return type("Bad", (Line,), methods)()
+
+
+def returning(value):
+    return lambda *arguments: value
+
+
+EYE, ZEROS, NAN = np.eye(2), np.zeros(2), np.nan
+STARTS = {
+    "a list": [ZEROS, 0.0],
+    "nothing": None,
+    "three": (0, 0, 0),
+    "a point of NaN": (np.array([NAN, 0]), 0.0),
+    "a parameter of NaN": (ZEROS, NAN),
+    "an infinite parameter": (ZEROS, np.inf),
+    "a matrix": (np.zeros((2, 1)), 0.0),
+    "no unknowns": (np.zeros(0), 0.0),
+    "text": (["a", "b"], 0.0),
+    "complex unknowns": (ZEROS + 1j, 0.0),
+    "a complex parameter": (ZEROS, 1j),
+    "no parameter": (ZEROS, None),
+    "two parameters": (ZEROS, ZEROS),
+    "objects": (np.array([0, "x"], object), 0.0),
+    "a masked entry": (np.ma.masked_array([0.0, 0.0], [0, 1]), 0.0),
+    "dates": (np.zeros(2, "M8[s]"), 0.0),
+}
+RESIDUALS = {
+    "one number": np.zeros(1),
+    "three numbers": np.zeros(3),
+    "a scalar": 0.0,
+    "nothing": None,
+    "a column": np.zeros((2, 1)),
+    "complex numbers": np.zeros(2) + 0j,
+    "text": ["a", "b"],
+    "a mapping": {},
+    "objects": np.array([0.0, 0.0], object),
+    "dates": np.zeros(2, "M8[s]"),
+}
+JACOBIANS = {
+    "nothing": None,
+    "one matrix": EYE,
+    "a small matrix": (np.eye(1), ZEROS),
+    "a short column": (EYE, np.zeros(1)),
+    "a column of two dimensions": (EYE, np.zeros((2, 1))),
+    "a vector": (np.ones(2), ZEROS),
+    "the two exchanged": (ZEROS, EYE),
+    "lists": ([[1, 0], [0, 1]], [-1, 0]),
+    "complex numbers": (EYE + 0j, ZEROS),
+    "a complex column": (EYE, ZEROS + 0j),
+    "text": ("a", "b"),
+    "no matrix": (None, ZEROS),
+    "a large sparse one": (sp.eye_array(3).tocsr(), ZEROS),
+    "a complex sparse one": (sp.eye_array(2).tocsr().astype(complex), ZEROS),
+    "objects": (EYE.astype(object), ZEROS),
+    "three": (EYE, ZEROS, ZEROS),
+}
+ANSWERS = [
+    *[("start", name, value) for name, value in STARTS.items()],
+    *[("residual", name, value) for name, value in RESIDUALS.items()],
+    *[("jacobian", name, value) for name, value in JACOBIANS.items()],
+    *[("max_step", repr(value), value) for value in (NAN, None, "a", np.ones(2))],
+]
+
+
+@pytest.mark.parametrize(("method", "value"), [(m, v) for m, _, v in ANSWERS], ids=[f"{m}: {n}" for m, n, _ in ANSWERS])
+def test_an_answer(method, value):
+    refused(method, lambda: trace(with_methods(**{method: returning(value)})))
+
+
+@pytest.mark.parametrize("name", JACOBIANS)
+def test_a_jacobian_that_is_to_be_checked(name):
+    homotopy = with_methods(jacobian=returning(JACOBIANS[name]))
+    refused("jacobian", lambda: trace(homotopy, check_jacobian=True))
+
+
+def test_a_jacobian_that_is_wrong():
+    homotopy = with_methods(jacobian=lambda self, y, lam: (2 * EYE, np.array([-1.0, -2 * lam])))
+    refused("jacobian", lambda: trace(homotopy, check_jacobian=True))
+
+
+@pytest.mark.parametrize("name", ["jacobian", "bordered", "differential", "start", "residual"])
+def test_a_method_that_is_none(name):
+    refused("homotopy", lambda: trace(with_methods(**{name: 5})))
+
+
+@pytest.mark.parametrize("target", ["end", NAN, np.ones(2), 1j], ids=repr)
+def test_a_target(target):
+    refused("target", lambda: trace(with_methods(target=target)))

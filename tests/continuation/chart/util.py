@@ -1,0 +1,5 @@
+"""A method that fails."""
+
+
+def boom(problem, rung):
+    raise ArithmeticError("on purpose")

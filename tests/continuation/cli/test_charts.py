@@ -1,0 +1,71 @@
+"""The command `chart`: what it writes, lists and refuses."""
+
+import pytest
+
+from continuation import chart
+from continuation.chart import catalogue
+from continuation.cli import charts
+from continuation.cli.parser import Parser, UsageError
+from problems.charts.subjects import cosine
+
+from ..chart.util import boom
+
+
+@pytest.fixture
+def installed(monkeypatch):
+    """A small study as if a package had registered it."""
+    small = chart.Study(
+        name="closed",
+        problems=[cosine(2)],
+        methods=[chart.traced("Hermite"), chart.Method("raises", boom, laddered=False)],
+        ladder=chart.tolerances(1e-6),
+        errors=[chart.END_POINT],
+        figures=[chart.Precision("end_point", "factorizations"), chart.Profile("factorizations")],
+        repeats=0,
+    )
+
+    class Point:
+        name, value, dist = "closed", "package:studies", None
+
+        def load(self):
+            return lambda size, compare: [small]
+
+    points = [Point()]
+    monkeypatch.setattr(catalogue, "entry_points", lambda group: points)
+    return points
+
+
+def command(*arguments):
+    parser = Parser()
+    charts.register(parser.add_subparsers())
+    parsed = parser.parse_args(["chart", *arguments])
+    return parsed.run(parsed)
+
+
+def test_the_command_writes_everything(installed, tmp_path, capsys):
+    folder = tmp_path / "out"
+    for _ in range(2):
+        assert command("closed", "--smoke", "--output", str(folder)) == 0
+    assert sorted(file.name for file in folder.iterdir()) == [
+        "closed-end_point-factorizations.png", "closed-profile-factorizations.png", "closed.csv", "closed.h5",
+        "closed.md",
+    ]  # fmt: skip
+    assert "1 exception" in capsys.readouterr().out
+    page = (folder / "closed.md").read_text()
+    assert "| exception |" in page
+    assert "threads: " in page
+
+
+def test_the_command_lists_the_studies_and_names_a_wrong_one(installed, capsys):
+    assert command() == 0
+    assert capsys.readouterr().out == "closed\n"
+    with pytest.raises(UsageError, match="NAME: expected all or one of closed, found 'open'"):
+        command("open")
+
+
+def test_two_packages_with_one_name_are_an_error(installed):
+    other = type(installed[0])()
+    other.value = "other:studies"
+    installed.append(other)
+    with pytest.raises(ValueError, match="found package:studies and other:studies"):
+        catalogue.catalogue()

@@ -1,0 +1,77 @@
+"""The suite as a whole: what runs, what is said, and failures that are expected."""
+
+import pytest
+
+from continuation.testing import CheckFailure, check_homotopy, homotopy_checks, run_checks
+from continuation.testing.suite import RULES
+
+from .util import Interior, NoSolution, WrongSeries, interior
+
+CAPABILITIES = {rule.capability for rule in RULES} - {""}
+
+
+def test_a_right_homotopy_passes_every_check():
+    results = check_homotopy(Interior())
+    assert [result.name for result in results] == [rule.name for rule in RULES]
+    assert {result.outcome for result in results} == {"passed"}
+
+
+def test_all_that_is_wrong_is_said_at_once():
+    with pytest.raises(CheckFailure) as caught:
+        check_homotopy(WrongSeries())
+    first, *others = str(caught.value).splitlines()
+    assert first == f"WrongSeries fails 1 of {len(RULES)} checks:"
+    assert others[0].startswith("  taylor: at the start coefficient 3")
+
+
+def test_only_the_capabilities_that_are_there_are_checked():
+    names = [str(check) for check in homotopy_checks(NoSolution())]
+    assert "jacobian" not in names
+    assert "target" not in names
+    assert CAPABILITIES.isdisjoint(names)
+
+
+def test_nothing_is_called_while_the_checks_are_collected():
+    def explode(*arguments):
+        raise AssertionError("called")
+
+    faulty = interior(start=explode, residual=explode)
+    assert len(homotopy_checks(faulty)) == len(RULES)
+
+
+def test_what_depends_on_a_failed_check_is_not_run():
+    results = {result.name: result for result in run_checks(interior(start=None))}
+    assert results.pop("start").outcome == "failed"
+    assert {result.outcome for result in results.values()} == {"not run"}
+    assert results["residual"].message == "it needs start, which did not pass"
+
+
+def test_a_failure_may_be_expected_with_its_reason():
+    results = check_homotopy(WrongSeries(), expected_failed_checks={"taylor": "known, issue 12"})
+    outcome = next(result for result in results if result.name == "taylor")
+    assert outcome.outcome == "failed as expected"
+    assert outcome.message.endswith("(known, issue 12)")
+
+
+def test_a_failure_that_does_not_come_is_reported():
+    with pytest.raises(CheckFailure, match=r"taylor: expected to fail .* but it passes: take it off the list"):
+        check_homotopy(Interior(), expected_failed_checks={"taylor": "known"})
+
+
+def test_a_check_that_does_not_exist_cannot_be_expected_to_fail():
+    with pytest.raises(ValueError, match=r"expected_failed_checks: expected names among .*, found 'tailor'"):
+        check_homotopy(Interior(), expected_failed_checks={"tailor": "typing"})
+
+
+@pytest.mark.parametrize(("steps", "few"), [(2, True), (None, False)])
+def test_fewer_steps_are_looked_at_when_asked(steps, few):
+    seen = set()
+
+    class Watched(Interior):
+        def observe(self, y, lam):
+            seen.add(lam)
+            return super().observe(y, lam)
+
+    next(check for check in homotopy_checks(Watched(), steps=steps) if str(check) == "trace")()
+    # A path is traced once to see how long it is, and once with short steps.
+    assert (len(seen) <= 6) is few

@@ -1,0 +1,86 @@
+"""What the classes are decided with: determinants, minors and linear systems in exact arithmetic."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from problems.lcp import classes
+from problems.lcp.classes import ExactMatrix
+from problems.lcp.classes.exact import determinant, principal_minors
+from problems.lcp.classes.simplex import at_least, equal, feasible_point
+from problems.lcp.strategies import matrices
+
+from ....exact import determinant as by_elimination
+
+
+def sub(rows, chosen):
+    return [[rows[i][j] for j in chosen] for i in chosen]
+
+
+def times(rows, x):
+    return [sum(a * v for a, v in zip(row, x, strict=True)) for row in rows]
+
+
+@given(matrices("any", st.integers(1, 5)))
+def test_determinant_is_that_of_elimination_in_fractions(A):
+    rows = A.astype(int).tolist()
+    assert determinant(rows) == by_elimination(rows)
+
+
+@given(matrices("any", st.integers(1, 5)))
+@example(np.zeros((4, 4)))
+@example(np.fliplr(np.eye(4)))
+def test_principal_minors_are_the_determinants_of_the_principal_submatrices(A):
+    rows = A.astype(int).tolist()
+    minors = principal_minors(rows)
+    for mask in range(1 << len(rows)):
+        chosen = [i for i in range(len(rows)) if mask >> i & 1]
+        assert minors[mask] == by_elimination(sub(rows, chosen))
+
+
+@given(st.integers(1, 4), st.integers(1, 4), st.data())
+def test_exactly_one_of_a_linear_system_and_its_farkas_alternative_is_feasible(m, n, data):
+    """Farkas: M x = b, x >= 0 has a solution, or y'M >= 0 with y'b < 0 has one, never both."""
+    entry = st.integers(-3, 3)
+    M = [[data.draw(entry) for _ in range(n)] for _ in range(m)]
+    b = [data.draw(entry) for _ in range(m)]
+    x = feasible_point([equal(row, right) for row, right in zip(M, b, strict=True)], n)
+    transposed = [[*column, *(-v for v in column)] for column in zip(*M, strict=True)]
+    alternative = [at_least(row) for row in transposed] + [at_least([-v for v in b] + b, 1)]
+    y = feasible_point(alternative, 2 * m)
+    assert (x is None) != (y is None)
+    if x is not None:
+        assert min(x) >= 0
+        assert times(M, x) == b
+    else:
+        assert min(y) >= 0
+        assert all(times([c.row], y)[0] >= c.right for c in alternative)
+
+
+def test_bland_ends_on_beales_cycling_problem():
+    """Beale 1955: the largest-coefficient rule cycles here. Feasible at cost at most -1/20, infeasible below it."""
+    rows = [[25, -6000, -4, 900], [50, -9000, -2, 300], [0, 0, 100, 0], [75, -15000, 2, -600]]
+    limits = [0, 0, 100]
+
+    def attempt(cost):
+        system = [at_least([-v for v in row], -limit) for row, limit in zip(rows, limits, strict=False)]
+        return feasible_point([*system, at_least(rows[3], cost)], 4)
+
+    assert attempt(5) is not None
+    assert attempt(6) is None
+
+
+def test_floats_are_taken_as_the_rationals_that_they_are():
+    """0.1 + 0.2 - 0.3 is 2^-54, not zero; 0.8 is not 4/5."""
+    assert classes.is_p([[0.1 + 0.2 - 0.3]]).holds
+    assert classes.is_n([[0.3 - 0.1 - 0.2]]).holds
+    assert classes.is_nondegenerate([[0.1, 0.3], [0.1, 0.3]]).certificate.value == 0
+    assert ExactMatrix.of([[0.8]]).minor(1) == Fraction(0.8) != Fraction(4, 5)
+    assert ExactMatrix.of([[Fraction(4, 5)]]).minor(1) == Fraction(4, 5)
+    tiny = np.diag([1e-300, 1.0])
+    assert classes.is_p(tiny).holds
+    assert classes.is_psd(tiny - np.diag([2e-300, 0.0])).holds is False

@@ -1,0 +1,74 @@
+"""Memberships: of every form of a matrix, said in words, undecided with the reason, refused by name."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from problems.lcp import classes
+from problems.lcp.classes import classify
+
+
+@pytest.mark.parametrize(
+    "cast", [np.asarray, sp.csr_array, sp.coo_array, lambda a: a.astype(np.int64), lambda a: a.tolist()]
+)
+def test_every_form_of_the_same_matrix_has_the_same_classes(cast):
+    A = np.array([[2.0, -1.0], [0.0, 3.0]])
+    assert classify(cast(A)) == classify(A)
+
+
+def test_large_integers_do_not_wrap_around():
+    A = np.full((2, 2), 2**62, dtype=np.int64)
+    A[0, 0] += 1
+    assert classes.is_p(A).holds
+
+
+@pytest.mark.parametrize(
+    ("bad", "words"),
+    [
+        ([[1.0, np.nan], [0.0, 1.0]], "finite"),
+        ([[1.0, 2.0]], r"square matrix, found shape \(1, 2\)"),
+        (np.zeros((0, 0)), "square"),
+        ([[1j]], "real numbers, found complex"),
+        ([["a"]], "real numbers, found str"),
+    ],
+)
+def test_bad_input_is_refused_by_name(bad, words):
+    with pytest.raises(ValueError, match="A: expected .*" + words):
+        classify(bad)
+
+
+def test_beyond_the_limits_the_answer_is_not_decided_with_the_reason():
+    A = np.eye(13) + np.triu(np.ones((13, 13)), 1) * 9
+    result = classify(A)
+    assert result["P"].holds is None
+    assert "stops at n = 12, found n = 13" in str(result["P"])
+    assert result["Z"].holds is False
+    assert result["PSD"].holds is False
+    assert result["row sufficient"].holds is None
+    assert result["Q"].holds is None
+    laplacian = 2 * np.eye(40) - np.eye(40, k=1) - np.eye(40, k=-1)
+    assert classes.is_k(laplacian).holds
+    assert classes.is_psd(laplacian).holds
+    assert classes.is_row_sufficient(laplacian).holds
+    assert classes.is_k(laplacian - 0.1 * np.eye(40)).holds is False
+
+
+def test_exact_order_out_of_range_is_refused():
+    with pytest.raises(ValueError, match="k: expected 1 <= k < n = 2, found 2"):
+        classes.is_n_of_exact_order(np.eye(2), 2)
+
+
+def test_a_membership_has_no_truth_value():
+    with pytest.raises(TypeError, match=r"read \.holds"):
+        bool(classes.is_p(np.eye(2)))
+
+
+def test_the_table_has_one_line_a_class():
+    result = classify([[0, 1], [0, 0]])
+    lines = classes.table(result).splitlines()
+    assert len(lines) == len(result)
+    assert lines[0].split()[:2] == ["PSD", "no"]
+    assert any(line.startswith("row sufficient") and " no " in line for line in lines)
+    assert all(len(line) < 110 + 60 for line in lines)

@@ -1,0 +1,227 @@
+"""Problem files made to harm, and damaged ones: refused in one line, or read as numbers; nothing is executed."""
+
+import io
+import json
+import os
+import pickle
+import random
+import zipfile
+import zlib
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as sp
+
+from problems.lcp.data.files import InputError, read_problem
+from problems.lcp.data.matlab import read_level5
+
+A, Q = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-5.0, -6.0])
+
+
+class Evil:
+    """What a pickle makes of it leaves a file."""
+
+    def __reduce__(self):
+        return os.mkdir, ("executed",)
+
+
+def npy_head(shape, kind="'<f8'"):
+    head = f"{{'descr': {kind}, 'fortran_order': False, 'shape': {shape}, }}".encode()
+    head = head.ljust(len(head) + -(len(head) + 11) % 64) + b"\n"
+    return b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head
+
+
+def saved(**arrays):
+    file = io.BytesIO()
+    np.savez(file, **arrays)
+    return file.getvalue()
+
+
+def sparse(**parts):
+    sound = {"format": b"csr", "shape": [2, 2], "data": np.ones(2), "indices": [0, 1], "indptr": [0, 1, 2]}
+    return saved(**{name: np.array(value) for name, value in {**sound, **parts}.items()})
+
+
+def zipped(*names):
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in names:
+            archive.writestr(name, b"x")
+    return file.getvalue()
+
+
+def bomb():
+    """5 GB of zeros, which are never made: only the head of the entry says so."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("A.npy", npy_head((25000, 25000)) + bytes(1000))
+    raw = bytearray(file.getvalue())
+    for signature, at in ((b"PK\x03\x04", 22), (b"PK\x01\x02", 24)):
+        place = raw.find(signature) + at
+        raw[place : place + 4] = (4_900_000_000 % 2**32 or 1).to_bytes(4, "little")
+    return bytes(raw)
+
+
+MTX = "%%MatrixMarket matrix {} real general\n{}\n"
+HOSTILE = {
+    "pickle.npy": pickle.dumps(Evil()),
+    "pickle.npz": pickle.dumps(Evil()),
+    "objects.npz": saved(A=np.array([[1]]), q=Q) + pickle.dumps(Evil()),
+    "object.npy": npy_head((1,), "'|O'") + pickle.dumps(Evil()),
+    "object.npz": saved(A=np.array([[Evil()]], object), q=Q),
+    "format.npz": sparse(format=np.array([Evil()], object)),
+    "class.npz": sparse(format=b"__class__"),
+    "linalg.npz": sparse(format=b"linalg"),
+    "index.npz": sparse(indices=[0, 10**6]),
+    "negative.npz": sparse(indices=[0, -7]),
+    "starts.npz": sparse(indptr=[0, 99, 2]),
+    "falling.npz": sparse(indptr=[2, 1, 0]),
+    "shape.npz": sparse(shape=[10**9, 10**9]),
+    "words.npz": sparse(shape=["a", "b"]),
+    "names.npz": zipped(*(f"a{k}.npy" for k in range(2000))),
+    "above.npz": zipped("../../A.npy"),
+    "bomb.npz": bomb(),
+    "large.npy": npy_head((10**5, 10**5)),
+    "larger.npy": npy_head((10**12, 10**12)),
+    "less.npy": npy_head((-1, 2)),
+    "call.npy": npy_head("(__import__('os').mkdir('executed'),)"),
+    "deep.npy": npy_head("(" * 20000),
+    "deep.json": b"[" * 200_000,
+    "deeper.json": b'{"A":' * 100_000,
+    "nan.json": b'{"A": [[NaN]], "q": [1]}',
+    "infinite.json": b'{"A": [[1]], "q": [-Infinity]}',
+    "digits.json": b'{"A": [[' + b"9" * 5000 + b']], "q": [1]}',
+    "exponent.json": b'{"A": [[1e999]], "q": [1]}',
+    "null.json": b'{"A": null, "q": null}',
+    "text.json": b'{"A": [["1"]], "q": ["1"]}',
+    "bytes.json": b"\xff\xfe{",
+    "empty.json": b"",
+    "dims.mtx": MTX.format("coordinate", "1000000000 1000000000 1\n1 1 1.0").encode(),
+    "entries.mtx": MTX.format("coordinate", "2 2 1000000000000\n1 1 1.0").encode(),
+    "array.mtx": MTX.format("array", "1000000 1000000\n1.0").encode(),
+    "minus.mtx": MTX.format("coordinate", "-2 2 1\n1 1 1.0").encode(),
+    "outside.mtx": MTX.format("coordinate", "2 2 1\n5 5 1.0").encode(),
+    "zero.mtx": MTX.format("coordinate", "2 2 1\n0 0 1.0").encode(),
+    "nan.mtx": MTX.format("coordinate", "2 2 2\n1 1 nan\n2 2 1").encode(),
+    "integer.mtx": b"%%MatrixMarket matrix coordinate integer general\n2 2 1\n1 1 99999999999999999999\n",
+    "head.csv": b"a,b\n1,2\n3,4\n",
+    "ragged.csv": b"1 2\n3\n",
+    "hex.csv": b"0x10 1\n1 1\n",
+    "comma.csv": b"1,5 2,5\n3,5 4,5\n",
+    "nul.csv": b"1 \x00\n1 1\n",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_one_line_and_nothing_done(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).write_bytes(HOSTILE[name])
+    np.savetxt("q.txt", Q)
+    with pytest.raises(InputError) as caught:
+        read_problem(name, "q.txt" if name != "infinite.json" else None)
+    assert "\n" not in str(caught.value)
+    assert not os.path.exists("executed")
+
+
+def parts(file, indices, indptr, shape=(2, 2)):
+    file["A"].attrs["shape"] = shape
+    for name, value in {"data": np.ones(2), "indices": indices, "indptr": indptr}.items():
+        file["A"][name] = value
+
+
+HARM = {
+    "an index outside": lambda file: parts(file, [0, 99], [0, 1, 2]),
+    "starts outside": lambda file: parts(file, [0, 1], [0, 5, 2]),
+    "starts that fall": lambda file: parts(file, [0, 1], [0, 2, -5, 2], (3, 3)),
+    "a large shape": lambda file: parts(file, [0, 1], [0, 1, 2], (10**9, 10**9)),
+    "no parts": lambda file: None,
+    "a link to itself": lambda file: file.__setitem__("problem", h5py.SoftLink("/problem")) or file.pop("A"),
+}
+
+
+@pytest.mark.parametrize("harm", HARM)
+def test_hdf5(tmp_path, harm):
+    with h5py.File(tmp_path / "p.h5", "w") as file:
+        file["q"] = Q
+        file.create_group("A")
+        HARM[harm](file)
+    with pytest.raises(InputError) as caught:
+        read_problem(tmp_path / "p.h5")
+    assert "\n" not in str(caught.value)
+
+
+def whole(form):
+    file = io.BytesIO()
+    if form in ("mat", "packed.mat", "4.mat"):
+        level = "4" if form == "4.mat" else "5"
+        scipy.io.savemat(file, {"A": A, "q": Q}, do_compression=form == "packed.mat", format=level)
+    elif form == "sparse.mat":
+        scipy.io.savemat(file, {"A": sp.csc_array(A), "q": Q})
+    elif form == "h5":
+        with h5py.File(file, "w") as h5:
+            h5["A"], h5["q"] = A, Q
+    elif form == "json":
+        file.write(json.dumps({"A": A.tolist(), "q": Q.tolist()}).encode())
+    else:
+        (np.savez_compressed if form == "packed.npz" else np.savez)(file, A=A, q=Q)
+    return file.getvalue()
+
+
+@pytest.mark.parametrize("form", ["mat", "packed.mat", "sparse.mat", "4.mat", "npz", "packed.npz", "h5", "json"])
+def test_damaged_files(tmp_path, form):
+    """Bytes changed at random, and ends cut off: an error of one line, or numbers; in a process that is not to die."""
+    raw, file, generator = whole(form), tmp_path / f"p.{form.rpartition('.')[2]}", random.Random(7)
+    process = os.fork()
+    if not process:
+        verdict = 1
+        try:
+            for _ in range(250):
+                damaged = bytearray(raw)
+                for _ in range(generator.choice((1, 1, 3))):
+                    damaged[generator.randrange(len(raw))] = generator.randrange(256)
+                if generator.random() < 0.2:
+                    del damaged[generator.randrange(len(raw)) :]
+                file.write_bytes(damaged)
+                try:
+                    read_problem(file)
+                except InputError as error:
+                    if "\n" in str(error):
+                        os._exit(2)
+            verdict = 0
+        finally:
+            os._exit(verdict)
+    assert os.waitpid(process, 0)[1] == 0
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_matlab_as_scipy_reads_it(packed):
+    generator = np.random.default_rng(0)
+    given = {
+        "A": generator.normal(size=(3, 4)),
+        "whole": np.arange(12).reshape(3, 4),
+        "signs": np.eye(3, dtype=bool),
+        "single": generator.random((2, 3)).astype("f4"),
+        "sparse": sp.csc_array(generator.random((5, 5)) * (generator.random((5, 5)) > 0.5)),
+        "a_name_that_is_too_long_for_a_short_element": np.ones((1, 1)),
+        "nothing": np.zeros((0, 3)),
+        "complex": np.ones(2) + 1j,
+        "text": "text",
+        "cell": np.array([1, "x"], object),
+    }
+    file = io.BytesIO()
+    scipy.io.savemat(file, given, do_compression=packed)
+    found, right = read_level5(file.getvalue(), 1 << 20), scipy.io.loadmat(io.BytesIO(file.getvalue()))
+    for name in list(given)[:7]:
+        one, other = found[name], right[name]
+        if sp.issparse(other):
+            one, other = one.toarray(), other.toarray()
+        assert np.array_equal(one, other), name
+    assert (found["complex"], found["text"], found["cell"]) == ("complex numbers", *["no matrix of numbers"] * 2)
+    if packed:
+        with pytest.raises(ValueError, match="unfolds to more than the limit"):
+            read_level5(file.getvalue(), 100)
+        cut = zlib.compress(bytes(100))[:-6]
+        with pytest.raises(ValueError, match="cut off"):
+            read_level5(file.getvalue()[:128] + (15).to_bytes(4, "little") + len(cut).to_bytes(4, "little") + cut, 1000)

@@ -1,0 +1,96 @@
+"""Starts of the LCP homotopies: on the path, in the units of the problem, reproducible, refused where they are none."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from problems import lcp
+from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint
+from problems.lcp.strategies import lcps
+from problems.paper import EXAMPLES
+
+from .util import ALL, every, made
+
+
+@given(problem=lcps(), seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=50, deadline=None)
+def test_starts_are_on_the_path(problem, seed):
+    rng = np.random.default_rng(seed)
+    another = lcp.random_start(problem, rng)
+    tries = [
+        lcp.KKTHomotopy(problem),
+        lcp.KKTHomotopy(problem, another.x0, another.z1, another.z2, another.w0),
+        *(made(make, problem, rng) for make in ALL),
+        lcp.YuHomotopy(problem),
+        lcp.WangHomotopy(problem),
+        lcp.KojimaMegiddoMizunoHomotopy(problem),
+    ]
+    for homotopy in tries:
+        y, lam = homotopy.start()
+        assert lam == 1.0
+        assert (y > 0.0).all()
+        size = 1.0 + np.abs(y).max() ** 2
+        assert np.abs(homotopy.residual(y, lam)).max() <= 1e-14 * size
+        assert homotopy.max_step(np.append(y, lam), np.zeros(y.size + 1)) == np.inf
+
+
+def test_the_papers_start_is_kept():
+    for example in EXAMPLES:
+        homotopy = lcp.KKTHomotopy(example.problem, example.x0)
+        assert not homotopy.rho.any()
+        assert np.array_equal(homotopy.start()[0], np.concatenate([example.x0, example.z1, example.z2]))
+
+
+def test_relaxed_start():
+    problem = lcp.LCP([[1.0, 0.0], [0.0, 1.0]], [-3.0, 2.0])
+    homotopy = lcp.KKTHomotopy(problem, [1.0, 1.0])
+    assert np.array_equal(homotopy.origin.w0, [3.0, 6.0])
+    assert np.array_equal(homotopy.rho, [5.0, 3.0])
+    assert np.ptp(np.append(homotopy.c1, homotopy.c2)) < 1e-15 * homotopy.c1[0]
+    given_w0 = lcp.KKTHomotopy(problem, [1.0, 1.0], w0=[1.0, 2.0])
+    assert np.array_equal(given_w0.origin.w0, [1.0, 2.0])
+
+
+def test_default_start_has_the_units_of_the_problem():
+    A, q = np.array([[2.0, 1.0], [0.0, 3.0]]), np.array([-4.0, 1.0])
+    start, scaled = lcp.default_start(lcp.LCP(A, q)), lcp.default_start(lcp.LCP(1e6 * A, 1e2 * q))
+    assert np.allclose(scaled.x0, 1e-4 * start.x0)
+    assert np.allclose(scaled.w0, 1e2 * start.w0)
+    assert lcp.default_start(lcp.LCP(np.zeros((2, 2)), [0.0, 0.0])).x0 == pytest.approx([1.0, 1.0])
+
+
+def test_random_starts_are_reproducible():
+    problem = EXAMPLES[4].problem
+    one, two = (lcp.random_start(problem, np.random.default_rng(11)) for _ in range(2))
+    assert np.array_equal(one.x0, two.x0)
+    assert np.array_equal(one.w0, two.w0)
+
+
+@pytest.mark.parametrize("make", [lcp.ZhaoHomotopy, lcp.XuHomotopy])
+def test_feasible_starts(make):
+    example = EXAMPLES[1]
+    assert np.array_equal(make(example.problem, example.x0).y0, example.problem.w(example.x0))
+    found = make(example.problem)
+    assert np.array_equal(found.y0, example.problem.w(found.x0))
+    with pytest.raises(ValueError, match=r"x0: expected A x0 \+ q > 0"):
+        make(example.problem, [0.1, 0.1])
+    with pytest.raises(NoStrictlyFeasiblePoint):
+        make(lcp.LCP([[-1.0]], [-1.0]))
+
+
+@every
+@pytest.mark.parametrize(
+    ("argument", "value", "found"),
+    [
+        ("x0", [1.0, -1.0], "-1.0 at index 1"),
+        ("x0", [1.0, np.nan], "nan at index 1"),
+        ("x0", [1.0], r"shape \(1,\)"),
+        ("x0", ["a", "b"], "dtype"),
+        ("other", [np.inf, 1.0], "inf at index 0"),
+    ],
+)
+def test_bad_starts(make, argument, value, found):
+    name = argument if argument == "x0" else ("w0" if make is lcp.KKTHomotopy else "y0")
+    with pytest.raises(ValueError, match=f"{name}: expected .* found {found}|{name}: expected .* found .*{found}"):
+        make(EXAMPLES[1].problem, **{"x0": [2.0, 1.0], name: value})
