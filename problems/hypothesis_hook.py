@@ -6,14 +6,15 @@ import sys
 
 
 def register() -> None:
-    """Register the strategy of LCP if both Hypothesis and the problem class are imported; otherwise do nothing.
+    """Register the strategies of LCP, MixedLCP and Program if both Hypothesis and the classes are imported.
 
     Called from two places, so that the order of the two imports does not matter: Hypothesis calls it through the entry
     point group `hypothesis` when it is imported, and `problems.lcp` calls it when that is imported.
     """
-    problem = sys.modules.get("problems.lcp.data.problem")
+    data = sys.modules.get("problems.lcp.data.problem")
+    program = sys.modules.get("problems.lcp.data.program")
     strategies = sys.modules.get("hypothesis.strategies")
-    if problem is None or strategies is None:
+    if data is None or program is None or strategies is None:
         return
 
     def problems_of_any_class(_: type) -> object:
@@ -21,4 +22,16 @@ def register() -> None:
 
         return lcps()
 
-    strategies.register_type_strategy(problem.LCP, problems_of_any_class)
+    def problems_with_bounds(_: type) -> object:
+        from problems.lcp.mixed_strategies import mixed_lcps
+
+        return mixed_lcps()
+
+    def quadratic_programs(_: type) -> object:
+        from problems.lcp.mixed_strategies import programs
+
+        return programs()
+
+    strategies.register_type_strategy(data.LCP, problems_of_any_class)
+    strategies.register_type_strategy(data.MixedLCP, problems_with_bounds)
+    strategies.register_type_strategy(program.Program, quadratic_programs)

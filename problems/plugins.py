@@ -8,7 +8,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from problems.lcp.data.files import read_problem
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy, Registered
 from problems.nonlinear import Differentiable, FixedPointHomotopy, brown
 
@@ -53,7 +53,7 @@ zhao = _plugin(HOMOTOPIES["zhao"])
 kmm = _plugin(HOMOTOPIES["kmm"])
 
 
-def _problem(number: int, file: str, q: str) -> tuple[LCP, Array | None]:
+def _problem(number: int, file: str, q: str) -> tuple[MixedLCP, Array | None]:
     """The LCP of a file, or one of the paper's with its start."""
     if file:
         try:

@@ -1,4 +1,4 @@
-"""``continuation solve FILE``: an LCP from a file, its solution and certificate on stdout."""
+"""``continuation solve FILE``: an LCP, a problem with bounds or a QP from a file, its solution on stdout."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from continuation.cli.archives import complaints
 from problems.commands.arguments import PROBLEM_FORMATS, named
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 MOST_ROWS = 60
@@ -30,8 +30,9 @@ def register(subparsers: Subparsers) -> None:
     """Add the command."""
     parser = subparsers.add_parser(
         "solve",
-        help="solve a linear complementarity problem",
-        description="Find x >= 0 with w = A x + q >= 0 and x_i w_i = 0. Exit status: 0 solved, 1 not, 2 bad input.",
+        help="solve a linear complementarity problem, with bounds or not, or a quadratic program",
+        description="Find x >= 0 with w = A x + q >= 0 and x_i w_i = 0; with bounds in the file, x between them. "
+        "Or minimise 1/2 x'P x + c'x under the constraints in the file. Exit status: 0 solved, 1 not, 2 bad input.",
     )
     parser.add_argument("file", metavar="FILE", help=f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group")
     parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
@@ -53,17 +54,18 @@ def run(arguments: argparse.Namespace) -> int:
     """Read, solve, print."""
     from continuation.budget import Budget
     from problems import lcp
-    from problems.lcp.data.files import read_problem, read_vector
+    from problems.lcp.data.files import read_problem, read_program, read_vector
 
     _check_outputs(arguments)
     with complaints("--archive", new="--archive"), named(_ARGUMENTS):
-        problem = read_problem(arguments.file, arguments.q)
+        program = read_program(arguments.file) if arguments.q is None else None
+        problem = read_problem(arguments.file, arguments.q) if program is None else program.problem
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
-        if x0 is not None and not arguments.relaxed:
+        if x0 is not None and problem.standard and not arguments.relaxed:
             _check_start(problem, x0)
         budget = None if arguments.budget_seconds is None else Budget(math.inf, arguments.budget_seconds)
         solution = lcp.solve(
-            problem,
+            problem if program is None else program,
             homotopy=arguments.homotopy,
             x0=x0,
             path=arguments.path or arguments.plot is not None,
@@ -77,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
     return SUCCESS if solution.success else FAILURE
 
 
-def _check_start(problem: LCP, x0: Array) -> None:
+def _check_start(problem: MixedLCP, x0: Array) -> None:
     """The paper's homotopy starts inside {x > 0, A x + q > 0}; a start outside is asked for by --relaxed."""
     for name, values in (("x0", x0), ("A x0 + q", problem.w(x0))):
         i = int(np.argmin(values))
@@ -105,6 +107,7 @@ def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:
         "homotopy": arguments.homotopy,
         "outcome": solution.outcome.name,
         "message": solution.message,
+        **({} if solution.program is None else _program_as_json(solution)),
         "x": _numbers(solution.x),
         "w": _numbers(solution.w),
         "residual": _number(solution.residual),
@@ -113,6 +116,12 @@ def _as_json(arguments: argparse.Namespace, solution: Any) -> dict[str, Any]:
         "counts": solution.counts.as_dict(),
         "seconds": solution.seconds,
     }
+
+
+def _program_as_json(solution: Any) -> dict[str, Any]:
+    """The objective, and the variables and multipliers by name; x alone is that of the optimality conditions."""
+    named = {name: _numbers(values) for name, values in solution.named.items()}
+    return {"objective": _number(solution.objective), "named": named}
 
 
 def _numbers(vector: Array | None) -> list[float | None] | None:
@@ -134,7 +143,12 @@ def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
         f"residual   {solution.residual:.2e}, relative {solution.relative_residual:.2e}",
         f"work       {len(solution.paths)} paths, {counts}; {solution.seconds:.2g} s",
     ]
-    if solution.x is not None:
+    if solution.program is not None and solution.x is not None:
+        lines.insert(4, f"objective  {solution.objective:.15g}")
+        for name, values in solution.named.items():
+            lines += ["", f"{'i':>6}  {name:>22}"]
+            lines += [f"{i:>6}  {value:>22.15g}" for i, value in enumerate(values[:MOST_ROWS])]
+    elif solution.x is not None:
         lines += ["", f"{'i':>6}  {'x':>22}  {'w':>22}"]
         lines += [
             f"{i:>6}  {x:>22.15g}  {w:>22.15g}"

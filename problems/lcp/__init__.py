@@ -2,7 +2,8 @@
 
 from problems.hypothesis_hook import register
 from problems.lcp.classes import classify
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.lcp.homotopies import (
     KKTHomotopy,
     KojimaMegiddoMizunoHomotopy,
@@ -26,9 +27,10 @@ from problems.lcp.search.solver import solve
 
 __all__ = [
     "LCP", "Certificate", "ExactCertificate", "Exhaustion", "Farkas", "FloatFarkas", "KKTHomotopy",
-    "KojimaMegiddoMizunoHomotopy", "NoStrictlyFeasiblePoint", "Outcome", "Solution", "Solver", "Start", "Structure",
-    "TwoVectorHomotopy", "WangHomotopy", "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "certify", "certify_exactly",
-    "classify", "default_start", "empty_interior", "farkas", "random_start", "solve", "solve_by_enumeration",
+    "KojimaMegiddoMizunoHomotopy", "MixedLCP", "NoStrictlyFeasiblePoint", "Outcome", "Program", "Solution", "Solver",
+    "Start", "Structure", "TwoVectorHomotopy", "WangHomotopy", "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "certify",
+    "certify_exactly", "classify", "default_start", "empty_interior", "farkas", "from_lp", "from_qp", "random_start",
+    "solve", "solve_by_enumeration",
     "strictly_feasible_start",
 ]  # fmt: skip
 

@@ -1,10 +1,17 @@
-"""Homotopies for F(x) = 0 with any F: R^n -> R^n, and Brown's function as the example."""
+"""Homotopies for F(x) = 0, with and without bounds, for any F: R^n -> R^n, and Brown's function as the example."""
 
 from problems.nonlinear.brown import BrownAlmostLinear, brown
+from problems.nonlinear.complementarity import (
+    ComplementaritySolution,
+    InteriorHomotopy,
+    MixedComplementarity,
+    solve_complementarity,
+)
 from problems.nonlinear.differentiable import Differentiable
 from problems.nonlinear.fixed_point import FixedPointHomotopy, fixed_point
 from problems.nonlinear.newton import NewtonHomotopy, newton
 
 __all__ = [
-    "BrownAlmostLinear", "Differentiable", "FixedPointHomotopy", "NewtonHomotopy", "brown", "fixed_point", "newton",
+    "BrownAlmostLinear", "ComplementaritySolution", "Differentiable", "FixedPointHomotopy", "InteriorHomotopy",
+    "MixedComplementarity", "NewtonHomotopy", "brown", "fixed_point", "newton", "solve_complementarity",
 ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""The equations of one complementary face, x_i = 0 off a set and w_i = 0 on it, solved as the matrix is stored."""
+"""The equations of one complementary face, x_i at a bound off a set and w_i = 0 on it, solved as A is stored."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from continuation.linear.refine import Factored
 from continuation.linear.sparse import factor_superlu
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import accurate_w
 
 Mask = NDArray[np.bool_]
@@ -48,9 +48,11 @@ class Face:
 
     Attributes
     ----------
-    problem : LCP
+    problem : MixedLCP
+    state : State
+        Where x is.
     active : Mask
-        Where w_i = 0 is asked for.
+        Where that is between the bounds, so that w_i = 0 is asked for.
     inverse : callable
         Right-hand side on the active set to the solution there, of the equations or of shifted ones.
     exact : bool
@@ -62,7 +64,8 @@ class Face:
         The problem's own, or in its place that of a proximal problem.
     """
 
-    problem: LCP
+    problem: MixedLCP
+    state: State
     active: Mask
     inverse: Callable[[Array], Array]
     exact: bool
@@ -74,11 +77,14 @@ class Face:
 
         Where the face holds many points this is, about, the one nearest to `near`.
         """
-        x = np.zeros_like(near) if self.exact else np.where(self.active, near, 0.0)
+        standard = self.problem.standard
+        x = np.zeros_like(near) if standard else self.problem.at(self.state)
+        if not self.exact:
+            x = np.where(self.active, near, x)
         with np.errstate(over="ignore", invalid="ignore"):
-            # From zero, where w = q, one solve is all that exact factors need.
+            # One solve is all that exact factors need; from zero, w = q.
             for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
-                x = self._corrected(x, self.q if self.exact else self.w(x))
+                x = self._corrected(x, self.q if self.exact and standard else self.w(x))
             w = self.w(x)
         if not (np.isfinite(x).all() and np.isfinite(w).all()):
             return None
@@ -110,36 +116,36 @@ class Faces:
     ----------
     structure : Structure
         Of the problem.
-    current : LCP, optional
+    current : MixedLCP, optional
         The problem, where it has another q than that of the structure.
     kept : dict, optional
         Where the last `KEPT` faces stay, by their active sets, for other q.
     """
 
     structure: Structure
-    current: LCP | None = None
+    current: MixedLCP | None = None
     kept: dict[bytes, Face] | None = None
 
     @property
-    def problem(self) -> LCP:
+    def problem(self) -> MixedLCP:
         """The problem."""
         return self.structure.problem if self.current is None else self.current
 
-    def face(self, active: Mask, shift: float = 0.0, centre: Array | None = None) -> Face | None:
-        """The face of an active set, factored; None where that is impossible.
+    def face(self, state: State, shift: float = 0.0, centre: Array | None = None) -> Face | None:
+        """The face of a state, factored; None where that is impossible.
 
         Parameters
         ----------
-        active : Mask
+        state : State
         shift : float
             Added to the diagonal of A.
         centre : Array, optional
             Of a proximal problem, whose q is ``q - shift centre``.
         """
         if self.kept is None or shift or centre is not None:
-            return self._made(active, shift, centre)
-        key = np.packbits(active).tobytes()
-        face = self.kept.pop(key, None) or self._made(active, shift, centre)
+            return self._made(state, shift, centre)
+        key = state.tobytes()
+        face = self.kept.pop(key, None) or self._made(state, shift, centre)
         if face is None:
             return None
         self.kept[key] = face
@@ -147,18 +153,21 @@ class Faces:
             self.kept.pop(next(iter(self.kept)))
         return evolve(face, problem=self.problem, q=self.problem.q)
 
-    def _made(self, active: Mask, shift: float, centre: Array | None) -> Face | None:
+    def _made(self, state: State, shift: float, centre: Array | None) -> Face | None:
         problem = self.problem
         q = problem.q if centre is None else problem.q - shift * centre
+        active = state == BETWEEN
         inside = np.flatnonzero(active)
         if inside.size == 0:
-            return Face(problem, active, lambda right: right, True, shift, q)
+            return Face(problem, state, active, lambda right: right, True, shift, q)
         if self.structure.band is not None:
             inverse = self._banded(active, shift)
-            return None if inverse is None else Face(problem, active, inverse, True, shift, q)
+            return None if inverse is None else Face(problem, state, active, inverse, True, shift, q)
         block = problem.A[inside][:, inside]
         factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
-        return None if factor is None else Face(problem, active, factor.solve, exact or centre is not None, shift, q)
+        if factor is None:
+            return None
+        return Face(problem, state, active, factor.solve, exact or centre is not None, shift, q)
 
     def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
         # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from attrs import define, field
 
-from continuation.arrays import Array
+from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
-from problems.lcp.active_set.face import Face, Faces, Mask
+from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
+from problems.lcp.homotopies.kkt import KKTHomotopy
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
 from problems.lcp.proof.verdict import confirmed
@@ -52,6 +54,9 @@ On those 24 all five take 291 factorisations, every second one of them 289, the 
 matrices whose least singular values a large shift would drown.
 """
 
+DESCENT_ROUNDS = 200
+"""Of the proximal method where A is not semidefinite."""
+
 PROXIMAL_ROUND = Policy(steps=24, patience=5)
 """In one of its rounds, more patient: what is solved there has one solution, and mostly a way to it."""
 
@@ -81,26 +86,26 @@ class Finish:
     certificate: Certificate | None = field(default=None, init=False)
 
     @property
-    def problem(self) -> LCP:
+    def problem(self) -> MixedLCP:
         """The problem."""
         return self.faces.problem
 
-    def settle(self, active: Mask, policy: Policy, near: Array | None = None) -> Array | None:
+    def settle(self, state: State, policy: Policy, near: Array | None = None) -> Array | None:
         """The certified solution on the face of an active set, or on one of the corrected ones; None without one.
 
         Parameters
         ----------
-        active : Mask
+        state : State
             The guess.
         policy : Policy
             How long it is corrected.
         near : Array, optional
             Where a face holds many points, the one nearest to this is taken; zero by default.
         """
-        found = iterate(self.faces, active, policy, near=near, judge=self._judged, tried=self.tried, counts=self.counts)
+        found = iterate(self.faces, state, policy, near=near, judge=self._judged, tried=self.tried, counts=self.counts)
         return found.x if found.ended is Ended.SOLVED else None
 
-    def proximal_active_set(self, active: Mask | None = None) -> Array | None:
+    def proximal_active_set(self, state: State | None = None) -> Array | None:
         """The solution by the proximal method: for a positive semidefinite A, singular or nearly.
 
         Each round solves the LCP of A + shift I, whose point x is unique, near the point of the round before, and then
@@ -108,7 +113,7 @@ class Finish:
 
         Parameters
         ----------
-        active : Mask, optional
+        state : State, optional
             The guess. Default: the last that was tried.
 
         References
@@ -116,27 +121,57 @@ class Finish:
         Rockafellar, "Monotone Operators and the Proximal Point Algorithm", SIAM J. Control Optim. 14 (1976); Cottle,
         Pang and Stone, section 5.6 (regularization).
         """
-        active = self.tried.last if active is None else active
-        if active is None:
+        state = self.tried.last if state is None else state
+        if state is None:
             return None
-        x = np.zeros(self.problem.n)
-        unit = float(np.mean(self.problem.A.diagonal()))
+        x = self.problem.near_zero
+        A = self.problem.A
+        # Of a linear program the diagonal is zero.
+        unit = float(np.mean(A.diagonal())) or float(np.mean(abs(A).max(axis=1)))
         for shift in PROXIMAL_SHIFTS:
-            moved = iterate(self.faces, active, PROXIMAL_ROUND, near=x, shift=shift * unit, counts=self.counts)
+            moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift * unit, counts=self.counts)
             if moved.ended in (Ended.SINGULAR, Ended.CYCLING):
                 return None
-            active, x = moved.active, np.maximum(moved.x, 0.0)
-            solved = self.settle(active, Policy(steps=1), x)
+            state, x = moved.state, self.problem.clipped(moved.x)
+            solved = self.settle(state, Policy(steps=1), x)
+            if solved is not None:
+                return solved
+        return None
+
+    def descend(self, state: State) -> Array | None:
+        """A KKT point of min 1/2 x'A x + q'x over a box, A symmetric but not semidefinite; None without one.
+
+        Each round is a step of the proximal method with a shift that makes A definite, so that the objective falls;
+        where that is too small for the active sets to settle, it is doubled.
+
+        Parameters
+        ----------
+        state : State
+            The guess.
+
+        References
+        ----------
+        Kaplan and Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998).
+        """
+        problem = self.problem
+        x, shift = problem.near_zero, 1.1 * _below(problem.A)
+        for _ in range(DESCENT_ROUNDS):
+            moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift, counts=self.counts)
+            if moved.ended is not Ended.SETTLED:
+                shift *= 2.0
+                continue
+            state, x = moved.state, problem.clipped(moved.x)
+            solved = self.settle(state, Policy(steps=1), x)
             if solved is not None:
                 return solved
         return None
 
     def _judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The point, clipped to x >= 0 and certified; corrected in twice the precision until that is round-off."""
+        """The point, clipped to the bounds and certified; corrected in twice the precision until that is round-off."""
         # A certificate is worth its cost where the signs are right to about the tolerance.
-        if not self._plausible(x, w):
+        if not self._plausible(face.state, x, w):
             return x, w, False
-        best = certify(self.problem, np.maximum(x, 0.0))
+        best = certify(self.problem, self.problem.clipped(x))
         for _ in range(SIGN_CORRECTIONS):
             if best.relative_residual <= ROUND_OFF:
                 break
@@ -144,12 +179,15 @@ class Finish:
             if not np.isfinite(better).all():
                 break
             x = better
-            certificate = certify(self.problem, np.maximum(x, 0.0))
+            certificate = certify(self.problem, self.problem.clipped(x))
             if certificate.relative_residual < best.relative_residual:
                 best = certificate
         if not best.solves(self.tolerance):
             # What is zero in truth, as where nothing touches, may be most of the terms of a row.
-            zeros = np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0)
+            if self.problem.standard:
+                zeros = np.where(x > ROUND_OFF * float(x.max(initial=0.0)), x, 0.0)
+            else:
+                zeros = self.problem.settled(best.x, best.w)
             if (zeros != best.x).any():
                 best = certify(self.problem, zeros)
         if confirmed(self.problem, best, self.tolerance):
@@ -157,13 +195,25 @@ class Finish:
             return best.x, best.w, True
         return x, self.problem.w(x), False
 
-    def _plausible(self, x: Array, w: Array) -> bool:
+    def _plausible(self, state: State, x: Array, w: Array) -> bool:
         """Whether the signs are right to about the tolerance, x relative to its size and w to that of its terms."""
-        low_x, low_w = float(x.min()), float(w.min())
+        problem = self.problem
+        inside = x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
+        signed = w if problem.standard else np.where(state == UPPER, -w, np.where(state == LOWER, w, 0.0))
+        if not problem.standard:
+            signed = np.where(problem.fixed, 0.0, signed)
+        low_x, low_w = float(inside.min()), float(signed.min())
         if low_x >= 0.0 and low_w >= 0.0:
             return True
         size = float(np.abs(x).max())
-        return low_x >= -self.tolerance * size and low_w >= -self.tolerance * (self.problem.scale(x) - 1.0)
+        return low_x >= -self.tolerance * size and low_w >= -self.tolerance * (problem.scale(x) - 1.0)
+
+
+def _below(A: Matrix) -> float:
+    """How far below zero an eigenvalue of a symmetric matrix is at most: exactly, or of a sparse one by its rows."""
+    if sp.issparse(A):
+        return float((abs(A).sum(axis=1) - A.diagonal()).max())
+    return float(max(-np.linalg.eigvalsh(A)[0], np.finfo(float).tiny))
 
 
 @define(eq=False)
@@ -192,7 +242,7 @@ class AlongPath:
         self.next_lam = SPACING * lam
         problem = self.finish.problem
         x = y[: problem.n]
-        solved = self.finish.settle(x > problem.w(x), ON_PATH, x)
+        solved = self.finish.settle(problem.states(x, problem.w(x)), ON_PATH, x)
         return None if solved is None else np.concatenate([solved, y[problem.n :]])
 
 
@@ -205,7 +255,6 @@ def smallest_parameter(homotopy: Any, product: float) -> float:
     product : float
         The size, in natural units of x times those of w.
     """
-    n = homotopy.problem.n
-    y0, lam0 = homotopy.start()
+    products = homotopy.c1 if isinstance(homotopy, KKTHomotopy) else homotopy.c
     x, w = natural_units(homotopy.problem)
-    return float(lam0 * product * x * w / np.median(y0[:n] * y0[n : 2 * n]))
+    return float(homotopy.start()[1] * product * x * w / np.median(products)) if products.size else LATEST_START

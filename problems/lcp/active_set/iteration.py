@@ -1,6 +1,6 @@
 """The active-set iteration: the point of a face, the signs that are wrong there, the face with these changed.
 
-It is the primal-dual active-set method, which is Newton's method on min(x, A x + q) = 0.
+It is the primal-dual active-set method, which is Newton's method on the natural map, for an LCP min(x, A x + q) = 0.
 
 References
 ----------
@@ -18,7 +18,8 @@ from attrs import define, field, frozen
 
 from continuation.arrays import Array
 from continuation.counts import Counts
-from problems.lcp.active_set.face import Face, Faces, Mask
+from problems.lcp.active_set.face import Face, Faces
+from problems.lcp.data.problem import BETWEEN, UPPER, State
 
 Judge = Callable[[Face, Array, Array], tuple[Array, Array, bool]]
 """(face, x, w) -> (x, w, whether that is the solution); the x and w may be better ones."""
@@ -57,35 +58,37 @@ class Tried:
 
     Attributes
     ----------
-    last : Mask or None
+    last : State or None
         The last of them.
     """
 
-    last: Mask | None = field(default=None, init=False)
+    last: State | None = field(default=None, init=False)
     _known: set[bytes] = field(factory=set, init=False)
 
-    def add(self, active: Mask) -> bool:
+    def add(self, state: State) -> bool:
         """Take a set in; whether it is new."""
-        key = np.packbits(active).tobytes()
+        key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
+        if above.any():
+            key += np.packbits(above).tobytes()
         if key in self._known:
             return False
         self._known.add(key)
-        self.last = active
+        self.last = state
         return True
 
 
 @frozen(eq=False)
 class Iterated:
-    """Where an iteration ended: the reason, the active set that is next, and the last point."""
+    """Where an iteration ended: the reason, the state that is next, and the last point."""
 
     ended: Ended
-    active: Mask
+    state: State
     x: Array
 
 
 def iterate(
     faces: Faces,
-    active: Mask,
+    state: State,
     policy: Policy,
     *,
     near: Array | None = None,
@@ -100,7 +103,7 @@ def iterate(
     ----------
     faces : Faces
         Of the problem.
-    active : Mask
+    state : State
         The guess.
     policy : Policy
     near : Array, optional
@@ -118,27 +121,27 @@ def iterate(
     centre = None if shift is None else x
     changes: list[int] = []
     for _ in range(policy.steps + 1):
-        if tried is not None and not tried.add(active):
-            return Iterated(Ended.TRIED, active, x)
+        if tried is not None and not tried.add(state):
+            return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
-        face = faces.face(active, shift or 0.0, centre)
+        face = faces.face(state, shift or 0.0, centre)
         point = None if face is None else face.point(x)
         if face is None or point is None:
-            return Iterated(Ended.SINGULAR, active, x)
+            return Iterated(Ended.SINGULAR, state, x)
         x, w = point
         if judge is not None:
             x, w, solved = judge(face, x, w)
             if solved:
-                return Iterated(Ended.SOLVED, active, x)
-        following = np.where(active, x > 0.0, w < 0.0)
-        changes.append(int(np.count_nonzero(following != active)))
+                return Iterated(Ended.SOLVED, state, x)
+        following = faces.problem.corrected(state, x, w)
+        changes.append(int(np.count_nonzero(following != state)))
         if changes[-1] == 0:
-            return Iterated(Ended.SETTLED, active, x)
+            return Iterated(Ended.SETTLED, state, x)
         if policy.patience is not None and _cycling(changes, policy.patience):
-            return Iterated(Ended.CYCLING, active, x)
-        active = following
-    return Iterated(Ended.STEPS, active, x)
+            return Iterated(Ended.CYCLING, state, x)
+        state = following
+    return Iterated(Ended.STEPS, state, x)
 
 
 def _cycling(changes: list[int], patience: int) -> bool:

@@ -15,7 +15,7 @@ from continuation.arrays import Array, Matrix
 from problems.lcp.active_set.face import Faces, Mask
 from problems.lcp.active_set.iteration import Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP, State
 
 SMALL = 200
 """A problem of this order is not made coarser: its faces cost less than the interpolation."""
@@ -31,7 +31,7 @@ ELSEWHERE = Policy(steps=11)
 
 
 def suitable(structure: Structure) -> bool:
-    """Whether A is large and sparse, with a positive diagonal and nearly all other entries nonpositive.
+    """Whether it is an LCP, A is large and sparse, with a positive diagonal, and nearly all else is nonpositive.
 
     Parameters
     ----------
@@ -39,31 +39,31 @@ def suitable(structure: Structure) -> bool:
         Of the problem.
     """
     problem = structure.problem
-    if not problem.sparse or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
+    if not (problem.standard and problem.sparse) or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
         return False
     return int(np.count_nonzero(problem.A.data > 0.0)) <= 1.5 * problem.n
 
 
-def guess(problem: LCP) -> Array:
+def guess(problem: MixedLCP) -> Array:
     """An approximate solution, shape (n,), from the coarser problems; its support is the guess of the active set.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         One that is `suitable`.
     """
     if problem.n <= SMALL:
-        return _corrected(problem, problem.q < 0.0, COARSEST)
+        return _corrected(problem, problem.states(problem.near_zero, problem.q), COARSEST)
     P = _interpolation(problem.A)
     if P.shape[1] > SLOW * problem.n:
-        return _corrected(problem, problem.q < 0.0, ELSEWHERE)
+        return _corrected(problem, problem.states(problem.near_zero, problem.q), ELSEWHERE)
     coarse = LCP(sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q)
-    return _corrected(problem, np.asarray(P @ guess(coarse) > 0.0), ELSEWHERE)
+    return _corrected(problem, problem.states(P @ guess(coarse), np.zeros(problem.n)), ELSEWHERE)
 
 
-def _corrected(problem: LCP, active: Mask, policy: Policy) -> Array:
+def _corrected(problem: MixedLCP, state: State, policy: Policy) -> Array:
     """The last point of a few active-set steps, clipped at zero."""
-    return np.maximum(iterate(Faces(Structure(problem)), active, policy).x, 0.0)
+    return np.maximum(iterate(Faces(Structure(problem)), state, policy).x, 0.0)
 
 
 def _interpolation(A: Matrix) -> Matrix:

@@ -1,7 +1,8 @@
-"""One face of the linear complementarity problem: x zero outside an index set, w zero inside it."""
+"""One complementary piece in exact arithmetic: x at bounds outside of an index set, w zero inside it."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -9,6 +10,9 @@ from attrs import frozen
 
 from problems.lcp.classes.exact import Indices, IntRow, solve
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point
+
+Bound = tuple[int | None, int | None]
+"""The lower and the upper bound of an unknown, None where there is none."""
 
 
 @frozen
@@ -27,60 +31,159 @@ class FacePoint:
     only: bool
 
 
+@frozen
+class Piece:
+    """The conditions of one piece: the columns inside, and what the rows are where these are zero.
+
+    Parameters
+    ----------
+    columns : list of rows, shape (n, number inside)
+    constants : list of n int
+        The rows with x at its bounds outside, and zero inside.
+    inside : tuple of int
+    below, above : list of int
+        Outside: where w_i >= 0 is asked, and where w_i <= 0 is; neither where x_i is fixed.
+    bounds : list of Bound
+        Inside.
+    """
+
+    columns: list[list[int]]
+    constants: list[int]
+    inside: Indices
+    below: list[int]
+    above: list[int]
+    bounds: list[Bound]
+
+    def w(self, inside: Sequence[Fraction]) -> Point:
+        """The rows for given x inside."""
+        rows = zip(self.columns, self.constants)
+        return tuple(sum((a * v for a, v in zip(row, inside)), Fraction(0)) + constant for row, constant in rows)
+
+
 def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) -> FacePoint | None:
     """A point x >= 0, w = entries x + q >= 0 with x zero outside `support` and w zero on it, or None if there is none.
 
     A nonsingular principal submatrix gives the only candidate; a singular one leaves a linear feasibility problem,
     solved exactly. So None is a proof.
     """
-    n = len(q)
-    rest = [i for i in range(n) if i not in support]
-    block = [[entries[i][j] for j in support] for i in support]
-    solved = solve(block, [[-q[i]] for i in support])
-    if solved is None:
-        return _singular_face(entries, q, support, rest)
-    columns, d = solved
-    numerators = [column[0] for column in columns]
-    if any(v < 0 for v in numerators):
-        return None
-    slack = [sum(entries[i][j] * v for j, v in zip(support, numerators)) + q[i] * d for i in rest]
-    if any(v < 0 for v in slack):
-        return None
-    x = _spread(n, support, [Fraction(v, d) for v in numerators])
-    return FacePoint(x, _spread(n, rest, [Fraction(v, d) for v in slack]), True)
-
-
-def _spread(n: int, places: Sequence[int], values: Sequence[Fraction]) -> Point:
-    out = [Fraction(0)] * n
-    for place, value in zip(places, values, strict=True):
-        out[place] = value
-    return tuple(out)
-
-
-def _singular_face(
-    entries: Sequence[IntRow], q: Sequence[int], support: Indices, rest: Sequence[int]
-) -> FacePoint | None:
+    rest = [i for i in range(len(q)) if i not in support]
     columns = [[row[j] for j in support] for row in entries]
-    system = [equal(columns[i], -q[i]) for i in support] + [at_least(columns[i], -q[i]) for i in rest]
-    found = feasible_point(system, len(support))
+    return _point(Piece(columns, list(q), support, rest, [], [(0, None)] * len(support)), [0] * len(q), 1)
+
+
+def piece_point(
+    entries: Sequence[IntRow], q: Sequence[int], bounds: Sequence[Bound], unit: int, state: Sequence[int]
+) -> FacePoint | None:
+    """The same with bounds, in integers over `unit`: x_i at the lower one where the state is -1, the upper one for 1.
+
+    Parameters
+    ----------
+    entries, q : rows of integers
+        Of w = entries x + q.
+    bounds : sequence of Bound
+        Times `unit`.
+    unit : int
+        Positive.
+    state : sequence of int
+    """
+    inside = tuple(i for i, s in enumerate(state) if s == 0)
+    ends = [0 if s == 0 else bounds[i][s > 0] for i, s in enumerate(state)]
+    values = [value if value is not None else 0 for value in ends]
+    constants = [sum(a * v for a, v in zip(row, values) if v) + unit * c for row, c in zip(entries, q)]
+    free = [bounds[i][0] != bounds[i][1] for i in range(len(q))]
+    below = [i for i, s in enumerate(state) if s < 0 and free[i]]
+    above = [i for i, s in enumerate(state) if s > 0 and free[i]]
+    columns = [[row[j] for j in inside] for row in entries]
+    return _point(Piece(columns, constants, inside, below, above, [bounds[i] for i in inside]), values, unit)
+
+
+def _point(piece: Piece, values: list[int], unit: int) -> FacePoint | None:
+    """A point of the piece, x and w over `unit`; x is `values` outside."""
+    solved = solve([piece.columns[i] for i in piece.inside], [[-piece.constants[i]] for i in piece.inside])
+    found = _singular_piece(piece) if solved is None else _nonsingular_piece(piece, *solved)
     if found is None:
         return None
-    n = len(q)
-    x = _spread(n, support, found)
-    w = tuple(sum((a * v for a, v in zip(row, x)), Fraction(0)) + q_i for row, q_i in zip(entries, q))
-    return FacePoint(x, w, not _can_move(columns, support, rest, x, w))
+    inside, w, only = found
+    x = [Fraction(value) for value in values]
+    for place, value in zip(piece.inside, inside, strict=True):
+        x[place] = value
+    if unit != 1:
+        x, w = [value / unit for value in x], tuple(value / unit for value in w)
+    return FacePoint(tuple(x), w, only)
 
 
-def _can_move(columns: Sequence[IntRow], support: Indices, rest: Sequence[int], x: Point, w: Point) -> bool:
+def _nonsingular_piece(piece: Piece, columns: Sequence[Sequence[int]], d: int) -> tuple[Point, Point, bool] | None:
+    numerators = [column[0] for column in columns]
+    if any(
+        (low is not None and v < low * d) or (high is not None and v > high * d)
+        for v, (low, high) in zip(numerators, piece.bounds)
+    ):
+        return None
+    slack = {
+        i: sum(a * v for a, v in zip(piece.columns[i], numerators)) + piece.constants[i] * d
+        for i in range(len(piece.constants))
+        if i not in piece.inside
+    }
+    if any(slack[i] < 0 for i in piece.below) or any(slack[i] > 0 for i in piece.above):
+        return None
+    w = tuple(Fraction(slack.get(i, 0), d) for i in range(len(piece.constants)))
+    return tuple(Fraction(v, d) for v in numerators), w, True
+
+
+def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
+    """By linear programming, in distances from the lower bounds, or upper ones; of what has neither, in two parts."""
+    m = len(piece.inside)
+    signs = [1 if low is not None or high is None else -1 for low, high in piece.bounds]
+    origin = [low if low is not None else high if high is not None else 0 for low, high in piece.bounds]
+    parts = [j for j, ends in enumerate(piece.bounds) if ends == (None, None)]
+
+    def row(values: Sequence[int]) -> list[int]:
+        return [s * v for s, v in zip(signs, values)] + [-values[j] for j in parts]
+
+    def right(i: int) -> int:
+        return -piece.constants[i] - sum(a * v for a, v in zip(piece.columns[i], origin))
+
+    system = [equal(row(piece.columns[i]), right(i)) for i in piece.inside]
+    system += [at_least(row(piece.columns[i]), right(i)) for i in piece.below]
+    system += [at_most(row(piece.columns[i]), right(i)) for i in piece.above]
+    for j, (low, high) in enumerate(piece.bounds):
+        if low is not None and high is not None:
+            system.append(at_most([int(k == j) for k in range(m + len(parts))], high - low))
+    found = feasible_point(system, m + len(parts))
+    if found is None:
+        return None
+    inside = [o + s * v for o, s, v in zip(origin, signs, found)]
+    for k, j in enumerate(parts):
+        inside[j] -= found[m + k]
+    w = piece.w(inside)
+    return tuple(inside), w, not _can_move(piece, inside, w)
+
+
+def _can_move(piece: Piece, x: Sequence[Fraction], w: Point) -> bool:
     """Whether a direction d != 0 leads from x to other solutions of the face (d = up - down, both nonnegative)."""
-    m = len(support)
+    m = len(piece.inside)
 
-    def split(row: IntRow) -> list[int]:
+    def split(row: Sequence[int]) -> list[int]:
         return [*row, *(-v for v in row)]
 
-    cone: list[Constraint] = [equal(split(columns[i])) for i in support]
-    cone += [at_least(split(columns[i])) for i in rest if w[i] == 0]
+    cone: list[Constraint] = [equal(split(piece.columns[i])) for i in piece.inside]
+    cone += [at_least(split(piece.columns[i])) for i in piece.below if w[i] == 0]
+    cone += [at_most(split(piece.columns[i])) for i in piece.above if w[i] == 0]
     units = [split([int(j == k) for j in range(m)]) for k in range(m)]
-    cone += [at_least(units[k]) for k in range(m) if x[support[k]] == 0]
+    cone += [at_least(units[k]) for k in range(m) if x[k] == piece.bounds[k][0]]
+    cone += [at_most(units[k]) for k in range(m) if x[k] == piece.bounds[k][1]]
     moves = [side(unit, right) for unit in units for side, right in ((at_least, 1), (at_most, -1))]
     return any(feasible_point([*cone, move], 2 * m) is not None for move in moves)
+
+
+def bounds_over(values: Sequence[tuple[float, float]]) -> tuple[list[Bound], int]:
+    """Bounds as integers over the least common denominator; an infinite one is None.
+
+    Parameters
+    ----------
+    values : sequence of (lower, upper)
+    """
+    exact = [tuple(Fraction(v) if math.isfinite(v) else None for v in pair) for pair in values]
+    unit = math.lcm(*(v.denominator for pair in exact for v in pair if v is not None))
+    whole = [[None if v is None else int(v * unit) for v in pair] for pair in exact]
+    return [(low, high) for low, high in whole], unit

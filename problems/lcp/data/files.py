@@ -25,7 +25,9 @@ from continuation.archive.datasets import dataset, member, subgroup
 from continuation.archive.image import Image
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.matlab import read_level5
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.models import MODEL_FORMATS, read_model
+from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, sound_sparse
 
 ALONE = ""
@@ -42,7 +44,15 @@ _UNREADABLE = (
     MemoryError, RuntimeError, AttributeError, IndexError, zipfile.BadZipFile, zlib.error, scipy.io.matlab.MatReadError,
 )  # fmt: skip
 
-_WANTED = ("A", "q", "x0")
+_BOUNDS = ("lower", "upper")
+
+_CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
+"""In the name of a file that holds named arrays."""
+
+_PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *_BOUNDS, "rows_lower")
+"""The arguments of `from_qp`; a container with c in place of q is one of a program."""
+
+_WANTED = ("A", "q", "x0", *_PROGRAM)
 """What is looked for in an HDF5 file, which may hold much else."""
 
 _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
@@ -65,13 +75,14 @@ class InputError(ValueError):
         super().__init__(f"{self.argument}: {self.complaint}")
 
 
-def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> LCP:
-    """Read LCP(q, A) from a file.
+def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
+    """Read LCP(q, A), or a problem with bounds, from a file.
 
     Parameters
     ----------
     path : path
-        ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A and q (in HDF5 at the root, in a group ``problem``
+        ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A and q, and lower and upper bounds if there are any,
+        in which JSON's null, as an infinity, is none (in HDF5 at the root, in a group ``problem``
         or in the group named as ``file.h5:/group``); or, with `q` given, A alone as ``.mtx``, ``.npy``, ``.txt``,
         ``.csv`` or the ``.npz`` of `scipy.sparse.save_npz`. A sparse A stays sparse.
     q : path, optional
@@ -91,7 +102,9 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
     else:
         vector = _named(_contents("q", q), "q", "q", q)
     try:
-        problem = LCP(A, _flat(vector))
+        problem: MixedLCP = LCP(A, _flat(vector))
+        if any(name in contents for name in _BOUNDS):
+            problem = MixedLCP(A, _flat(vector), *(_bound(contents, name, path) for name in _BOUNDS))
         if problem.n == 0:
             raise ValueError("A: expected a square matrix, found shape (0, 0)")
         return problem
@@ -99,6 +112,54 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
         at_q = q is not None and str(error).startswith("q:")
         argument, file = ("q", q) if at_q else ("path", path)
         raise InputError(argument, f"{str(error).removeprefix('q: ') if at_q else error}, in {_shown(file)}") from None
+
+
+def read_program(path: str | PathLike[str]) -> Program | None:
+    """Read a quadratic or linear program from a file; None where it holds none.
+
+    Parameters
+    ----------
+    path : path
+        ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and, where there are any, P, G, h, A_eq, b_eq, lower, upper and
+        rows_lower, as for `from_qp`; or ``.qps``, ``.mps`` or ``.lp``, which need highspy.
+
+    Raises
+    ------
+    InputError
+        As for `read_problem`.
+    """
+    if Path(path).suffix.lower() in MODEL_FORMATS and Path(path).is_file():
+        try:
+            return read_model(fspath(path))
+        except (ValueError, ImportError) as error:
+            raise InputError("path", f"{error}, in {_shown(path)}") from None
+    if not _CONTAINERS.search(fspath(path)):
+        return None
+    contents = _contents("path", path)
+    if "c" not in contents or "q" in contents or "A" in contents:
+        return None
+    given: dict[str, Any] = {}
+    for name in _PROGRAM:
+        if name in contents and name in ("h", *_BOUNDS, "rows_lower"):
+            given[name] = _bound(contents, name, path)
+        elif name in contents:
+            value = _named(contents, name, "path", path)
+            given[name] = _flat(value) if name in ("c", "b_eq") else value
+    try:
+        return from_lp(**given) if "P" not in given else from_qp(**given)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise InputError("path", f"{error}, in {_shown(path)}") from None
+
+
+def _bound(contents: Mapping[str, Any], name: str, path: str | PathLike[str]) -> Any:
+    """A vector of bounds, None in a list of JSON being none."""
+    if name not in contents:
+        return None
+    value = contents[name]
+    if isinstance(value, list):
+        none = -math.inf if name in ("lower", "rows_lower") else math.inf
+        value = [none if entry is None else entry for entry in value]
+    return _flat(_named({name: value}, name, "path", path))
 
 
 def read_matrix(path: str | PathLike[str]) -> Matrix:

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 
 
 @frozen
@@ -77,7 +77,7 @@ def matrix_facts(structure: Structure, entries: MatrixFacts | None = None) -> Ma
     return evolve(known, semidefinite=structure.semidefinite)
 
 
-def _off_diagonal(problem: LCP) -> tuple[float, float]:
+def _off_diagonal(problem: MixedLCP) -> tuple[float, float]:
     """The least and the largest entry off the diagonal; zeros where there is none."""
     if problem.sparse:
         entries = problem.A.tocoo()

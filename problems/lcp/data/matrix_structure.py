@@ -14,7 +14,7 @@ from scipy.linalg.lapack import dpotrf
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import Banded
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP
 
 WIDEST_BAND = 16
 """A sparse matrix with at most so many diagonals, the gaps between them counted, is treated as banded."""
@@ -31,6 +31,28 @@ SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
 The rounding of a Cholesky factorisation of order n is at most about n eps of the diagonal (Higham, Theorem 10.3); the
 data themselves, as M M' formed in floating point, are off by as much again.
 """
+
+
+LARGEST_SYMMETRIC_PART = 1000
+"""Of a sparse matrix with bounds A + A' is factored as a dense one where so few of its rows have entries."""
+
+
+def semidefinite(symmetric: Array) -> bool:
+    """Whether a symmetric matrix is positive semidefinite, to working precision: one Cholesky factorisation.
+
+    Parameters
+    ----------
+    symmetric : ndarray, shape (n, n)
+    """
+    diagonal, n = symmetric.diagonal(), len(symmetric)
+    if (diagonal < 0.0).any():
+        return False
+    if (diagonal > 0.0).all() and dpotrf(symmetric, lower=1)[1] == 0:
+        return True
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+    scaled = symmetric * scale * scale[:, None]
+    scaled[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n
+    return bool(dpotrf(scaled, lower=1, overwrite_a=1)[1] == 0)
 
 
 @frozen(eq=False)
@@ -78,10 +100,10 @@ class Structure:
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     """
 
-    problem: LCP
+    problem: MixedLCP | LCP
 
     @property
     def n(self) -> int:
@@ -139,12 +161,21 @@ class Structure:
         diagonal = self.symmetrized.diagonal()
         if (diagonal < 0.0).any():
             return False
+        if self.problem.sparse and not self.problem.standard and self._few_in_symmetric_part():
+            return self._definite_where_it_has_entries()
         if self.problem.sparse:
             return bool((2.0 * diagonal >= np.asarray(abs(self.symmetrized).sum(axis=1))).all())
-        scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-        scaled = self.symmetrized * scale * scale[:, None]
-        scaled[np.diag_indices(self.n)] += SEMIDEFINITE_SHIFT * self.n
-        return bool(dpotrf(scaled, lower=1, overwrite_a=1)[1] == 0)
+        return semidefinite(self.symmetrized)
+
+    def _few_in_symmetric_part(self) -> bool:
+        return int((np.diff(self.symmetrized.indptr) > 0).sum()) <= LARGEST_SYMMETRIC_PART
+
+    def _definite_where_it_has_entries(self) -> bool:
+        """Of the optimality conditions of a program that is P."""
+        S = self.symmetrized
+        S.eliminate_zeros()
+        rows = np.flatnonzero(np.diff(S.indptr) > 0)
+        return not rows.size or semidefinite(S[rows][:, rows].toarray())
 
     def scaled(self, factor: float, columns: Array, diagonal: Array) -> Matrix:
         """``factor A diag(columns) + diag(diagonal)``, shape (n, n), stored as A is.

@@ -1,16 +1,27 @@
-"""The linear complementarity problem: its data, validated, and the error measure used everywhere."""
+"""The linear complementarity problem, with bounds of any kind: its data, validated, and the error measure.
+
+`MixedLCP` is what is solved; `LCP` is that with the bounds 0 and infinity.
+"""
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
+from attrs import Attribute, Factory, field, frozen
+from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
+from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import finite_vector, real_array, sound_sparse
+
+State = NDArray[np.int8]
+"""Of each index: `LOWER`, `BETWEEN` or `UPPER`. Between the bounds w_i = 0 is asked for."""
+
+LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
 
 def _q(value: Any) -> Array:
@@ -33,35 +44,48 @@ def _matrix(value: Any) -> Matrix:
 
 
 @frozen(eq=False)
-class LCP:
-    """LCP(q, A): find x with x >= 0, w = A x + q >= 0 and x_i w_i = 0 for all i.
+class MixedLCP:
+    """Find x in [lower, upper] with w = A x + q >= 0 where x = lower, w <= 0 where x = upper, and w = 0 between.
+
+    An unknown without bounds asks for the equation w_i = 0; one with lower_i = upper_i is fixed, and w_i may be
+    anything. It is the affine variational inequality over a box.
 
     Parameters
     ----------
     A : array_like or scipy sparse, shape (n, n)
         Any real matrix. Integers and float32 are converted; sparse input stays sparse (CSR).
     q : array_like, shape (n,)
-        n may be 0, as where nothing touches in a time step: such a problem is solved.
+    lower, upper : array_like, shape (n,), or one number for all, optional
+        -inf and inf, the defaults, are none.
 
     Raises
     ------
     ValueError
-        If an argument is not numeric, not finite, not square, or of a shape that disagrees.
+        If an argument is not numeric, not finite, not square, of a shape that disagrees, or a lower bound is above its
+        upper one.
 
     References
     ----------
-    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992.
+    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 1.5; Dirkse and Ferris, "The PATH Solver",
+    Optim. Methods Softw. 5, 1995.
     """
 
     A: Matrix = field(converter=_matrix)
     q: Array = field(converter=_q)
+    lower: Array = field(default=None)
+    upper: Array = field(default=None)
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
     """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
 
     @q.validator
-    def _same_order(self, attribute: object, q: Array) -> None:
+    def _same_order(self, attribute: Attribute[Any], q: Array) -> None:
         if q.size != self.A.shape[0]:
             raise ValueError(f"q: expected {self.A.shape[0]} numbers, one a row of A, found {q.size}")
+
+    def __attrs_post_init__(self) -> None:
+        object.__setattr__(self, "lower", bound_vector("lower", self.lower, self.q.size, -math.inf))
+        object.__setattr__(self, "upper", bound_vector("upper", self.upper, self.q.size, math.inf))
+        ordered_bounds(self.lower, self.upper)
 
     @property
     def n(self) -> int:
@@ -72,6 +96,37 @@ class LCP:
     def sparse(self) -> bool:
         """Whether A is stored as a sparse array."""
         return bool(sp.issparse(self.A))
+
+    @cached_property
+    def standard(self) -> bool:
+        """Whether all bounds are 0 and infinity, as those of an `LCP`."""
+        return not self.lower.any() and bool(np.isposinf(self.upper).all())
+
+    @cached_property
+    def fixed(self) -> NDArray[np.bool_]:
+        """Where lower = upper, shape (n,)."""
+        same: NDArray[np.bool_] = self.lower == self.upper
+        return same
+
+    @cached_property
+    def pieces(self) -> int:
+        """How many complementary pieces there are: 3 to the number of boxes, times 2 to that of single bounds."""
+        ends = np.isfinite(self.lower).astype(int) + np.isfinite(self.upper) - 2 * self.fixed
+        return math.prod((ends + 1).tolist())
+
+    @property
+    def near_zero(self) -> Array:
+        """The point nearest to zero between the bounds, shape (n,)."""
+        return self.clipped(np.zeros(self.n))
+
+    def clipped(self, x: Array) -> Array:
+        """The nearest point between the bounds.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        return np.minimum(np.maximum(x, self.lower), self.upper)
 
     def w(self, x: Array) -> Array:
         """A x + q, shape (n,).
@@ -87,8 +142,68 @@ class LCP:
         product: Array = self.A @ x + self.q
         return product
 
+    def natural_map(self, x: Array, w: Array) -> Array:
+        """X - mid(lower, x - w, upper): zero at a solution, and for an LCP min(x, w).
+
+        Parameters
+        ----------
+        x, w : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        return np.maximum(np.minimum(x - self.lower, w), x - self.upper)
+
+    def states(self, x: Array, w: Array) -> State:
+        """On which piece of the natural map a point is: at the lower bound where x - w is not above it, and so on.
+
+        Parameters
+        ----------
+        x, w : ndarray, shape (n,)
+        """
+        moved = x - w
+        return _stated(moved <= self.lower, moved >= self.upper)
+
+    def corrected(self, state: State, x: Array, w: Array) -> State:
+        """The piece that the signs of a point of another one ask for: Newton's method for the natural map.
+
+        Parameters
+        ----------
+        state : State
+        x, w : ndarray, shape (n,)
+            On that piece.
+        """
+        inside, above = state == BETWEEN, state == UPPER
+        # Where lower = upper it stays, whatever w is.
+        low = np.where(inside, x <= self.lower, ~above & ((w >= 0.0) | self.fixed))
+        return _stated(low, np.where(inside, x >= self.upper, above & (w <= 0.0)))
+
+    def at(self, state: State) -> Array:
+        """The bounds at which a state puts x, zero between them; shape (n,).
+
+        Parameters
+        ----------
+        state : State
+        """
+        return np.where(state == LOWER, self.lower, np.where(state == UPPER, self.upper, 0.0))
+
+    def settled(self, x: Array, w: Array) -> Array:
+        """The point with x at its bounds where the piece of the natural map on which it is puts it there.
+
+        Parameters
+        ----------
+        x, w : ndarray, shape (n,)
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        state = self.states(x, w)
+        return np.where(state == BETWEEN, x, self.at(state))
+
     def natural_residual(self, x: Array) -> float:
-        """max_i |min(x_i, w_i)|, absolute.
+        """max_i |x - mid(lower, x - w, upper)|_i, absolute.
 
         Parameters
         ----------
@@ -98,7 +213,7 @@ class LCP:
         -------
         float
         """
-        return float(np.abs(np.minimum(x, self.w(x))).max(initial=0.0))
+        return float(np.abs(self.natural_map(x, self.w(x))).max(initial=0.0))
 
     def scale(self, x: Array) -> float:
         """1 + max(|q|_inf, |A|_inf |x|_inf), by which the natural residual is made relative.
@@ -118,19 +233,6 @@ class LCP:
         """|A|_inf: asked for with every point that is judged."""
         return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
 
-    def with_q(self, q: Any) -> LCP:
-        """LCP(q, A) for another q; what is known of A is not found out again.
-
-        Its rows keep their units, which another q may move by a factor for each part of A that hangs together.
-
-        Parameters
-        ----------
-        q : array_like, shape (n,)
-        """
-        other = LCP(self.A, q)
-        other.known.update(self.known)
-        return other
-
     def relative_residual(self, x: Array) -> float:
         """The natural residual divided by `scale`.
 
@@ -145,7 +247,79 @@ class LCP:
         return self.natural_residual(x) / self.scale(x)
 
 
+def active_state(active: NDArray[np.bool_]) -> State:
+    """The state of an LCP in which w_i = 0 is asked for on an active set.
+
+    Parameters
+    ----------
+    active : ndarray of bool
+    """
+    return np.where(active, BETWEEN, LOWER)
+
+
+def _stated(low: NDArray[np.bool_], high: NDArray[np.bool_]) -> State:
+    state: State = np.where(low, LOWER, np.where(high, UPPER, BETWEEN))
+    return state
+
+
+@frozen(eq=False)
+class LCP(MixedLCP):
+    """LCP(q, A): find x with x >= 0, w = A x + q >= 0 and x_i w_i = 0 for all i; a `MixedLCP` without upper bounds.
+
+    Parameters
+    ----------
+    A : array_like or scipy sparse, shape (n, n)
+        Any real matrix. Integers and float32 are converted; sparse input stays sparse (CSR).
+    q : array_like, shape (n,)
+        n may be 0, as where nothing touches in a time step: such a problem is solved.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not numeric, not finite, not square, or of a shape that disagrees.
+
+    References
+    ----------
+    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992.
+    """
+
+    # Views of one number each: an LCP carries no bounds.
+    lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(0.0, self.q), takes_self=True))
+    upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(math.inf, self.q), takes_self=True))
+
+    def __attrs_post_init__(self) -> None:
+        """Nothing to check."""
+
+    @property
+    def standard(self) -> bool:
+        """True."""
+        return True
+
+    def with_q(self, q: Any) -> LCP:
+        """LCP(q, A) for another q; what is known of A is not found out again.
+
+        Its rows keep their units, which another q may move by a factor for each part of A that hangs together.
+
+        Parameters
+        ----------
+        q : array_like, shape (n,)
+        """
+        other = LCP(self.A, q)
+        other.known.update(self.known)
+        return other
+
+
+def _all(value: float, q: Array) -> Array:
+    return np.broadcast_to(np.array(value), q.shape)
+
+
 def require_lcp(problem: Any) -> None:
     """Raise TypeError unless the argument `problem` is an LCP."""
     if not isinstance(problem, LCP):
+        raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")
+
+
+def require_problem(problem: Any) -> None:
+    """Raise TypeError unless the argument `problem` is an LCP, with bounds or without."""
+    if not isinstance(problem, MixedLCP):
         raise TypeError(f"problem: expected an LCP, found {type(problem).__name__}")

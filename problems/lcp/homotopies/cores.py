@@ -57,6 +57,15 @@ class Pairs:
     sign: int
     """Sign of the determinant of the eliminated part: that of the whole is this times the core's."""
 
+    def known(self, t: Array) -> tuple[Array, Array, Array]:
+        """What right-hand sides t add: to v, to p as it stands in other rows, and to p."""
+        p = self.f * t
+        return self.e * t, p, p
+
+    def row(self, border: Array) -> Array:
+        """The coefficients of k in border . p."""
+        return border * self.b
+
     def of(self, k: Array, r: Array, l: float) -> tuple[Array, Array]:
         """The pair (v, p)."""
         t = r + self.c * l
@@ -74,7 +83,7 @@ def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
     """
     f = 1.0 / x
     ones, zeros = np.ones_like(x), np.zeros_like(x)
-    return Pairs(ones, -s * f, zeros, f, c, _parity(np.count_nonzero(x < 0.0)))
+    return Pairs(ones, -s * f, zeros, f, c, parity(np.count_nonzero(x < 0.0)))
 
 
 @_silently
@@ -92,7 +101,7 @@ def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
     ratio = np.where(swapped, x, s) * -inverse
     ones, zeros = np.ones_like(x), np.zeros_like(x)
     # Each exchange of a v with its p is one exchange of columns.
-    sign = _parity(np.count_nonzero(pivot < 0.0) + np.count_nonzero(swapped))
+    sign = parity(np.count_nonzero(pivot < 0.0) + np.count_nonzero(swapped))
     return Pairs(
         np.where(swapped, ratio, ones),
         np.where(swapped, ones, ratio),
@@ -103,7 +112,13 @@ def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
     )
 
 
-def _parity(count: int | np.intp) -> int:
+def parity(count: int | np.intp) -> int:
+    """1 for an even number of changes of sign, else -1.
+
+    Parameters
+    ----------
+    count : int
+    """
     return -1 if count % 2 else 1
 
 

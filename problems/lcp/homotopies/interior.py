@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from attrs import field, frozen
+from attrs import cmp_using, field, frozen
 from attrs.validators import gt
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 
 LARGEST_FALL = 1e-3
 """A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
@@ -27,20 +29,41 @@ class RelativeMetric:
     ----------
     lam : float
         The parameter's weight.
+    lower, upper : Array of shape (n,), optional
+        Bounds of the first n unknowns, which change relative to their distances from the nearer one; without any
+        bound relative to themselves, but at least to `unit`. Default: zero, for all unknowns.
+    unit : float
     """
 
     lam: float = field(default=1.0, validator=gt(0))
+    lower: Array | None = field(default=None, eq=cmp_using(eq=np.array_equal))
+    upper: Array | None = field(default=None, eq=cmp_using(eq=np.array_equal))
+    unit: float = 1.0
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """1/(N u_i^2), and `lam` for the parameter."""
         n = u.size - 1
         size = np.maximum(np.abs(u), TINY)
+        if self.lower is not None and self.upper is not None:
+            x = u[: self.lower.size]
+            distance = np.minimum(x - self.lower, self.upper - x)
+            relative = np.where(np.isfinite(distance), np.abs(distance), np.maximum(np.abs(x), self.unit))
+            size[: self.lower.size] = np.maximum(relative, TINY)
         if current is not None:
             # The size one step before is 1 / sqrt(n current).
             np.maximum(size, LARGEST_FALL / np.sqrt(n * current), out=size)
         weights: Array = 1.0 / (n * size * size)
         weights[-1] = self.lam
         return weights
+
+
+class OwnMetric:
+    """The metric of a homotopy: of one class, but with the bounds of its problem where there are any."""
+
+    def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
+        """`own_metric`, of the class the metric of an LCP."""
+        metric: RelativeMetric = RelativeMetric() if homotopy is None else homotopy.own_metric
+        return metric
 
 
 def longest_step(value: Array, direction: Array) -> float:
@@ -52,10 +75,14 @@ def longest_step(value: Array, direction: Array) -> float:
         return max(0.0, float((value[falling] / -direction[falling]).min()))
 
 
-def observed(problem: LCP, x: Array) -> dict[str, float]:
-    """The natural residual and the gap x'w, with w = A x + q."""
+def observed(problem: MixedLCP, x: Array) -> dict[str, float]:
+    """The natural residual and the gap x'w; with bounds the distance to that to which w_i points in place of x_i."""
     w = problem.w(x)
-    return {"natural_residual": float(np.abs(np.minimum(x, w)).max()), "gap": float(x @ w)}
+    distance = x
+    if not problem.standard:
+        distance = np.where(w > 0.0, x - problem.lower, x - problem.upper)
+        distance = np.where(np.isfinite(distance), distance, 0.0)
+    return {"natural_residual": float(np.abs(problem.natural_map(x, w)).max()), "gap": float(distance @ w)}
 
 
 def convolved(a: Array, b: Array, k: int) -> Array:

@@ -6,10 +6,12 @@ from collections.abc import Callable, Mapping
 
 from attrs import evolve, frozen
 
+from continuation.arrays import Array
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies.kkt import KKTHomotopy
 from problems.lcp.homotopies.starts import Start
+from problems.lcp.homotopies.stationarity import stationary_homotopy
 from problems.lcp.homotopies.two_vector import (
     KojimaMegiddoMizunoHomotopy,
     TwoVectorHomotopy,
@@ -40,6 +42,8 @@ class Registered:
         Whether its own start must be strictly feasible, so that it has to be found by a linear program.
     example : int
         One of the paper's examples that it solves.
+    bounds : bool
+        Whether it takes problems with bounds other than 0 and infinity.
     """
 
     name: str
@@ -48,13 +52,28 @@ class Registered:
     make: Callable[..., LCPHomotopy]
     feasible: bool = False
     example: int = 2
+    bounds: bool = False
 
-    def at(self, problem: LCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:
+    def from_x0(self, problem: MixedLCP, x0: Array | None, structure: Structure) -> LCPHomotopy:
+        """The homotopy from x0, or its own start; that of "kkt" with bounds is one in (x, z).
+
+        Parameters
+        ----------
+        problem : MixedLCP
+        x0 : ndarray or None
+        structure : Structure
+            Of the problem.
+        """
+        if self.make is KKTHomotopy and not problem.standard:
+            return stationary_homotopy(problem, x0)
+        return self.make(problem, x0, structure=structure)
+
+    def at(self, problem: MixedLCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:
         """The homotopy at a start of all four vectors, feasible or not.
 
         Parameters
         ----------
-        problem : LCP
+        problem : MixedLCP
         start : Start
             A homotopy in (x, y) takes x0 and w0 of it.
         structure : Structure
@@ -62,7 +81,9 @@ class Registered:
         refine : bool
             Whether its bordered solves are corrected to round-off.
         """
-        if self.make is KKTHomotopy:
+        if self.make is KKTHomotopy and not isinstance(problem, LCP):
+            return stationary_homotopy(problem, start.x0)
+        if self.make is KKTHomotopy and isinstance(problem, LCP):
             return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=structure, refine=refine)
         return evolve(self.make(problem, start.x0, start.w0, structure=structure), refine=refine)
 
@@ -71,10 +92,16 @@ HOMOTOPIES: Mapping[str, Registered] = {
     one.name: one
     for one in (
         Registered(
-            "kkt", "KKT", "The KKT homotopy of Dutta, Das and Jana, for any A, from any positive start.", KKTHomotopy
+            "kkt", "KKT", "The KKT homotopy of Dutta, Das and Jana, for any A, from any positive start.", KKTHomotopy,
+            bounds=True,
         ),
-        Registered("wang", "Wang", "Wang's homotopy, for P*-matrices, from any positive start.", WangHomotopy),
-        Registered("yu", "Yu", "Yu's homotopy, for positive semidefinite A, from any positive start.", YuHomotopy),
+        Registered(
+            "wang", "Wang", "Wang's homotopy, for P*-matrices, from any positive start.", WangHomotopy, bounds=True
+        ),
+        Registered(
+            "yu", "Yu", "Yu's homotopy, for positive semidefinite A, from any positive start.", YuHomotopy,
+            bounds=True,
+        ),
         Registered(
             "xu", "Xu", "Xu's homotopy, for P-matrices, from a strictly feasible start.", XuHomotopy, feasible=True
         ),
@@ -84,7 +111,7 @@ HOMOTOPIES: Mapping[str, Registered] = {
         ),
         Registered(
             "kmm", "Kojima", "The central path of Kojima, Megiddo and Mizuno, from any positive start.",
-            KojimaMegiddoMizunoHomotopy,
+            KojimaMegiddoMizunoHomotopy, bounds=True,
         ),
     )
 }  # fmt: skip

@@ -11,7 +11,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
+from problems.options import finite_vector
 
 FAR = (0.7, 2.5)
 """Ten to a power from this interval is the distance of a random start in natural units.
@@ -78,7 +79,48 @@ def positive_vector(name: str, value: Any, n: int) -> Array:
     return array
 
 
-def natural_units(problem: LCP) -> tuple[float, float]:
+def inside_vector(name: str, value: Any, problem: MixedLCP) -> Array:
+    """A copy of `value` as n finite floats strictly between the bounds; for an LCP positive ones.
+
+    Parameters
+    ----------
+    name : str
+        What the message calls it.
+    value : array_like
+    problem : MixedLCP
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, what it held and what was expected.
+    """
+    if problem.standard:
+        return positive_vector(name, value, problem.n)
+    array = finite_vector(name, value, problem.n)
+    bad = ~((array > problem.lower) & (array < problem.upper))
+    if bad.any():
+        i = int(np.argmax(bad))
+        between = f"between {problem.lower[i]} and {problem.upper[i]}"
+        raise ValueError(f"{name}: expected a number {between} at index {i}, found {array[i]}")
+    return array
+
+
+def inside_start(problem: MixedLCP, distance: float = 1.0) -> Array:
+    """The point nearest to zero at a distance from all bounds, or in the middle between two that are nearer.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    distance : float
+    """
+    if problem.standard:
+        return np.full(problem.n, distance)
+    # Halves, as the difference of two bounds may overflow.
+    half = np.minimum(0.5 * problem.upper - 0.5 * problem.lower, distance)
+    return np.minimum(np.maximum(0.0, problem.lower + half), problem.upper - half)
+
+
+def natural_units(problem: MixedLCP) -> tuple[float, float]:
     """Sizes (of x, of w) at which A x and q balance: |q|_inf over the largest row norm of A, and |q|_inf.
 
     One where A or q is zero.
@@ -89,7 +131,7 @@ def natural_units(problem: LCP) -> tuple[float, float]:
     return w / row if 0.0 < row < np.inf else w, w
 
 
-def relaxed_w(problem: LCP, x0: Array, margin: float | Array) -> Array:
+def relaxed_w(problem: MixedLCP, x0: Array, margin: float | Array) -> Array:
     """A x0 + q where all of it is positive, else max(A x0 + q, 0) + margin, componentwise."""
     w = problem.w(x0)
     return w if (w > 0.0).all() else np.maximum(w, 0.0) + margin
@@ -107,24 +149,24 @@ def centred(x0: Array, w0: Array) -> Start:
     return Start(x0, product / x0, product / w0, w0)
 
 
-def default_start(problem: LCP) -> Start:
+def default_start(problem: MixedLCP) -> Start:
     """All components of x alike, in natural units; feasible where that is, else relaxed; centred.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     """
     x, w = natural_units(problem)
     x0 = np.full(problem.n, x)
     return centred(x0, relaxed_w(problem, x0, w))
 
 
-def random_start(problem: LCP, generator: np.random.Generator, distance: tuple[float, float] = FAR) -> Start:
+def random_start(problem: MixedLCP, generator: np.random.Generator, distance: tuple[float, float] = FAR) -> Start:
     """A relaxed start for another try: scale, balance and components random; all products x0 z1 equal, and all w0 z2.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     generator : numpy.random.Generator
         Its state decides, so that restarts can be repeated.
     distance : tuple of float
@@ -132,8 +174,22 @@ def random_start(problem: LCP, generator: np.random.Generator, distance: tuple[f
     """
     x, w = natural_units(problem)
     scale = 10.0 ** generator.uniform(*distance)
+    if not problem.standard:
+        return _random_inside(problem, generator, scale * x, scale * w)
     balance = 10.0 ** generator.normal(*BALANCE)
     x0 = scale * x * np.exp(LOG_DEVIATION * generator.standard_normal(problem.n))
     w0 = np.maximum(problem.w(x0), 0.0) + scale * w * np.exp(LOG_DEVIATION * generator.standard_normal(problem.n))
     product = scale * scale * x * w
     return Start(x0, product / x0, balance * product / w0, w0)
+
+
+def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, w: float) -> Start:
+    """The same for bounds: x0 about as far from the bounds as x, and one w0 for each of them, for forces."""
+    normal = generator.standard_normal((2, problem.n))
+    x0 = inside_start(problem, x) + np.where(np.isinf(problem.lower) & np.isinf(problem.upper), x * normal[0], 0.0)
+    rows, forces = problem.w(x0), []
+    for sign, finite in ((1.0, problem.lower > -np.inf), (-1.0, problem.upper < np.inf)):
+        spread = w * np.exp(LOG_DEVIATION * generator.standard_normal(problem.n))
+        forces.append((np.maximum(sign * rows, 0.0) + spread)[finite])
+    w0 = np.concatenate(forces)
+    return Start(x0, w0, w0, w0)

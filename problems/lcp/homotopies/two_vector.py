@@ -1,4 +1,7 @@
-"""The homotopies in (x, y): Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno; one system, five sets of data."""
+"""The homotopies in (x, y): Yu, Zhao, Xu, Wang, and Kojima, Megiddo and Mizuno; one system, five sets of data.
+
+Those of Yu, Wang, and Kojima, Megiddo and Mizuno take bounds of any kind.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +16,12 @@ from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, require_lcp
+from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.homotopies import references
-from problems.lcp.homotopies.interior import RelativeMetric, convolved, longest_step, observed
+from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
-from problems.lcp.homotopies.starts import positive_vector
+from problems.lcp.homotopies.sides import Sides
+from problems.lcp.homotopies.starts import inside_start, inside_vector, natural_units, positive_vector
 from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import quiet
 
@@ -26,17 +30,20 @@ from problems.options import quiet
 class TwoVectorHomotopy:
     """A blend of ``A x + q = y`` with equations that the start satisfies, and ``x y = lambda x0 y0`` componentwise.
 
+    With bounds l and u, y stands for s - t, and the second equations are ``s (x - l) = lambda s0 (x0 - l)`` where l is
+    finite, ``t (u - x) = lambda t0 (u - x0)`` where u is; the unknowns are (x, s, t).
+
     Made by `YuHomotopy`, `ZhaoHomotopy`, `XuHomotopy`, `WangHomotopy` and `KojimaMegiddoMizunoHomotopy`, which see to
     the start. Where such a path reaches lambda = 0 its end solves the LCP; where it cannot, it diverges.
 
     Attributes
     ----------
     name : str
-    problem : LCP
+    problem : MixedLCP
     blend : Blend
         What tells the five apart.
     x0, y0 : Array
-        The start, positive, shape (n,).
+        The start: x0 between the bounds, shape (n,), and y0 positive, one for each finite bound.
     references : tuple of str
     structure : Structure
     refine : bool
@@ -44,7 +51,7 @@ class TwoVectorHomotopy:
     """
 
     name: str
-    problem: LCP
+    problem: MixedLCP | LCP
     blend: Blend
     x0: Array
     y0: Array
@@ -53,17 +60,34 @@ class TwoVectorHomotopy:
     refine: bool = True
     problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
-    metric: ClassVar[RelativeMetric] = RelativeMetric()
+    metric: ClassVar[OwnMetric] = OwnMetric()
 
     @property
     def n(self) -> int:
-        """The order of A: the unknowns are 2n."""
+        """The order of A: the unknowns of an LCP are 2n."""
         return self.problem.n
 
     @cached_property
+    def sides(self) -> Sides:
+        """The finite bounds."""
+        return Sides(self.problem)
+
+    @cached_property
+    def own_metric(self) -> RelativeMetric:
+        """Relative changes of the forces, and of the distances from the nearest bounds."""
+        if self.problem.standard:
+            return RelativeMetric()
+        return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper, unit=self._unit)
+
+    @cached_property
+    def _unit(self) -> float:
+        """In what an unknown without bounds is large or small."""
+        return natural_units(self.problem)[0]
+
+    @cached_property
     def c(self) -> Array:
-        """X y at the start, shape (n,)."""
-        return self.x0 * self.y0
+        """The distances from the bounds times y at the start; for an LCP X y, shape (n,)."""
+        return self.sides.gaps(self.x0) * self.y0
 
     def start(self) -> tuple[Array, float]:
         """(x0, y0) and 1."""
@@ -71,65 +95,75 @@ class TwoVectorHomotopy:
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H, shape (2n,)."""
+        """H, shape (2n,) for an LCP."""
         n = self.n
         goal, origin = self._ends(y)
-        return np.concatenate([self.blend.sign * ((1.0 - lam) * goal + lam * origin), y[:n] * y[n:] - lam * self.c])
+        products = self.sides.gaps(y[:n]) * y[n:] - lam * self.c
+        return np.concatenate([self.blend.sign * ((1.0 - lam) * goal + lam * origin), products])
 
     def _ends(self, y: Array) -> tuple[Array, Array]:
         """A x + q - y, and what the blend puts in its place at lambda = 1."""
         n, blend = self.n, self.blend
-        dx, dy = y[:n] - self.x0, self.y0 - y[n:]
+        dx, dy = y[:n] - self.x0, self.sides.force(self.y0 - y[n:])
         origin = blend.x * dx + blend.y * dy
         if blend.A:
             origin += blend.A * (self.problem.A @ dx)
-        return self.problem.w(y[:n]) - y[n:], origin
+        return self.problem.w(y[:n]) - self.sides.force(y[n:]), origin
 
     def _system(self, y: Array, lam: float) -> PairSystem:
         goal, origin = self._ends(y)
-        return PairSystem(self.structure, self.blend, lam, y[: self.n], y[self.n :], self.c, origin - goal)
+        x, forces, sides = y[: self.n], y[self.n :], self.sides
+        sizes = x if self.problem.standard else sides.sizes(x, self._unit)
+        return PairSystem(self.structure, sides, self.blend, lam, sides.gaps(x), forces, self.c, origin - goal, sizes)
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) in full, of order 2n, sparse as A is: for reference, the engine uses `bordered`."""
-        s, sign, eye = self._system(y, lam), self.blend.sign, sp.eye_array(self.n)
-        top = [sp.csr_array(sign * s.alpha * self.problem.A) + sign * s.beta * eye, -sign * s.gamma * eye]
-        whole = sp.block_array([top, [sp.diags_array(s.y), sp.diags_array(s.x)]], format="csr")
+        """(H_y, H_lam) in full, for an LCP of order 2n, sparse as A is: for reference, the engine uses `bordered`."""
+        s, sign, eye = self._system(y, lam), self.blend.sign, sp.eye_array(self.n, format="csr")
+        pull = eye if self.problem.standard else sp.diags_array(self.sides.sign) @ eye[self.sides.index]
+        diagonal = sp.diags_array(np.broadcast_to(sign * s.beta, self.n))
+        top = [sp.csr_array(sign * s.alpha * self.problem.A) + diagonal, -sign * s.gamma * pull.T]
+        whole = sp.block_array([top, [sp.diags_array(s.y) @ pull, sp.diags_array(s.gap)]], format="csr")
         column = np.concatenate([sign * s.column, -self.c])
         return (whole if self.problem.sparse else whole.toarray()), column
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """Factor the bordered matrix of order 2n + 1 by way of one of order n + 1; see `factor_pairs`."""
+        """Factor the bordered matrix by way of one of order n + 1; see `factor_pairs`."""
         # Copied, as what is factored must not follow a caller that goes on to change its y in place.
         return factor_pairs(self._system(y.copy(), lam), border.copy(), self.refine)
 
     @quiet
     def differential(self, y: Array, lam: float, v: Array) -> Array:
-        """H' v, shape (2n,)."""
+        """H' v, one shorter than v."""
         return self._system(y, lam).apply(v)
 
     @quiet
     def taylor(self, point: Linearization, order: int) -> Array:
-        """Coefficients of the path in the pseudo-arclength of `point`, shape (order + 1, 2n + 1)."""
+        """Coefficients of the path in the pseudo-arclength of `point`, one a row."""
         n, blend = self.n, self.blend
-        c = np.zeros((order + 1, 2 * n + 1))
+        c = np.zeros((order + 1, point.u.size))
         c[0] = point.u
         c[1:2] = point.tangent
         x, y, lam = c[:, :n], c[:, n:-1], c[:, -1:]
         pull = np.zeros((order + 1, n))
-        defect = np.empty(2 * n)
+        defect = np.empty(point.u.size - 1)
         for k in range(2, order + 1):
             j = k - 1
             slope = self.problem.A @ x[j]
-            pull[j] = blend.sign * (blend.x * x[j] - blend.y * y[j] + blend.A * slope - (slope - y[j]))
+            force = self.sides.force(y[j])
+            pull[j] = blend.sign * (blend.x * x[j] - blend.y * force + blend.A * slope - (slope - force))
             defect[:n] = convolved(lam, pull, k)
-            defect[n:] = convolved(x, y, k)
+            defect[n:] = convolved(self.sides.pull(x), y, k)
             c[k] = point.solve(-defect)
         return c
 
     def max_step(self, u: Array, v: Array) -> float:
-        """How far along v until a component of x or y reaches zero; lambda itself is free."""
-        return longest_step(u[:-1], v[:-1])
+        """How far along v until a bound or a zero of y is reached; lambda itself is free."""
+        if self.problem.standard:
+            return longest_step(u[:-1], v[:-1])
+        n, sides = self.n, self.sides
+        inside = longest_step(sides.gaps(u[:n]), sides.pull(v[:n]))
+        return min(inside, longest_step(u[n:-1], v[n:-1]))
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
         """The natural residual and the gap x'w at x."""
@@ -137,7 +171,7 @@ class TwoVectorHomotopy:
 
 
 def YuHomotopy(
-    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+    problem: MixedLCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
     """Yu et al. 2006, for positive semidefinite A: ``(1-l)(A x + q - y) + l (x - x0)``, ``x y - l x0 y0``.
 
@@ -145,7 +179,8 @@ def YuHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; by default ones, and 1/x0, which makes the second equation the published x y = l e.
+        Positive; by default ones, and 1/x0, which makes the second equation the published x y = l e. With bounds x0 is
+        between them, and y0 has a number for each.
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -154,8 +189,8 @@ def YuHomotopy(
     TypeError, ValueError
         For bad input, naming the argument.
     """
-    x0 = np.ones(_order(problem)) if x0 is None else positive_vector("x0", x0, _order(problem))
-    y0 = 1.0 / x0 if y0 is None else y0
+    x0 = _inside(problem, x0)
+    y0 = 1.0 / Sides(problem).gaps(x0) if y0 is None else y0
     return _made("Yu", problem, Blend(sign=1, x=1), x0, y0, references.YU, structure)
 
 
@@ -212,7 +247,7 @@ def XuHomotopy(
 
 
 def WangHomotopy(
-    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+    problem: MixedLCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
     """Wang et al. 2010, for P*-matrices: ``(1-l)(A x + q) - y + l y0``, ``x y - l x0 y0``.
 
@@ -223,7 +258,7 @@ def WangHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; by default ones, and max(1, |q|).
+        Positive; by default ones, and max(1, |q|). With bounds x0 is between them, and y0 has a number for each.
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -232,13 +267,13 @@ def WangHomotopy(
     TypeError, ValueError
         For bad input, naming the argument.
     """
-    x0 = np.ones(_order(problem)) if x0 is None else x0
-    y0 = np.maximum(1.0, np.abs(problem.q)) if y0 is None else y0
-    return _made("Wang", problem, Blend(sign=1, y=1), x0, y0, references.WANG, structure)
+    x0, sides = _inside(problem, x0), Sides(problem)
+    y0 = np.maximum(1.0, np.abs(problem.q))[sides.index] if y0 is None else y0
+    return _made("Wang", problem, Blend(sign=1, x=_on_free(sides), y=1), x0, y0, references.WANG, structure)
 
 
 def KojimaMegiddoMizunoHomotopy(
-    problem: LCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
+    problem: MixedLCP, x0: Any = None, y0: Any = None, *, structure: Structure | None = None
 ) -> TwoVectorHomotopy:
     """Kojima, Megiddo and Mizuno 1993: ``A x + q - y + l (y0 - A x0 - q)``, ``x y - l x0 y0``.
 
@@ -250,7 +285,8 @@ def KojimaMegiddoMizunoHomotopy(
     ----------
     problem : LCP
     x0, y0 : array_like, shape (n,), optional
-        Positive; by default ones, and max(A x0 + q, 0) + max(1, |q|), so that b > 0.
+        Positive; by default ones, and max(A x0 + q, 0) + max(1, |q|), so that b > 0. With bounds x0 is between
+        them, and y0 has a number for each.
     structure : Structure, optional
         That of the problem, to be shared.
 
@@ -259,12 +295,25 @@ def KojimaMegiddoMizunoHomotopy(
     TypeError, ValueError
         For bad input, naming the argument.
     """
-    x0 = np.ones(_order(problem)) if x0 is None else positive_vector("x0", x0, _order(problem))
+    x0, sides = _inside(problem, x0), Sides(problem)
     if y0 is None:
-        y0 = np.maximum(problem.w(x0), 0.0) + np.maximum(1.0, np.abs(problem.q))
-    return _made(
-        "Kojima-Megiddo-Mizuno", problem, Blend(sign=1, y=1, A=1), x0, y0, references.KOJIMA_MEGIDDO_MIZUNO, structure
-    )
+        y0 = np.maximum(sides.pull(problem.w(x0)), 0.0) + np.maximum(1.0, np.abs(problem.q))[sides.index]
+    blend = Blend(sign=1, x=_on_free(sides), y=1, A=1)
+    return _made("Kojima-Megiddo-Mizuno", problem, blend, x0, y0, references.KOJIMA_MEGIDDO_MIZUNO, structure)
+
+
+def _inside(problem: MixedLCP, x0: Any) -> Array:
+    """x0 between the bounds, checked; by default at a distance of one from them."""
+    require_problem(problem)
+    if problem.fixed.any():
+        i = int(np.argmax(problem.fixed))
+        raise ValueError(f"problem: expected lower < upper, found a fixed unknown {i}; lcp.solve eliminates it")
+    return inside_start(problem) if x0 is None else inside_vector("x0", x0, problem)
+
+
+def _on_free(sides: Sides) -> int | Array:
+    """Where no force is, x - x0 has to fade in its place, so that the matrix at lambda = 1 is not singular."""
+    return 0 if sides.free is None else sides.free
 
 
 def _order(problem: LCP) -> int:
@@ -285,9 +334,8 @@ def _feasible(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
 
 
 def _made(
-    name: str, problem: LCP, blend: Blend, x0: Any, y0: Any, source: str, structure: Structure | None
+    name: str, problem: MixedLCP, blend: Blend, x0: Array, y0: Any, source: str, structure: Structure | None
 ) -> TwoVectorHomotopy:
-    n = _order(problem)
-    x0, y0 = positive_vector("x0", x0, n), positive_vector("y0", y0, n)
+    y0 = positive_vector("y0", y0, Sides(problem).index.size)
     shared = structure if structure is not None else Structure(problem)
     return TwoVectorHomotopy(name, problem, blend, x0, y0, (source, references.DUTTA_DAS_JANA), shared)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -10,12 +11,12 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import LCP, require_lcp
+from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
 from problems.lcp.data.scaling import units
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
-from problems.lcp.proof.rational import IntegerRow, Integers, fractions, integer_rows, solve_exactly
+from problems.lcp.proof.rational import IntegerRow, Integers, fractions, integer_rows, integers, solve_exactly
 from problems.options import finite_vector
 
 __all__ = ["Certificate", "ExactCertificate", "Farkas", "certify", "certify_exactly", "farkas"]
@@ -35,7 +36,10 @@ DROWNED = 1e-6
 
 @frozen(eq=False)
 class Certificate:
-    """How well x solves the LCP, evaluated in twice the working precision.
+    """How well x solves the problem, evaluated in twice the working precision.
+
+    For bounds l, u other than 0 and infinity read |x - mid(l, x - w, u)|_i for |min(x_i, w_i)|, and the distances of
+    x_i from its bounds for x_i.
 
     Attributes
     ----------
@@ -49,9 +53,11 @@ class Certificate:
         whose zeros are exact it is the componentwise backward error: x solves exactly some LCP(q + dq, A + dA) with
         |dq| <= eps |q|, |dA| <= eps |A| for eps = relative_residual, and for no smaller one.
     negative_x, negative_w : float
-        max_i max(-x_i, 0) and max_i max(-w_i, 0): zero at a feasible point.
+        max_i max(-x_i, 0) and max_i max(-w_i, 0): zero at a feasible point. With bounds: how far x is beyond them, and
+        how large a w_i is whose sign they do not allow.
     complementarity : float
-        max_i |x_i w_i|.
+        max_i |x_i w_i|; with bounds the distance from the lower one times a positive w_i, from the upper one times a
+        negative one.
     drowned : float
         By how much a row is off relative to the largest |q_i|, in balanced units (`problems.lcp.data.scaling`). It is
         large at a point that runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
@@ -90,18 +96,18 @@ class Certificate:
         return self.relative_residual <= tolerance and self.drowned <= DROWNED
 
 
-def certify(problem: LCP, x: Array, zero: float = 0.0) -> Certificate:
+def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     """Evaluate the natural residual and its parts at x with compensated arithmetic.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         Dense or sparse.
     x : Array of shape (n,)
     zero : float
-        Entries of x up to this, in natural units (|q|_inf over the largest row norm of A), are taken for zeros, and
-        the certificate is that of the point with zeros there: the end of a path is near a solution whose zeros are
-        exact, and a small x_i may be a large part of row i.
+        Entries of x up to this, in natural units (|q|_inf over the largest row norm of A), are taken for zeros (so
+        near to a bound, for the bound), and the certificate is that of the point with zeros there: the end of a path is
+        near a solution whose zeros are exact, and a small x_i may be a large part of row i.
 
     Raises
     ------
@@ -110,42 +116,60 @@ def certify(problem: LCP, x: Array, zero: float = 0.0) -> Certificate:
     ValueError
         If x is not a finite vector of n numbers.
     """
-    require_lcp(problem)
+    require_problem(problem)
     if problem.n == 0:
         nothing = np.zeros(0)
         return Certificate(nothing, nothing, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     x = finite_vector("x", x, problem.n)
     if zero > 0.0:
-        x = np.where(np.abs(x) <= zero * natural_units(problem)[0], 0.0, x)
+        near = zero * natural_units(problem)[0]
+        x = np.where(np.abs(x - problem.lower) <= near, problem.lower, x)
+        x = np.where(np.abs(x - problem.upper) <= near, problem.upper, x)
+        unbounded = np.isinf(problem.lower) & np.isinf(problem.upper)
+        x = np.where(unbounded & (np.abs(x) <= near), 0.0, x)
     terms = row_terms(problem, x)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         w = np.ldexp(terms.w, terms.exponents)
-        products = np.where((x == 0.0) | (w == 0.0), 0.0, np.abs(x * w))
         relative = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
-    shares = _shares(terms, x, (x < 0.0) | (relative > ROUND_OFF))
+        above, below = x - problem.lower, problem.upper - x
+        distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
+        products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))
+        forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
+    shares = _shares(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
+    if not problem.standard:
+        # A mid of three, in which what was not asked for is infinite.
+        relative = np.maximum(relative, -_shares(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
     off = np.abs(np.minimum(shares, relative))
     return Certificate(
         x=x,
         w=w,
-        residual=float(np.abs(np.minimum(x, w)).max()),
+        residual=float(np.abs(problem.natural_map(x, w)).max()),
         relative_residual=float(off.max()),
-        negative_x=float(np.maximum(-x, 0.0).max()),
-        negative_w=float(np.maximum(-w, 0.0).max()),
+        negative_x=float(np.maximum(np.maximum(-above, -below), 0.0).max()),
+        negative_w=float(np.maximum(forbidden, 0.0).max()),
         complementarity=float(products.max()),
         drowned=_drowned(problem, terms, off),
     )
 
 
-def _shares(terms: Terms, x: Array, asked: NDArray[np.bool_]) -> Array:
-    """Each x_i with its sign, as its largest share in the terms of a row; infinite where that is not asked.
+def _shares(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
+    """Each distance of an x_i from a bound with its sign, as its largest share in the terms of a row; else infinite.
 
-    An x_i in no row at all can be anything but is zero where w_i > 0: any other is off by all of itself.
+    It is infinite where it is not asked for. An x_i in no row at all can be anything but is at its bound where w_i is
+    not zero: any other is off by all of itself.
     """
-    shares = np.where(x == 0.0, 0.0, np.inf)
-    indices = np.flatnonzero(asked & (x != 0.0))
+    shares = np.where(distance == 0.0, 0.0, np.inf)
+    indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
     if indices.size:
         inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
         sizes = np.abs(terms.x[indices])
+        moved = distance[indices] != x[indices]
+        if moved.any():
+            # Over powers of two the rows hold shares of x_i, from which those of the distance follow.
+            with np.errstate(all="ignore"):
+                scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
+            known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
+            sizes = np.where(moved, known, sizes)
         with np.errstate(under="ignore"):
             if sp.issparse(terms.A):
                 columns = abs(sp.csr_array(terms.A)[:, indices])
@@ -155,11 +179,11 @@ def _shares(terms: Terms, x: Array, asked: NDArray[np.bool_]) -> Array:
                 columns = np.abs(terms.A[:, indices])
                 present = (columns > 0.0).any(axis=0)
                 largest = (columns * sizes * inverse[:, None]).max(axis=0)
-        shares[indices] = np.sign(x[indices]) * np.where(present, largest, 1.0)
+        shares[indices] = np.sign(distance[indices]) * np.where(present, largest, 1.0)
     return shares
 
 
-def _drowned(problem: LCP, terms: Terms, off: Array) -> float:
+def _drowned(problem: MixedLCP, terms: Terms, off: Array) -> float:
     """See `Certificate.drowned`; the balanced units are asked for only where a row is off by more than its own q_i."""
     with np.errstate(over="ignore", under="ignore"):
         asked = (off > 0.0) & (off * terms.size > DROWNED * np.abs(np.ldexp(problem.q, -terms.exponents)))
@@ -179,11 +203,11 @@ class ExactCertificate:
     Attributes
     ----------
     solves : bool
-        Whether x >= 0, A x + q >= 0 and x_i w_i = 0 hold exactly: a proof, checked in integers.
+        Whether x >= 0, A x + q >= 0 and x_i w_i = 0 hold exactly, or what the bounds ask in place of that: a proof.
     x, w : tuple of n Fraction, or None
         None if the active set's equations have no solution.
     active : tuple of int
-        The indices with w_i = 0 imposed; x_i = 0 elsewhere.
+        The indices with w_i = 0 imposed; x_i is zero, or at a bound, elsewhere.
     message : str
     """
 
@@ -201,17 +225,18 @@ class ExactCertificate:
         return np.array([float(value) for value in self.x])
 
 
-def certify_exactly(problem: LCP, x: Array) -> ExactCertificate:
-    """Solve on the active set of x in rational arithmetic and decide exactly whether that solves the LCP.
+def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
+    """Solve on the active set of x in rational arithmetic and decide exactly whether that solves the problem.
 
-    The active set is {x_i > w_i}, each relative to the terms of the rows; if its point is not a solution, two more
-    are tried, in which the indices that are zero in both x and w, to `SMALL`, are left out or taken in. On a singular
+    The active set is {x_i > w_i}, each relative to the terms of the rows, or with bounds the piece of the natural map
+    on which x is; if its point is not a solution, two more are tried, in which the indices that are zero in both x and
+    w (at a bound, and zero in w), to `SMALL`, are left out or taken in. On a singular
     active set the dependent entries of x keep their float values, so degenerate and rank-deficient problems have
     certificates too.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         Of any size; its active set is at most `LARGEST_ACTIVE_SET`.
     x : Array of shape (n,)
         An approximate solution.
@@ -221,14 +246,15 @@ def certify_exactly(problem: LCP, x: Array) -> ExactCertificate:
     ValueError
         If x is not a finite vector of n numbers, or its active set is too large.
     """
-    require_lcp(problem)
+    require_problem(problem)
     x = finite_vector("x", x, problem.n)
     rows = integer_rows(problem.A, problem.q)
     first: ExactCertificate | None = None
-    for active in _active_sets(problem, x):
+    for state in _states(problem, x):
+        active = np.flatnonzero(state == BETWEEN)
         if active.size > LARGEST_ACTIVE_SET:
             raise ValueError(f"x: expected an active set of at most {LARGEST_ACTIVE_SET} indices, found {active.size}")
-        found = _exact_point(problem, rows, active, x)
+        found = _exact_point(problem, rows, state, x)
         if found.solves:
             return found
         first = first or found
@@ -236,40 +262,61 @@ def certify_exactly(problem: LCP, x: Array) -> ExactCertificate:
     return first
 
 
-def _active_sets(problem: LCP, x: Array) -> list[NDArray[np.intp]]:
-    """{x > w} relative to the terms of the rows, then without and with the indices where both are about zero."""
+def _states(problem: MixedLCP, x: Array) -> list[State]:
+    """That of x and w relative to the terms of the rows, then without and with what is about zero in both."""
     terms = row_terms(problem, x)
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
-    x = _shares(terms, x, np.ones(problem.n, dtype=bool))
-    doubtful = (np.abs(x) <= SMALL) & (np.abs(w) <= SMALL)
-    sets: list[NDArray[np.intp]] = []
-    for chosen in (x > w, (x > w) & ~doubtful, (x > w) | doubtful):
-        indices = np.flatnonzero(chosen)
-        if not any(np.array_equal(indices, other) for other in sets):
-            sets.append(indices)
-    return sets
+    every = np.ones(problem.n, dtype=bool)
+    above = _shares(terms, x, x - problem.lower, every)
+    below = _shares(terms, x, problem.upper - x, every)
+    nearest = np.where(above <= below, LOWER, UPPER)
+    state = np.where(above <= w, LOWER, np.where(below <= -w, UPPER, BETWEEN))
+    state = np.where(problem.fixed, LOWER, state)
+    doubtful = (np.minimum(np.abs(above), np.abs(below)) <= SMALL) & (np.abs(w) <= SMALL) & ~problem.fixed
+    states: list[State] = []
+    for chosen in (state, np.where(doubtful, nearest, state), np.where(doubtful, BETWEEN, state)):
+        if not any(np.array_equal(chosen, other) for other in states):
+            states.append(chosen)
+    return states
 
 
-def _exact_point(problem: LCP, rows: list[IntegerRow], active: NDArray[np.intp], x: Array) -> ExactCertificate:
+def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Array) -> ExactCertificate:
     """The exact solution on one active set, and its signs."""
+    active = np.flatnonzero(state == BETWEEN)
     chosen = tuple(int(i) for i in active)
-    right = [-rows[i].constant for i in chosen]
-    solution = solve_exactly(_block(rows, active, problem.n), right, x[active])
+    # The equations times 2^shift, by which bounds other than zero become integers.
+    at_bounds, shift = integers(problem.at(state))
+    right = [-rows[i].times(at_bounds, 1 << shift) for i in chosen]
+    solution = solve_exactly(_block(rows, active, problem.n) << shift, right, x[active])
     if solution is None:
         return ExactCertificate(False, None, None, chosen, "The equations w_i = 0 of the active set are inconsistent.")
-    numerators, denominator = [0] * problem.n, solution[1]
+    numerators, denominator = [value * solution[1] for value in at_bounds], solution[1] << shift
     for i, value in zip(chosen, solution[0]):
-        numerators[i] = value
+        numerators[i] = value << shift
     exact_x = fractions(numerators, denominator)
     exact_w = tuple(_fraction_w(row, numerators, denominator) for row in rows)
-    if min(numerators) < 0:
-        message = f"The exact point of the active set has x[{int(np.argmin(numerators))}] < 0."
-        return ExactCertificate(False, exact_x, exact_w, chosen, message)
-    if min(exact_w) < 0:
-        message = f"The exact point of the active set has w[{exact_w.index(min(exact_w))}] < 0."
-        return ExactCertificate(False, exact_x, exact_w, chosen, message)
-    return ExactCertificate(True, exact_x, exact_w, chosen, "Solves the LCP exactly, checked in rational arithmetic.")
+    wrong = _wrong_sign(problem, state, exact_x, exact_w)
+    if wrong:
+        return ExactCertificate(False, exact_x, exact_w, chosen, f"The exact point of the active set has {wrong}.")
+    message = f"Solves the {'LCP' if problem.standard else 'problem'} exactly, checked in rational arithmetic."
+    return ExactCertificate(True, exact_x, exact_w, chosen, message)
+
+
+def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> str:
+    """What forbids the point of a state: the first x_i beyond a bound, or w_i of the wrong sign there; else empty."""
+    for i, value in enumerate(x):
+        low, high = problem.lower[i], problem.upper[i]
+        if low > -math.inf and value < Fraction(low):
+            return f"x[{i}] < {low:g}"
+        if high < math.inf and value > Fraction(high):
+            return f"x[{i}] > {high:g}"
+    for i, value in enumerate(w):
+        if problem.fixed[i] or state[i] == BETWEEN:
+            continue
+        if (value < 0) if state[i] == LOWER else (value > 0):
+            return f"w[{i}] {'<' if state[i] == LOWER else '>'} 0"
+    return ""
 
 
 def _block(rows: list[IntegerRow], active: NDArray[np.intp], n: int) -> Integers:

@@ -10,7 +10,8 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
+from problems.lcp.proof.inequalities import Inequalities
 
 _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.int64(~0x7FFFFFF)
@@ -24,12 +25,12 @@ _LARGE = 1e240
 of products below 1e-260 are no longer exact."""
 
 
-def accurate_w(problem: LCP, x: Array) -> tuple[Array, Array]:
+def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
     """W = A x + q by compensated summation of error-free products, and a bound on the error of each entry.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         Dense or sparse; no copy of A is made.
     x : Array of shape (n,)
         Finite.
@@ -73,12 +74,12 @@ class Terms:
     exponents: NDArray[Any]
 
 
-def row_terms(problem: LCP, x: Array) -> Terms:
+def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     """What each row of A x + q comes to and what it is made of; nothing overflows, and no row underflows.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     x : Array of shape (n,)
         Finite.
     """
@@ -108,17 +109,17 @@ def row_terms(problem: LCP, x: Array) -> Terms:
         moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
         q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
         A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
-        w, size, _ = _rows(LCP(A, q), mantissas)
+        w, size, _ = _rows(Inequalities(A, q), mantissas)
     return Terms(A, mantissas, w, size, exponents)
 
 
-def _rows(problem: LCP, x: Array) -> tuple[Array, Array, int]:
+def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, int]:
     """(w, the sum of the magnitudes of its terms, their number) of each row."""
     total, lost, size, terms = _sparse_sums(problem, x) if problem.sparse else _dense_sums(problem, x)
     return total + lost, size, terms
 
 
-def _filled(problem: LCP, x: Array) -> Any:
+def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
     """Where a row has a term that is not zero."""
     support = x != 0.0
     if not support.any():
@@ -126,10 +127,10 @@ def _filled(problem: LCP, x: Array) -> Any:
     return (problem.q != 0.0) | ((problem.A != 0.0) @ support.astype(float) > 0.0)
 
 
-def _dense_sums(problem: LCP, x: Array) -> tuple[Array, Array, Array, int]:
+def _dense_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, Array, int]:
     """(sum, what it lost, sum of magnitudes, number of terms) of each row, by blocks of rows that stay in the cache."""
     support = np.flatnonzero(x)
-    factors, everywhere = x[support], support.size == problem.n
+    factors, everywhere = x[support], support.size == x.size
     total, lost, size = problem.q.copy(), np.zeros(problem.n), np.abs(problem.q)
     step = max(_BLOCK // max(support.size, 1), 1)
     for begin in range(0, problem.n if support.size else 0, step):
@@ -149,7 +150,7 @@ def _dense_sums(problem: LCP, x: Array) -> tuple[Array, Array, Array, int]:
     return total, lost, size, support.size + 1
 
 
-def _sparse_sums(problem: LCP, x: Array) -> tuple[Array, Array, Array, int]:
+def _sparse_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, Array, int]:
     """The same for a sparse matrix: the k-th stored entry of each row together."""
     total, lost, size = problem.q.copy(), np.zeros(problem.n), np.abs(problem.q)
     stored = sp.csr_array(problem.A)

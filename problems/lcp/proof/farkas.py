@@ -20,9 +20,10 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.problem import LCP, require_lcp
+from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.proof.compensated import row_terms
-from problems.lcp.proof.rational import IntegerRow, Integers, integer_rows, integers, solve_exactly
+from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions_of, inequalities
+from problems.lcp.proof.rational import IntegerRow, Integers, integers, solve_exactly
 
 _HIGHS_TOLERANCE = 1e-10
 """The tightest feasibility tolerance that HiGHS accepts."""
@@ -56,12 +57,15 @@ AFFORDABLE_VERTEX = 100
 class Farkas:
     """A multiplier y >= 0, y != 0, with A'y <= 0 and q'y <= 0, exactly: checked in integers on the float data.
 
+    With bounds y_i may be negative where x_i has no lower one, and is zero where it has two; see `inequalities`.
+
     Attributes
     ----------
     y : tuple of n int
         Without a common factor; any positive multiple proves the same.
     gap : Fraction
-        q'y exactly: negative if no feasible point exists, zero if only no strictly feasible one.
+        q'y exactly, with bounds q'y + sup {(A'y)'x : l <= x <= u}: negative if no feasible point exists, zero if only
+        no strictly feasible one.
     """
 
     y: tuple[int, ...]
@@ -72,26 +76,26 @@ class Farkas:
         """Whether {x >= 0, A x + q >= 0} is proved empty, so that the LCP has no solution."""
         return self.gap < 0
 
-    def in_units(self, problem: LCP, rows: NDArray[np.int64]) -> Farkas:
+    def in_units(self, problem: MixedLCP, rows: NDArray[np.int64]) -> Farkas | None:
         """The multiplier for `problem`, where this one is for the problem whose rows are 2^rows times those of it.
 
         Parameters
         ----------
-        problem : LCP
+        problem : MixedLCP
         rows : ndarray of int, shape (n,)
         """
         least = int(rows.min())
         y = [value << (int(power) - least) for value, power in zip(self.y, rows)]
-        return _farkas(_integers_of(problem).gap, y)
+        return multiplier(problem, y)
 
-    def holds(self, problem: LCP) -> bool:
+    def holds(self, problem: MixedLCP) -> bool:
         """Whether it proves, exactly, that `problem` has no feasible point.
 
         Parameters
         ----------
-        problem : LCP
+        problem : MixedLCP
         """
-        return _integers_of(problem).hold(list(self.y), strict=True)
+        return conditions_of(problem).hold(list(self.y), strict=True)
 
 
 @frozen(eq=False)
@@ -122,16 +126,16 @@ class FloatFarkas:
         ----------
         rows : ndarray of int, shape (n,)
         """
-        y = np.ldexp(self.y, rows - int(rows[self.y > 0.0].max()))
-        return FloatFarkas(y / y.max(), self.error, self.gap)
+        y = np.ldexp(self.y, rows - int(rows[self.y != 0.0].max()))
+        return FloatFarkas(y / np.abs(y).max(), self.error, self.gap)
 
 
-def farkas(problem: LCP) -> Farkas | None:
-    """An exact proof that {x >= 0, A x + q >= 0} is empty, or None.
+def farkas(problem: MixedLCP) -> Farkas | None:
+    """An exact proof that {x >= 0, A x + q >= 0}, or what bounds put in its place, is empty, or None.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         Dense or sparse, of any scaling.
 
     Returns
@@ -143,16 +147,18 @@ def farkas(problem: LCP) -> Farkas | None:
     ----------
     Farkas 1902; Cottle, Pang and Stone, Theorem 2.7.9.
     """
-    require_lcp(problem)
+    require_problem(problem)
     return _multiplier(problem, strict=True)
 
 
-def infeasibility(problem: LCP, seconds: float = math.inf, guess: Array | None = None) -> Farkas | FloatFarkas | None:
+def infeasibility(
+    problem: MixedLCP, seconds: float = math.inf, guess: Array | None = None
+) -> Farkas | FloatFarkas | None:
     """A proof that {x >= 0, A x + q >= 0} is empty: exact, else to working precision, else None.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         Dense or sparse, of any scaling and any order. Tight conditions are solved in rationals up to order
         `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
     seconds : float
@@ -160,16 +166,19 @@ def infeasibility(problem: LCP, seconds: float = math.inf, guess: Array | None =
     guess : Array of shape (n,), optional
         A multiplier to be tried in place of that program's.
     """
-    rows, columns = scales(problem)
-    matrix, vector = scaled_data(problem, rows, columns)
+    system = inequalities(problem)
+    if (system.q >= 0.0).all():
+        return None  # z = 0 is feasible
+    rows, columns = scales(system)
+    matrix, vector = scaled_data(system, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
     if guess is not None:
         guess = guess * rows / max(float((guess * rows).max()), np.finfo(float).tiny)
     guess = _linear_program(matrix, vector, seconds) if guess is None else guess
     if guess is None or not float(vector @ guess) < 0.0 or float((matrix.T @ guess).max()) > _NEARLY_TIGHT:
         return None
-    proof = _exact(problem, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
-    return proof if proof is not None else _nearly(LCP(matrix, vector), guess, rows)
+    proof = _exact(problem, system, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
+    return proof if proof is not None else _nearly(Inequalities(matrix, vector), guess, rows, system, problem.n)
 
 
 def empty_interior(problem: LCP) -> Farkas | None:
@@ -192,7 +201,7 @@ def empty_interior(problem: LCP) -> Farkas | None:
     return _multiplier(problem, strict=False)
 
 
-def scales(problem: LCP) -> tuple[Array, Array]:
+def scales(problem: MixedLCP | Inequalities) -> tuple[Array, Array]:
     """Powers of two r, c, shape (n,): the rows of [A, q] over r and then the columns of A over c have maximum 1."""
     size: Matrix = abs(problem.A)
     largest = np.asarray(size.max(axis=1).toarray()).ravel() if problem.sparse else size.max(axis=1)
@@ -202,7 +211,7 @@ def scales(problem: LCP) -> tuple[Array, Array]:
     return rows, _power_of_two(largest)
 
 
-def scaled_data(problem: LCP, rows: Array, columns: Array) -> tuple[Matrix, Array]:
+def scaled_data(problem: MixedLCP | Inequalities, rows: Array, columns: Array) -> tuple[Matrix, Array]:
     """A and q with rows over `rows` and columns over `columns`; exact, as both are powers of two."""
     if problem.sparse:
         return sp.diags_array(1.0 / rows) @ problem.A @ sp.diags_array(1.0 / columns), problem.q / rows
@@ -214,30 +223,33 @@ def _power_of_two(values: Array) -> Array:
     return np.where(values > 0.0, np.ldexp(1.0, exponents), 1.0)
 
 
-def _multiplier(problem: LCP, strict: bool) -> Farkas | None:
-    rows, columns = scales(problem)
-    matrix, vector = scaled_data(problem, rows, columns)
+def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
+    system = inequalities(problem)
+    rows, columns = scales(system)
+    matrix, vector = scaled_data(system, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
     guess = _linear_program(matrix, vector, math.inf)
     if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
         return None
-    return _exact(problem, matrix, guess, rows, strict, LARGEST_VERTEX)
+    return _exact(problem, system, matrix, guess, rows, strict, LARGEST_VERTEX)
 
 
-def _exact(problem: LCP, matrix: Matrix, guess: Array, rows: Array, strict: bool, largest: int) -> Farkas | None:
+def _exact(
+    problem: MixedLCP, system: Inequalities, matrix: Matrix, guess: Array, rows: Array, strict: bool, largest: int
+) -> Farkas | None:
     """The first candidate near the guess that passes the check in integers."""
     # Checked on the data as given, so that nothing the scaling rounds or underflows can matter.
-    conditions = _integers_of(problem)
+    conditions = conditions_of(system)
     for candidate in _candidates(conditions, matrix, guess, rows, largest):
         if conditions.hold(candidate, strict):
-            return _farkas(conditions.gap, candidate)
+            return multiplier(problem, system.integers_on_rows(candidate, problem.n))
     return None
 
 
-def _nearly(scaled: LCP, guess: Array, rows: Array) -> FloatFarkas | None:
+def _nearly(scaled: Inequalities, guess: Array, rows: Array, system: Inequalities, n: int) -> FloatFarkas | None:
     """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
     y = np.where(guess > _SUPPORT, guess, 0.0)
-    conditions = LCP(_transposed(scaled.A), np.zeros(scaled.n))
+    conditions = Inequalities(_transposed(scaled.A), np.zeros(scaled.A.shape[1]))
     for _ in range(_REFINEMENTS):
         terms = row_terms(conditions, y)
         relative = np.where(terms.size > 0.0, terms.w / np.where(terms.size > 0.0, terms.size, 1.0), 0.0)
@@ -247,8 +259,8 @@ def _nearly(scaled: LCP, guess: Array, rows: Array) -> FloatFarkas | None:
             return None
         gap = float(scaled.q @ y) / size
         if error <= PRECISION and gap <= -CLEAR:
-            given = y / rows
-            return FloatFarkas(given / given.max(), error, -gap)
+            given = system.on_rows(y / rows, n)
+            return FloatFarkas(given / np.abs(given).max(), error, -gap) if given.any() else None
         support, tight = np.flatnonzero(y), np.flatnonzero(np.abs(relative) <= _NEARLY_TIGHT)
         if support.size > LARGEST_REFINED or not tight.size:
             return None
@@ -270,7 +282,8 @@ def _linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | No
     n = vector.size
     total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
     result = linprog(
-        vector, A_ub=_transposed(matrix), b_ub=np.zeros(n), A_eq=total, b_eq=[1.0], bounds=(0, None), method="highs",
+        vector, A_ub=_transposed(matrix), b_ub=np.zeros(matrix.shape[1]), A_eq=total, b_eq=[1.0], bounds=(0, None),
+        method="highs",
         options={"primal_feasibility_tolerance": _HIGHS_TOLERANCE, "dual_feasibility_tolerance": _HIGHS_TOLERANCE,
                  **({"time_limit": seconds} if seconds < math.inf else {})},
     )  # fmt: skip
@@ -280,30 +293,7 @@ def _linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | No
     return solution
 
 
-@frozen
-class _Conditions:
-    """The conditions on a multiplier in integers: the rows (A'y)_j and the row q'y."""
-
-    columns: list[IntegerRow]
-    gap: IntegerRow
-
-    def hold(self, y: list[int], strict: bool) -> bool:
-        """Whether y >= 0, y != 0, A'y <= 0 and q'y <= 0, or < 0 if strict, hold exactly."""
-        if min(y) < 0 or not any(y):
-            return False
-        gap = self.gap.times(y, 1)
-        if gap > 0 or (strict and gap == 0):
-            return False
-        return all(column.times(y, 1) <= 0 for column in self.columns)
-
-
-def _integers_of(problem: LCP) -> _Conditions:
-    """The conditions on a multiplier, on the data as given."""
-    columns = integer_rows(_transposed(problem.A), np.zeros(problem.n))
-    return _Conditions(columns, integer_rows(problem.q[None, :], np.zeros(1))[0])
-
-
-def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Array, order: int) -> Iterator[list[int]]:
+def _candidates(conditions: Conditions, matrix: Matrix, guess: Array, rows: Array, order: int) -> Iterator[list[int]]:
     """Integer multipliers near the scaled guess: small denominators, its own floats, the vertex it approximates."""
     weights = integers(rows.max() / rows)[0]  # y of the data as given is the scaled one over the row scales
     largest = float(guess.max())
@@ -316,7 +306,7 @@ def _candidates(conditions: _Conditions, matrix: Matrix, guess: Array, rows: Arr
     slack = np.asarray(matrix.T @ guess).ravel()
     for tolerance in _TIGHT:
         tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -tolerance)]
-        for equations in (tight, [*tight, conditions.gap]):
+        for equations in (tight, [*tight, conditions.constant]):
             found = _vertex(equations, guess, rows, order)
             if found is not None:
                 yield found
@@ -344,8 +334,15 @@ def _vertex(equations: list[IntegerRow], guess: Array, rows: Array, order: int) 
     return y
 
 
-def _farkas(gap: IntegerRow, y: list[int]) -> Farkas:
-    """The multiplier without a common factor, and its exact gap."""
-    common = gcd(*y)
+def multiplier(problem: MixedLCP, y: list[int]) -> Farkas | None:
+    """The multiplier without a common factor, and its exact gap; None where it proves nothing.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    y : list of n int
+    """
+    common = gcd(*y) or 1
     y = [value // common for value in y]
-    return Farkas(tuple(y), Fraction(gap.times(y, 1), 1 << gap.shift))
+    gap = conditions_of(problem).gap(y)
+    return None if gap is None else Farkas(tuple(y), gap)

@@ -6,8 +6,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.starts import natural_units
+from problems.lcp.homotopies.stationarity import is_stationary
 from problems.lcp.proof.certificate import Certificate, certify_exactly
 from problems.lcp.proof.compensated import accurate_w
 
@@ -29,7 +30,7 @@ NEARLY = 1e-5
 """An end that solves the problem to this but not to the tolerance is an inaccurate solution, not a stationary point."""
 
 
-def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
+def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> bool:
     """Whether the point may be called a solution.
 
     One that passes `Certificate.solves`; but of a small problem, where that is cheap, exact arithmetic has to agree
@@ -37,7 +38,7 @@ def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     certificate : Certificate
         Of the point.
     tolerance : float
@@ -50,14 +51,14 @@ def confirmed(problem: LCP, certificate: Certificate, tolerance: float) -> bool:
     return certify_exactly(problem, certificate.x).solves
 
 
-def exact_nearby(problem: LCP, x: Array) -> bool:
-    """Whether the LCP has a solution, exactly, on the face of x or on one that x touches.
+def exact_nearby(problem: MixedLCP, x: Array) -> bool:
+    """Whether the problem has a solution, exactly, on the face of x or on one that x touches.
 
     Where rounding cannot matter floats prove it; in doubt the equations are solved in rationals.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         Small: dense matrices are made.
     x : ndarray, shape (n,)
         A point that is `confirmed`.
@@ -66,10 +67,10 @@ def exact_nearby(problem: LCP, x: Array) -> bool:
     ----------
     Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
     """
-    return _clearly_exact(problem, x) or certify_exactly(problem, x).solves
+    return (problem.standard and _clearly_exact(problem, x)) or certify_exactly(problem, x).solves
 
 
-def _clearly_exact(problem: LCP, x: Array) -> bool:
+def _clearly_exact(problem: MixedLCP, x: Array) -> bool:
     """Whether floats prove it: the equations of the face, in units of x, have a solution near 1 with w > 0 elsewhere.
 
     With an approximate inverse R of the block B and |I - R B| <= d < 1, B is not singular, and B u = r has
@@ -101,12 +102,14 @@ def _clearly_exact(problem: LCP, x: Array) -> bool:
     return bool(off < 0.5 and (w - bound > 2.0 * off * sizes.sum(axis=1))[~on].all())
 
 
-def stationary(problem: LCP, y: Array) -> bool:
+def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
     That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0: relative to the sizes of x,
     w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference.
     """
+    if not problem.standard:
+        return is_stationary(problem, y) <= STATIONARY
     if y.size != 3 * problem.n:
         return False
     x, z1, z2 = np.split(y, 3)

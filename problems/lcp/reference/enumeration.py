@@ -1,10 +1,12 @@
-"""Every solution of a small problem, by trying all 2^n complementary faces in exact arithmetic."""
+"""Every solution of a small problem, by trying all 2^n complementary faces (3^n pieces for boxes) exactly."""
 
 from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterator
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import scipy.sparse as sp
@@ -12,11 +14,15 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from problems.lcp.classes.exact import Indices, indices, over_common_denominator
-from problems.lcp.classes.faces import FacePoint, face_point
-from problems.lcp.data.problem import LCP, require_lcp
+from problems.lcp.classes.faces import FacePoint, bounds_over, face_point, piece_point
+from problems.lcp.data.problem import LCP, MixedLCP, require_lcp
 
 LARGEST_FACES = 14
-"""Largest order: 2^14 faces (1.2 s for integers of one digit)."""
+"""Largest order: 2^14 faces (1.2 s for integers of one digit); so many pieces where there are bounds."""
+
+PER_PIECE = 3
+"""Unknowns of a problem with bounds, as a multiple of the order of an LCP with as many faces: those without bounds make
+a piece larger, and no further ones."""
 
 
 @frozen
@@ -137,13 +143,24 @@ def _float(value: Fraction) -> float:
         return math.inf
 
 
-def exhaust(problem: LCP, seconds: float = math.inf) -> Exhaustion | None:
-    """Whether the LCP has a solution, decided like `solve_by_enumeration`, which goes on to find all of them.
+def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
+    """Whether the problem has at most as many pieces as an LCP of that order has faces.
 
     Parameters
     ----------
-    problem : LCP
-        Dense or sparse, n at most `LARGEST_FACES`.
+    problem : MixedLCP
+    order : int
+    """
+    return problem.n <= PER_PIECE * order and problem.pieces <= 1 << order
+
+
+def exhaust(problem: MixedLCP, seconds: float = math.inf) -> Exhaustion | None:
+    """Whether the problem has a solution, decided like `solve_by_enumeration`, which goes on to find all of them.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+        Dense or sparse, `decidable`: for an LCP, n at most `LARGEST_FACES`.
     seconds : float
         After so long it is given up.
 
@@ -158,20 +175,32 @@ def exhaust(problem: LCP, seconds: float = math.inf) -> Exhaustion | None:
         If n is larger.
     """
     entries, q, _ = _integers(problem)
+    bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
     end = time.perf_counter() + seconds
-    for mask in range(1 << problem.n):
-        point = face_point(entries, q, indices(mask))
+    tried = 0
+    for state in _all_states(problem):
+        tried += 1
+        point = piece_point(entries, q, bounds, unit, state)
         if point is not None:
-            return Exhaustion(point.x, mask + 1)
+            return Exhaustion(point.x, tried)
         if time.perf_counter() > end:
             return None
-    return Exhaustion(None, 1 << problem.n)
+    return Exhaustion(None, tried)
 
 
-def _integers(problem: LCP) -> tuple[list[list[int]], list[int], int]:
+def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
+    """Every state, the first index changing most often; a fixed one is at its lower bound."""
+    choices = []
+    for low, high in zip(problem.lower[::-1], problem.upper[::-1]):
+        inside = () if low == high else (0,)
+        choices.append((*((-1,) if low > -math.inf else ()), *inside, *((1,) if inside and high < math.inf else ())))
+    return (state[::-1] for state in product(*choices))
+
+
+def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
     """The entries of A and of q as integers over one scale; ValueError where the faces are too many."""
     n = problem.n
-    if n > LARGEST_FACES:
+    if not decidable(problem):
         raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
     dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     flat, scale = over_common_denominator([Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())])

@@ -7,17 +7,23 @@ import time
 
 import numpy as np
 from attrs import evolve
+from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.counts import Counts
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.fixed import WithoutFixed
+from problems.lcp.data.problem import MixedLCP
+from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.proof.certificate import certify
-from problems.lcp.proof.farkas import Farkas, FloatFarkas
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby
 from problems.lcp.reference.enumeration import exhaust
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
+
+MOST_LISTED = 5
+"""Fixed unknowns that a message names."""
 
 
 def answer(search: Search, message: str) -> Solution:
@@ -43,7 +49,7 @@ def answer(search: Search, message: str) -> Solution:
         search.exhaustion,
         proof if isinstance(proof, FloatFarkas) else None,
     )
-    return evolve(found, message=" ".join(part for part in (str(found.outcome), found.proof, message) if part))
+    return evolve(found, message=" ".join(part for part in (found.sentence, found.proof, message) if part))
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:
@@ -65,12 +71,12 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
     return Outcome.NOT_FOUND
 
 
-def unscaled(problem: LCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
+def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
     """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
         As given.
     scaled : Scaled
         What was solved in its place.
@@ -86,7 +92,7 @@ def unscaled(problem: LCP, scaled: Scaled, found: Solution, tolerance: float) ->
     exact, nearly = found.farkas, found.float_farkas
     if exact is not None:
         moved = exact.in_units(problem, scaled.rows)
-        if not scaled.exact and not moved.holds(problem):
+        if moved is None or not moved.gap < 0:
             message = f"{Outcome.NOT_FOUND} A Farkas vector fails for the digits that scaling lost. {found.message}"
             return evolve(found, outcome=Outcome.NOT_FOUND, certificate=None, message=message, farkas=None)
         found = evolve(found, farkas=moved)
@@ -95,12 +101,79 @@ def unscaled(problem: LCP, scaled: Scaled, found: Solution, tolerance: float) ->
     return found if found.x is None else _at(found, scaled.x(found.x), tolerance)
 
 
-def beyond_floats(problem: LCP, tolerance: float) -> Solution:
+def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
+    """The answer to a problem from that to what is left without its fixed unknowns; what was proved is proved again.
+
+    Parameters
+    ----------
+    small : WithoutFixed
+    rest : Solution or None
+        None where nothing is left.
+    tolerance : float
+        Of the relative residual.
+    """
+    problem = small.whole
+    said = f"Fixed, and eliminated: {_listed(np.flatnonzero(problem.fixed))}."
+    if rest is None:
+        certificate = certify(problem, small.x(None))
+        message = f"{Outcome.SOLVED} All unknowns are fixed."
+        return Solution(problem, Outcome.SOLVED, message, certificate, (), -1, Counts(), 0.0)
+    found = evolve(rest, problem=problem, message=f"{rest.message} {said}")
+    if found.exhaustion is not None:
+        found = evolve(found, exhaustion=exhaust(problem))
+    if found.farkas is not None:
+        y = [0] * problem.n
+        for i, value in zip(small.kept, found.farkas.y):
+            y[i] = value
+        found = evolve(found, farkas=multiplier(problem, y))
+    if found.float_farkas is not None:
+        whole = np.zeros(problem.n)
+        whole[small.kept] = found.float_farkas.y
+        found = evolve(found, float_farkas=evolve(found.float_farkas, y=whole))
+    exhausted = found.exhaustion is not None and not found.exhaustion.solvable
+    if found.outcome is Outcome.UNSOLVABLE and found.farkas is None and not exhausted:
+        message = f"{Outcome.NOT_FOUND} Its proof fails for the rounding of what fixed unknowns add. {found.message}"
+        found = evolve(found, outcome=Outcome.NOT_FOUND, message=message)
+    if rest.x is None:
+        return found
+    found = _at(found, small.x(rest.x), tolerance)
+    # The equations of what is left have a q that was rounded.
+    if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
+        exact = exact_nearby(problem, found.x)
+        found = found if exact else evolve(found, outcome=Outcome.SOLVED_TO_PRECISION)
+    return found
+
+
+def of_program(program: Program, found: Solution) -> Solution:
+    """The answer to a program from that to its optimality conditions.
+
+    Parameters
+    ----------
+    program : Program
+    found : Solution
+    """
+    parts = [found.message]
+    if found.success and not program.convex:
+        parts.append("P is not positive semidefinite: this is a KKT point, and need not be a minimum.")
+    if found.farkas is not None:
+        parts.append(program.reading(np.array([value != 0 for value in found.farkas.y])))
+    elif found.float_farkas is not None:
+        parts.append(program.reading(found.float_farkas.y))
+    return evolve(found, program=program, message=" ".join(part for part in parts if part))
+
+
+def _listed(indices: NDArray[np.intp]) -> str:
+    """Unknowns by index, the first few of many."""
+    shown = ", ".join(f"x[{i}]" for i in indices[:MOST_LISTED])
+    return shown if indices.size <= MOST_LISTED else f"{shown} and {indices.size - MOST_LISTED} more"
+
+
+def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
     """The answer to a small problem whose entries are too far apart for floats: by exact arithmetic alone.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     tolerance : float
         Of the relative residual.
     """

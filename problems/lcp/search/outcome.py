@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from enum import IntEnum
 
 import numpy as np
@@ -12,7 +13,8 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
+from problems.lcp.data.program import Program
 from problems.lcp.proof.certificate import Certificate
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.reference.enumeration import Exhaustion
@@ -52,6 +54,17 @@ _SENTENCES = {
     Outcome.SOLVED_TO_PRECISION: "Solved to working precision: x solves an LCP whose entries differ from these in "
     "their last digits; in exact arithmetic the face of x holds no solution, so the data as given may have none.",
 }
+_WITH_BOUNDS = {
+    Outcome.SOLVED: "Solved: x is between its bounds, and w has the signs that these ask for, to the tolerance, each "
+    "row relative to its own terms, verified in twice the working precision.",
+    Outcome.UNSOLVABLE: "The problem has no solution, which is proved exactly.",
+    Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x between the bounds gives w the signs that a solution "
+    "has, complementary or not: a multiplier says so but for rounding.",
+}
+_PROOFS_WITH_BOUNDS = {
+    "farkas": "A Farkas vector, verified exactly, proves that no x between the bounds gives w the signs of a solution.",
+    "exhaustion": "None of the complementary pieces holds a solution: all were tried in exact arithmetic.",
+}
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
     "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried in exact arithmetic.",
@@ -65,7 +78,7 @@ class Solution:
 
     Attributes
     ----------
-    problem : LCP
+    problem : MixedLCP
     outcome : Outcome
     message : str
         What was done, in what order and why, and what the outcome means.
@@ -85,9 +98,11 @@ class Solution:
         What trying all faces in exact arithmetic came to, where that was done: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
         The vector y of INFEASIBLE_TO_PRECISION.
+    program : Program or None
+        What the problem was made of, where that is a quadratic program: `named` and `objective` read it.
     """
 
-    problem: LCP
+    problem: MixedLCP
     outcome: Outcome
     message: str
     certificate: Certificate | None
@@ -98,6 +113,7 @@ class Solution:
     farkas: Farkas | None = None
     exhaustion: Exhaustion | None = None
     float_farkas: FloatFarkas | None = None
+    program: Program | None = None
 
     @property
     def proof(self) -> str:
@@ -106,7 +122,14 @@ class Solution:
             return _PROOFS["unrepresented"]
         if self.outcome is not Outcome.UNSOLVABLE:
             return ""
-        return _PROOFS["farkas" if self.farkas is not None else "exhaustion"]
+        return (_PROOFS if self.problem.standard else _PROOFS_WITH_BOUNDS)[
+            "farkas" if self.farkas is not None else "exhaustion"
+        ]
+
+    @property
+    def sentence(self) -> str:
+        """What the outcome means for this problem."""
+        return str(self.outcome) if self.problem.standard else _WITH_BOUNDS.get(self.outcome, str(self.outcome))
 
     def __repr__(self) -> str:
         found = "no point" if self.certificate is None else f"residual {self.residual:.1e}"
@@ -133,8 +156,25 @@ class Solution:
         return None if self.certificate is None else self.certificate.w
 
     @property
+    def named(self) -> Mapping[str, Array]:
+        """The unknowns by name: of a program x, `equations`, `rows` and `bounds` (see `Program`), else x and w.
+
+        Empty without a point.
+        """
+        if self.x is None or self.w is None:
+            return {}
+        return {"x": self.x, "w": self.w} if self.program is None else self.program.named(self.x, self.w)
+
+    @property
+    def objective(self) -> float:
+        """Of the program at x; NaN where there is no program, or no point."""
+        if self.program is None or self.x is None:
+            return math.nan
+        return self.program.objective(self.x[: self.program.n])
+
+    @property
     def residual(self) -> float:
-        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point."""
+        """The natural residual max_i |min(x_i, w_i)|, absolute; infinite without a point. See `Certificate`."""
         return math.inf if self.certificate is None else self.certificate.residual
 
     @property

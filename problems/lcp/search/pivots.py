@@ -6,7 +6,7 @@ import numpy as np
 
 from problems.lcp.active_set.face import Mask
 from problems.lcp.active_set.iteration import Policy
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, active_state
 from problems.lcp.pivoting.almost import AlmostComplementary, Ended
 from problems.lcp.pivoting.starts import Game, covering
 from problems.lcp.proof.farkas import infeasibility
@@ -56,6 +56,7 @@ def by_lemke(search: Search, seed: int) -> bool:
         Of covering vectors.
     """
     problem = search.problem
+    assert isinstance(problem, LCP)
     most = most_pivots(problem.n)
     bounds = constraints(problem)
     if bounds.any():
@@ -103,6 +104,7 @@ def by_lemke_howson(search: Search) -> bool:
     search : Search
         Takes up what is found.
     """
+    assert isinstance(search.problem, LCP)
     game = Game.of(search.problem)
     if game is None:
         return False
@@ -114,4 +116,4 @@ def by_lemke_howson(search: Search) -> bool:
 
 
 def _reached(search: Search, path: AlmostComplementary, ended: Ended) -> bool:
-    return ended is Ended.REACHED and search.settle(path.active, AT_END)
+    return ended is Ended.REACHED and search.settle(active_state(path.active), AT_END)

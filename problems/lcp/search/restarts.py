@@ -25,7 +25,7 @@ from continuation.step.tracer import Observer
 from continuation.tolerance import Tolerance
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish, smallest_parameter
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy
 from problems.lcp.homotopies.starts import FAR, Start, random_start
@@ -77,18 +77,18 @@ def search_preset(n: int) -> Preset:
     )
 
 
-def reweighted(problem: LCP, weights: Array | None, path: Path) -> Array | None:
+def reweighted(problem: MixedLCP, weights: Array | None, path: Path) -> Array | None:
     """Weights of the x_i w_i in the objective after a path that failed: those that are not zero at its end gain.
 
     Parameters
     ----------
-    problem : LCP
+    problem : MixedLCP
     weights : Array or None
         Those of the path, shape (n,); None for ones.
     path : Path
         The one that failed; its first n unknowns are x.
     """
-    if not path.steps:
+    if not path.steps or not problem.standard:
         return weights
     x = np.maximum(path.endpoint.y[: problem.n], 0.0)
     products = x * np.maximum(problem.w(x), 0.0)

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from typing import Any
 
-import numpy as np
-from attrs import define, field, frozen
+from attrs import define, evolve, field, frozen
 
 from continuation.archive import PathLog
 from continuation.arrays import Array
@@ -17,10 +16,10 @@ from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.tracer import Observer
-from problems.lcp.active_set.face import Faces, Mask
+from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import LCPHomotopy
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
@@ -36,6 +35,11 @@ IN_FLIGHT = 64
 
 A constant, since restart k goes on from restart k - IN_FLIGHT: the answer must not depend on the number of workers.
 """
+
+ZEROS = (0.0, 1e-14, 1e-12)
+"""What is taken for zero at the end of a path with bounds, in natural units: the first that leaves the least residual.
+
+The end of a linear program is degenerate, and a row of zeros is exact only where they are."""
 
 LARGEST_KEPT = 4_000_000
 """Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
@@ -98,7 +102,7 @@ class Search:
     _kept: int = field(default=0, init=False)
 
     @property
-    def problem(self) -> LCP:
+    def problem(self) -> MixedLCP:
         """The problem."""
         return self.structure.problem
 
@@ -129,7 +133,7 @@ class Search:
     def make_dense(self) -> None:
         """Store the matrix dense from here on."""
         problem = self.problem
-        self.structure = Structure(LCP(problem.A.toarray(), problem.q))
+        self.structure = Structure(evolve(problem, A=problem.A.toarray()))
         if self.finish is not None:
             self.finish.faces = Faces(self.structure)
 
@@ -137,13 +141,17 @@ class Search:
         """Take a point that no path led to into account."""
         self.ends.append(Candidate(certificate, -1, False))
 
-    def settle(self, active: Mask, policy: Policy) -> bool:
+    def settle(self, state: State, policy: Policy) -> bool:
         """Try active sets from a guess; whether that led to a solution."""
-        return self._finished(lambda finish: finish.settle(active, policy))
+        return self._finished(lambda finish: finish.settle(state, policy))
 
-    def settle_proximally(self, active: Mask | None = None) -> bool:
+    def settle_proximally(self, state: State | None = None) -> bool:
         """The same by the proximal method, from a guess or from the last active set tried."""
-        return self._finished(lambda finish: finish.proximal_active_set(active))
+        return self._finished(lambda finish: finish.proximal_active_set(state))
+
+    def descend(self, state: State) -> bool:
+        """Whether descent in a box, from a guess, led to a solution."""
+        return self._finished(lambda finish: finish.descend(state))
 
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.finish is None:
@@ -175,15 +183,20 @@ class Search:
 
     def _certified(self, path: Path, arrived: bool) -> Certificate:
         """The certificate of a path's end, which the finish brings to round-off where it can."""
-        x = np.maximum(path.endpoint.y[: self.problem.n], 0.0)
+        x = self.problem.clipped(path.endpoint.y[: self.problem.n])
         end = certify(self.problem, x)
         if arrived and not self.confirmed(end):
             zeros = certify(self.problem, x, self.tolerance)
             end = zeros if zeros.relative_residual < end.relative_residual else end
+        if arrived and not self.problem.standard:
+            # What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
+            settled = self.problem.settled(end.x, end.w)
+            exact = (certify(self.problem, settled, zero) for zero in (*ZEROS, self.tolerance))
+            end = min(end, *exact, key=lambda one: one.relative_residual)
         if self.finish is None or not arrived or end.relative_residual <= ROUND_OFF:
             return end
         before = self.finish.counts.factorizations
-        polished = self.finish.settle(x > end.w, Policy(steps=0), x)
+        polished = self.finish.settle(self.problem.states(x, end.w), Policy(steps=0), x)
         self.counts.factorizations += self.finish.counts.factorizations - before
         return self.finish.certificate if polished is not None and self.finish.certificate is not None else end
 
@@ -254,10 +267,10 @@ class Search:
     def record(self, path: Path, homotopy: LCPHomotopy) -> None:
         """Put a path into the archive, if there is one, that was not traced here."""
         if self.log is not None:
-            show(path, homotopy, Padded(self.log, 3 * self.problem.n))
+            show(path, homotopy, Padded(self.log, (3 if self.problem.standard else 6) * self.problem.n))
 
     def _observers(self) -> tuple[Observer, ...]:
-        archive = () if self.log is None else (Padded(self.log, 3 * self.problem.n),)
+        archive = () if self.log is None else (Padded(self.log, (3 if self.problem.standard else 6) * self.problem.n),)
         if not self.progress:
             return archive
         from continuation.progress import Progress

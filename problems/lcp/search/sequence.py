@@ -14,7 +14,7 @@ from problems.lcp.active_set.face import Face, Faces, Mask
 from problems.lcp.active_set.finish import PATIENCE, Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import BETWEEN, LCP, active_state
 from problems.lcp.data.scaling import SMALLEST, Scaled, balanced
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
@@ -109,11 +109,11 @@ class Solver:
             moved = np.ldexp(problem.q, scaled.rows)
             if not np.isfinite(moved).all() or (np.frexp(moved)[1][problem.q != 0.0] <= SMALLEST).any():
                 return None
-            current = self._structure.problem.with_q(moved)
+            current = self._scaled_lcp().with_q(moved)
         finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
         search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf), None, False, {})
         message = "Solved by the active set of a problem nearby, corrected."
-        if not search.settle(current.q < 0.0 if guess is None else guess, WARM):
+        if not search.settle(active_state(current.q < 0.0 if guess is None else guess), WARM):
             if not self._pivoted(search):
                 return None
             message = "Solved by pivots along a path from a problem nearby."
@@ -121,12 +121,19 @@ class Solver:
         found = found if scaled is None else unscaled(problem, scaled, found, self.tolerance)
         if not found.solved:
             return None
-        self._active = finish.tried.last
+        assert finish.tried.last is not None
+        self._active = finish.tried.last == BETWEEN
         return found
+
+    def _scaled_lcp(self) -> LCP:
+        assert self._structure is not None
+        assert isinstance(self._structure.problem, LCP)
+        return self._structure.problem
 
     def _pivoted(self, search: Search) -> bool:
         """Follow LCP(q + t (q before - q), A) from t = 1 to 0, else Lemke's path; whether that led to a solution."""
         problem = search.problem
+        assert isinstance(problem, LCP)
         if problem.n > LARGEST:
             return False
         begins: list[tuple[Array, Mask | None]] = [(np.ones(problem.n), None)]
@@ -136,7 +143,7 @@ class Solver:
             path = covering(problem, d, basis)
             if path is not None and path.run(most_pivots(problem.n)) is Ended.REACHED:
                 self._basis, self._solved = path.active, problem.q
-                if search.settle(path.active, AT_END):
+                if search.settle(active_state(path.active), AT_END):
                     return True
         return False
 

@@ -26,17 +26,21 @@ from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
-from problems.lcp.data.problem import LCP, require_lcp
+from problems.lcp.data.fixed import without_fixed
+from problems.lcp.data.problem import LCP, MixedLCP, require_problem
+from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import balanced, extreme
-from problems.lcp.homotopies import KKTHomotopy, Structure
+from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
 from problems.lcp.homotopies.registry import HOMOTOPIES
-from problems.lcp.homotopies.starts import positive_vector
+from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
-from problems.lcp.search.judging import answer, beyond_floats, unscaled
+from problems.lcp.reference.enumeration import decidable
+from problems.lcp.search.case import Case
+from problems.lcp.search.judging import answer, beyond_floats, of_program, unscaled, with_fixed
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Search
-from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case, settled_by
+from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, settled_by
 from problems.lcp.search.work import default_budget
 from problems.options import finite_vector
 
@@ -50,7 +54,7 @@ MOST_RESTARTS = 1000
 
 @documented
 def solve(
-    problem: LCP,
+    problem: MixedLCP | Program,
     homotopy: str = "auto",
     *,
     x0: Any = None,
@@ -65,15 +69,15 @@ def solve(
     executor: Executor | None = None,
     **options: Unpack[PartOptions],
 ) -> Solution:
-    """Solve LCP(q, A).
+    """Solve an LCP(q, A), a problem with bounds, or a quadratic program.
 
     Parameters
     ----------
-    problem : LCP
+    problem : LCP, MixedLCP or Program
     homotopy : str
         "auto": what is cheap and cannot mislead first (active sets, pivots, few faces), then Wang's path, then the KKT
         path, then all complementary faces up to order 12, then restarts (`search.strategy` has the order). Or one of
-        "kkt", "wang", "yu", "xu", "zhao", "kmm".
+        "kkt", "wang", "yu", "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
         A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start. For
         "auto" zeros are welcome, as in the solution of a problem nearby: where x0 > A x0 + q is tried first.
@@ -116,20 +120,40 @@ def solve(
     ----------
     Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
     """
-    require_lcp(problem)
+    if isinstance(problem, Program):
+        found = solve(
+            problem.problem, homotopy, x0=x0, finish=finish, path=path, restarts=restarts, seed=seed, budget=budget,
+            tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
+        )  # fmt: skip
+        return of_program(problem, found)
+    require_problem(problem)
+    if problem.standard and not isinstance(problem, LCP):
+        problem = LCP(problem.A, problem.q)
     if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
         given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
         raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
     automatic = homotopy == "auto"
+    if not automatic and not problem.standard and not HOMOTOPIES[homotopy].bounds:
+        known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
+        raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
     _check_arguments(tolerance, restarts, seed, finish, budget, executor, options)
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
     if problem.n == 0:
         return _nothing(problem, archive)
     start = None if x0 is None else _start(x0, problem, automatic)
+    if problem.fixed.any():
+        small = without_fixed(problem)
+        if start is not None:
+            start = start[small.kept]
+        rest = None if small.problem is None else solve(
+            small.problem, homotopy, x0=start, finish=finish, path=path, restarts=restarts, seed=seed, budget=budget,
+            tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
+        )  # fmt: skip
+        return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
     scaled = balanced(problem) if automatic or extreme(problem) else None
-    beyond = scaled is not None and not scaled.exact and problem.n <= LARGEST_DECIDED
+    beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
         scaled = None
     if scaled is not None and start is not None:
@@ -144,7 +168,8 @@ def solve(
         progress,
         dict(options),
     )
-    case = Case(search, start, "kkt" if automatic else homotopy, restarts, seed, executor)
+    asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
+    case = Case(search, start, asked, restarts, seed, executor)
     strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
     with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
@@ -157,6 +182,14 @@ def solve(
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)
         return found
+
+
+def _unfixed(problem: MixedLCP) -> MixedLCP:
+    """The problem without bounds where they are equal: a start may be anything there."""
+    if not problem.fixed.any():
+        return problem
+    none = np.where(problem.fixed, np.inf, 0.0)
+    return MixedLCP(problem.A, problem.q, problem.lower - none, problem.upper + none)
 
 
 def _check_arguments(
@@ -180,8 +213,10 @@ def _check_arguments(
     checked(options)
 
 
-def _start(x0: Any, problem: LCP, automatic: bool) -> Array:
+def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
     """A start of a path is positive; for "auto" it may have zeros, in place of which paths take small numbers."""
+    if not problem.standard:
+        return inside_vector("x0", x0, _unfixed(problem))
     if not automatic:
         return positive_vector("x0", x0, problem.n)
     start = finite_vector("x0", x0, problem.n)
@@ -191,7 +226,7 @@ def _start(x0: Any, problem: LCP, automatic: bool) -> Array:
     return start
 
 
-def _nothing(problem: LCP, archive: Any) -> Solution:
+def _nothing(problem: MixedLCP, archive: Any) -> Solution:
     """The answer to a problem without unknowns."""
     if archive is not None:
         raise ValueError("archive: expected None for a problem without unknowns, of which there is no path")
@@ -215,16 +250,20 @@ def _account(case: Case, settled: Attempt | None) -> str:
 
 
 def _archive_without_path(search: Search, found: Solution) -> None:
-    """Where no path was needed the archive holds the message, and the solution as the end of the KKT path.
+    """Where no path was needed the archive holds the message, and the solution as the end of the KKT or Wang's path.
 
     With z1 = w and z2 = x a solution satisfies the equations of that homotopy at lambda = 0.
     """
-    homotopy = KKTHomotopy(found.problem)
+    problem = found.problem
+    homotopy = KKTHomotopy(problem) if isinstance(problem, LCP) else WangHomotopy(problem)
     path = Path(status=Status.INTERRUPTED, message=f"No path was traced. {found.message}")
     end = found.certificate
     if end is not None:
         x, w = end.x, np.maximum(end.w, 0.0)
-        y = np.concatenate([x, w, x])
+        if isinstance(homotopy, KKTHomotopy):
+            y = np.concatenate([x, w, x])
+        else:
+            y = np.append(x, np.maximum(homotopy.sides.pull(end.w), 0.0))
         u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
         observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
         path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))

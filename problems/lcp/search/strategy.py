@@ -8,18 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from concurrent.futures import Executor
 from typing import Any
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import frozen
 
-from continuation.arrays import Array
 from continuation.presets import FAST
 from problems.lcp.active_set.finish import PATIENCE
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
-from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import natural_units
@@ -27,10 +24,10 @@ from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import LARGEST_DECIDED
-from problems.lcp.reference.enumeration import exhaust
+from problems.lcp.reference.enumeration import decidable, exhaust
+from problems.lcp.search.case import Case
 from problems.lcp.search.pivots import LARGEST, by_lemke, by_lemke_howson
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
-from problems.lcp.search.search import Search
 
 FIRST = Policy(steps=30)
 """Corrections of an active set before any path, from a guess that is good; each costs less than a step of a path."""
@@ -51,6 +48,9 @@ for a tridiagonal one of order 3000; a dense one of order 500, four times the li
 PROOF_SHARE = 0.2
 """Of the time left, where that is limited, the most that a proof takes: it is mostly far quicker than a path."""
 
+FEW_PIECES = 10
+"""With bounds, so many pieces as an LCP of this order has faces are tried before any path."""
+
 LARGEST_MADE_DENSE = 500
 """A sparse matrix of at most this order is made dense for pivots and paths, whose matrices of order n or 2n fill: with
 5 % entries and n = 200 a path takes a tenth of the time then."""
@@ -64,69 +64,6 @@ LEAST_START = 1e-3
 
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
-
-
-@define(eq=False)
-class Case:
-    """What attempts may use and ask.
-
-    Attributes
-    ----------
-    search : Search
-        What is found goes there.
-    x0 : Array or None
-        A start, in the units of the search.
-    asked : str
-        The homotopy of the paths for which the strategy names none.
-    restarts, seed : int
-    executor : Executor or None
-    facts : MatrixFacts or None
-        What has been found out about the matrix by now.
-    proof_sought : bool
-        Whether a proof was looked for.
-    followed : str
-        The homotopy of the last path but for restarts.
-    tried : int
-        How many restarts were begun.
-    reason : str
-        Why there is no start.
-    """
-
-    search: Search
-    x0: Array | None
-    asked: str
-    restarts: int
-    seed: int
-    executor: Executor | None
-    facts: MatrixFacts | None = field(default=None, init=False)
-    proof_sought: bool = field(default=False, init=False)
-    followed: str = field(default="", init=False)
-    tried: int = field(default=0, init=False)
-    reason: str = field(default="", init=False)
-
-    @property
-    def problem(self) -> LCP:
-        """The problem in the units of the search."""
-        return self.search.problem
-
-    @property
-    def known(self) -> MatrixFacts:
-        """What the entries of the matrix tell, at least."""
-        if self.facts is None:
-            self.facts = entry_facts(self.search.structure)
-        return self.facts
-
-    @property
-    def semidefinite(self) -> bool:
-        """Whether A is known to be positive semidefinite: costs a factorisation."""
-        if self.known.semidefinite is None:
-            self.facts = matrix_facts(self.search.structure, self.known)
-        return bool(self.known.semidefinite)
-
-    @property
-    def in_budget(self) -> bool:
-        """Whether some of the budget is left."""
-        return not self.search.exhausted
 
 
 @frozen
@@ -159,30 +96,34 @@ def _made_dense(case: Case) -> bool:
 
 
 def _zero(case: Case) -> bool:
-    case.search.accept(certify(case.problem, np.zeros(case.problem.n)))
-    return True
+    case.search.accept(certify(case.problem, case.problem.near_zero))
+    return case.search.solved
 
 
 def _from_coarser_problems(case: Case) -> bool:
-    return case.search.settle(guess(case.problem) > 0.0, FIRST)
+    return case.search.settle(case.problem.states(guess(case.problem), np.zeros(case.problem.n)), FIRST)
 
 
 def _proximally_from_zero(case: Case) -> bool:
-    return case.search.settle_proximally(case.problem.q < 0.0)
+    return case.search.settle_proximally(case.first_state)
 
 
 def _from_zero(case: Case) -> bool:
     policy = Policy(steps=min(case.problem.n, MOST_Z_STEPS)) if case.known.z_matrix else FROM_ZERO
-    return case.search.settle(case.problem.q < 0.0, policy)
+    return case.search.settle(case.first_state, policy)
 
 
 def _from_x0(case: Case) -> bool:
     assert case.x0 is not None
-    return case.search.settle(case.x0 > case.problem.w(case.x0), FIRST)
+    return case.search.settle(case.problem.states(case.x0, case.problem.w(case.x0)), FIRST)
 
 
 def _proximally_from_last(case: Case) -> bool:
     return case.search.settle_proximally()
+
+
+def _descent(case: Case) -> bool:
+    return case.search.descend(case.first_state)
 
 
 def _proof(case: Case) -> bool:
@@ -203,6 +144,7 @@ def _all_faces(case: Case) -> bool:
 def _feasible_start(case: Case) -> bool:
     """Find x0; where it is proved that there is none, that proof may settle the problem."""
     try:
+        assert isinstance(case.problem, LCP)
         case.x0 = strictly_feasible_start(case.problem)
     except NoStrictlyFeasiblePoint as error:
         case.reason = str(error)
@@ -218,9 +160,9 @@ def _path(name: str = "", **options: Any) -> Callable[[Case], bool]:
     def run(case: Case) -> bool:
         case.followed = name or case.asked
         start = case.x0
-        if start is not None and not start.all():
+        if start is not None and case.problem.standard and not start.all():
             start = np.where(start > 0.0, start, LEAST_START * natural_units(case.problem)[0])
-        homotopy = HOMOTOPIES[case.followed].make(case.problem, start, structure=case.search.structure)
+        homotopy = HOMOTOPIES[case.followed].from_x0(case.problem, start, case.search.structure)
         return case.search.follow(homotopy, **options)
 
     return run
@@ -255,13 +197,14 @@ def _monotone(case: Case) -> bool:
 
 
 def _wang_may_do(case: Case) -> bool:
-    """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges."""
-    return not case.known.negative_diagonal
+    """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges; in a box it cannot."""
+    return not case.problem.standard or not case.known.negative_diagonal
 
 
 def _pivotable(case: Case) -> bool:
     """Where the pure path is not asked for, and a table of n^2 numbers is no burden."""
-    return case.in_budget and case.problem.n <= LARGEST and case.search.finish is not None
+    small = case.problem.standard and case.problem.n <= LARGEST
+    return small and case.in_budget and case.search.finish is not None
 
 
 def _game_perhaps(case: Case) -> bool:
@@ -272,6 +215,22 @@ def _provable(case: Case) -> bool:
     n, A = case.problem.n, case.problem.A
     entries = A.nnz if case.problem.sparse else n * n
     return bool(n * entries <= LARGEST_PROOF or case.search.seconds_left < math.inf)
+
+
+def _zero_solves(case: Case) -> bool:
+    return case.problem.natural_residual(case.problem.near_zero) == 0.0
+
+
+def _in_a_box(case: Case) -> bool:
+    """Whether the problem is that of the KKT points of a quadratic function, which a box always has."""
+    ends = case.problem.lower, case.problem.upper
+    return case.known.symmetric and all(bool(np.isfinite(end).all()) for end in ends)
+
+
+def _has_few_faces(case: Case) -> bool:
+    if case.problem.standard:
+        return _pivotable(case) and case.problem.n <= LARGEST_EARLY_FACES
+    return decidable(case.problem, FEW_PIECES)
 
 
 def _lacks_feasible_start(case: Case) -> bool:
@@ -285,20 +244,23 @@ _SETTLED = "Solved by active sets alone, before any path."
 _LEMKE_HOWSON = "By the method of Lemke and Howson, before any path."
 _LEMKE = "By Lemke's method, before any path."
 _SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
+_DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
-    Attempt("x = 0", lambda c: bool((c.problem.q >= 0.0).all()), _zero, "q >= 0, so x = 0 is a solution."),
+    Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
+    Attempt("the point nearest to zero", _zero_solves, _zero, "The point nearest to zero is a solution."),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
     Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
     Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
+    Attempt("descent in a box", _in_a_box, _descent, _DESCENDED),
     Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
     Attempt("Lemke and Howson", _game_perhaps, lambda c: by_lemke_howson(c.search), _LEMKE_HOWSON),
     Attempt("Lemke", _pivotable, lambda c: by_lemke(c.search, c.seed), _LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
-    Attempt("few faces", lambda c: _pivotable(c) and c.problem.n <= LARGEST_EARLY_FACES, _all_faces, _TRIED),
+    Attempt("few faces", _has_few_faces, _all_faces, _TRIED),
 )
 """What is cheap and cannot mislead."""
 
@@ -308,7 +270,7 @@ PATHS: tuple[Attempt, ...] = (
     Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
     Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, _PROVED),
     Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
-    Attempt("all faces", lambda c: c.in_budget and c.problem.n <= LARGEST_DECIDED, _all_faces, _TRIED),
+    Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, _TRIED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, _RESTARTED),
 )
 """Any of these may cost the whole budget."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from continuation.budget import Budget
-from problems.lcp.data.problem import LCP
+from problems.lcp.data.problem import MixedLCP
 
 FACTORIZATIONS = 170_000
 """About a minute's for a small problem."""
@@ -12,7 +12,7 @@ LEAST = 100
 """About two paths."""
 
 
-def default_budget(problem: LCP) -> Budget:
+def default_budget(problem: MixedLCP) -> Budget:
     """As many factorisations, and steps, as a search takes in about a minute; at least a hundred.
 
     Measured in processor time, one thread, over everything that a search does, in milliseconds a factorisation: dense

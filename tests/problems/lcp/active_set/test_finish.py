@@ -13,11 +13,17 @@ from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import AlongPath, Finish
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.active_set.multigrid_guess import guess, suitable
+from problems.lcp.data.problem import BETWEEN, LOWER
 from problems.paper import EXAMPLES
 
 
 def faces(A, q):
     return Faces(Structure(LCP(A, q)))
+
+
+def state_of(active):
+    """The state of an LCP from where w = 0 is asked for."""
+    return np.where(active, BETWEEN, LOWER)
 
 
 def storages(A):
@@ -33,7 +39,7 @@ def test_a_face_is_solved_alike_in_every_storage(storage, monkeypatch):
     A = np.diag(4.0 + rng.random(n)) + np.diag(rng.standard_normal(n - 1), 1) + np.diag(rng.standard_normal(n - 1), -1)
     q = rng.standard_normal(n)
     active = rng.random(n) < 0.5
-    x, w = faces(storages(A)[storage], q).face(active).point(np.zeros(n))
+    x, w = faces(storages(A)[storage], q).face(state_of(active)).point(np.zeros(n))
     expected = np.zeros(n)
     expected[active] = np.linalg.solve(A[np.ix_(active, active)], -q[active])
     np.testing.assert_allclose(x, expected, atol=1e-14)
@@ -46,7 +52,7 @@ def test_a_singular_face_gives_its_point_nearest_to_the_given_one(symmetric):
     # Both rows say x1 + x2 = 1 (the second twice, where A is not symmetric).
     A = np.array([[1.0, 1.0], [1.0, 1.0]]) if symmetric else np.array([[1.0, 1.0], [2.0, 2.0]])
     q = -A @ [0.5, 0.5]
-    face = faces(A, q).face(np.array([True, True]))
+    face = faces(A, q).face(state_of(np.array([True, True])))
     assert not face.exact
     x, w = face.point(np.array([0.9, 0.3]))
     np.testing.assert_allclose(w, 0.0, atol=1e-12)
@@ -57,14 +63,14 @@ def test_a_singular_face_gives_its_point_nearest_to_the_given_one(symmetric):
 
 def test_an_inconsistent_face_is_never_certified():
     finish = Finish(faces([[1.0, 1.0], [1.0, 1.0]], [-1.0, -2.0]), 1e-10)
-    assert finish.settle(np.array([True, True]), Policy(0)) is None
+    assert finish.settle(state_of(np.array([True, True])), Policy(0)) is None
 
 
 def test_the_finish_needs_one_factorisation_from_the_right_guess():
     for example in EXAMPLES:
         solution = np.array([float(value) for value in example.solutions[0]])
         finish = Finish(Faces(Structure(example.problem)), 1e-12)
-        x = finish.settle(solution > 0.0, Policy(0))
+        x = finish.settle(state_of(solution > 0.0), Policy(0))
         assert finish.counts.factorizations == 1
         np.testing.assert_allclose(x, solution, rtol=1e-13)
 
@@ -72,10 +78,10 @@ def test_the_finish_needs_one_factorisation_from_the_right_guess():
 def test_no_active_set_is_tried_twice():
     finish = Finish(faces([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), 1e-10)
     for active in itertools.product([False, True], repeat=2):
-        assert finish.settle(np.array(active), Policy(10)) is None
+        assert finish.settle(state_of(np.array(active)), Policy(10)) is None
     spent = finish.counts.factorizations
     assert spent <= 4
-    assert finish.settle(np.array([True, True]), Policy(10)) is None
+    assert finish.settle(state_of(np.array([True, True])), Policy(10)) is None
     assert finish.counts.factorizations == spent
 
 
@@ -85,7 +91,7 @@ def test_corrections_solve_a_p_matrix_from_any_guess():
     problem = LCP(M @ M.T / 40 + np.eye(40) + (S - S.T) / 6, rng.standard_normal(40))
     for _ in range(5):
         finish = Finish(Faces(Structure(problem)), 1e-13)
-        x = finish.settle(rng.random(40) < 0.5, Policy(30))
+        x = finish.settle(state_of(rng.random(40) < 0.5), Policy(30))
         assert certify(problem, x).solves(1e-13)
 
 
@@ -96,7 +102,7 @@ def test_a_face_whose_signs_depend_on_round_off_is_corrected():
     A = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), dtype=float) * (n + 1.0) ** 2
     problem = LCP(A, A @ np.maximum(0.15 - 16 * (t - 0.35) ** 2, 0.1 - 16 * (t - 0.7) ** 2) + 0.5)
     finish = Finish(Faces(Structure(problem)), 1e-12)
-    x = finish.settle(guess(problem) > 0.0, Policy(10))
+    x = finish.settle(state_of(guess(problem) > 0.0), Policy(10))
     assert certify(problem, x).solves(1e-12)
     assert finish.counts.factorizations <= 6
 
@@ -111,9 +117,9 @@ def test_the_cascade_guesses_the_contact_set_of_a_membrane():
     problem = LCP(A, A @ bump + 5.0 / (m + 1) ** 2)
     assert suitable(Structure(problem))
     near = Finish(Faces(Structure(problem)), 1e-12)
-    assert near.settle(guess(problem) > 0.0, Policy(20)) is not None
+    assert near.settle(state_of(guess(problem) > 0.0), Policy(20)) is not None
     far = Finish(Faces(Structure(problem)), 1e-12)
-    assert far.settle(problem.q < 0.0, Policy(100)) is not None
+    assert far.settle(state_of(problem.q < 0.0), Policy(100)) is not None
     assert 2 * near.counts.factorizations < far.counts.factorizations
 
 
@@ -169,7 +175,7 @@ def test_the_proximal_method_solves_rank_deficient_problems():
         w = np.where(x == 0.0, np.abs(rng.standard_normal(40)), 0.0)
         problem = LCP(A, w - A @ x)
         finish = Finish(Faces(Structure(problem)), 1e-12)
-        found = finish.proximal_active_set(problem.q < 0.0)
+        found = finish.proximal_active_set(state_of(problem.q < 0.0))
         assert found is not None
         assert certify(problem, found).solves(1e-12)
         assert finish.certificate.solves(1e-12)
@@ -181,30 +187,30 @@ def test_corrections_without_progress_are_given_up():
     n = 64
     problem = LCP(np.eye(n) + np.triu(np.full((n, n), 2.0), 1), -np.ones(n))
     patient, impatient = (Finish(Faces(Structure(problem)), 1e-12) for _ in range(2))
-    assert patient.settle(problem.q < 0.0, Policy(n)) is not None
-    assert impatient.settle(problem.q < 0.0, Policy(n, patience=3)) is None
+    assert patient.settle(state_of(problem.q < 0.0), Policy(n)) is not None
+    assert impatient.settle(state_of(problem.q < 0.0), Policy(n, patience=3)) is None
     assert 2 * impatient.counts.factorizations < patient.counts.factorizations
 
 
 def test_the_iteration_says_why_it_ended():
     skew, zero = faces([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), np.array([False, False])
-    assert iterate(faces(np.eye(2), [-1.0, 1.0]), np.array([True, False]), Policy(0)).ended is Ended.SETTLED
-    assert iterate(faces(np.eye(2), [-1.0, 1.0]), zero, Policy(0)).ended is Ended.STEPS
-    assert iterate(faces([[0.0]], [-1.0]), np.array([True]), Policy(5)).ended is Ended.SINGULAR
+    assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(np.array([True, False])), Policy(0)).ended is Ended.SETTLED
+    assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(zero), Policy(0)).ended is Ended.STEPS
+    assert iterate(faces([[0.0]], [-1.0]), state_of(np.array([True])), Policy(5)).ended is Ended.SINGULAR
     known = Tried()
-    assert known.add(zero)
-    assert iterate(skew, zero, Policy(5), tried=known).ended is Ended.TRIED
+    assert known.add(state_of(zero))
+    assert iterate(skew, state_of(zero), Policy(5), tried=known).ended is Ended.TRIED
     # x1 enters, leaves and enters again: one change each.
-    turning = iterate(faces([[-1.0]], [-1.0]), np.array([False]), Policy(50, patience=3))
+    turning = iterate(faces([[-1.0]], [-1.0]), state_of(np.array([False])), Policy(50, patience=3))
     assert turning.ended is Ended.CYCLING
-    judged = iterate(skew, zero, Policy(0), judge=lambda face, x, w: (x + 7.0, w, True))
+    judged = iterate(skew, state_of(zero), Policy(0), judge=lambda face, x, w: (x + 7.0, w, True))
     assert judged.ended is Ended.SOLVED
     assert (judged.x == 7.0).all()
 
 
 def test_a_proximal_face_is_that_of_the_shifted_problem():
     one = faces([[1.0, 2.0], [0.0, 3.0]], [-1.0, 5.0])
-    face = one.face(np.array([True, False]), 0.5, np.array([2.0, 0.5]))
+    face = one.face(state_of(np.array([True, False])), 0.5, np.array([2.0, 0.5]))
     x, w = face.point(np.zeros(2))
     np.testing.assert_allclose(x, [(1.0 + 0.5 * 2.0) / 1.5, 0.0], rtol=1e-15)
     np.testing.assert_allclose(w, [0.0, 5.0 - 0.5 * 0.5], rtol=1e-15)

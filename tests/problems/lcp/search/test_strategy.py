@@ -104,7 +104,7 @@ def test_a_homotopy_by_name_looks_for_the_start_that_it_needs():
 
 def test_another_attempt_is_one_more_entry():
     guess = Attempt(
-        "a guess", lambda c: True, lambda c: c.search.settle(np.array([True, True]), strategy.FIRST), "Guessed."
+        "a guess", lambda c: True, lambda c: c.search.settle(np.zeros(2, dtype=np.int8), strategy.FIRST), "Guessed."
     )
     one = case(lcp.LCP(np.eye(2), [-1.0, -1.0]))
     settled = settled_by(one, (guess, *AUTOMATIC))

@@ -1,0 +1,56 @@
+"""Unknowns whose bounds are equal are known: what remains is a smaller problem of the same kind."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import MixedLCP
+
+
+@frozen(eq=False)
+class WithoutFixed:
+    """A problem without its fixed unknowns.
+
+    Attributes
+    ----------
+    whole : MixedLCP
+    problem : MixedLCP or None
+        What is left of it, with q rounded; None where nothing is.
+    kept : ndarray of int
+        The indices that are left.
+    """
+
+    whole: MixedLCP
+    problem: MixedLCP | None
+    kept: NDArray[np.intp]
+
+    def x(self, rest: Array | None) -> Array:
+        """The unknowns of the whole problem.
+
+        Parameters
+        ----------
+        rest : ndarray or None
+            Those of what is left.
+        """
+        x = self.whole.lower.copy()
+        if rest is not None:
+            x[self.kept] = rest
+        return x
+
+
+def without_fixed(problem: MixedLCP) -> WithoutFixed:
+    """Take the fixed unknowns into q.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    """
+    kept = np.flatnonzero(~problem.fixed)
+    if not kept.size:
+        return WithoutFixed(problem, None, kept)
+    q = problem.w(np.where(problem.fixed, problem.lower, 0.0))[kept]
+    block = problem.A[kept][:, kept]
+    return WithoutFixed(problem, MixedLCP(block, q, problem.lower[kept], problem.upper[kept]), kept)

@@ -1,0 +1,248 @@
+"""Quadratic and linear programs: their optimality conditions as a problem with bounds, and its unknowns by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array, Matrix
+from problems.lcp.data.bounds import bound_vector, ordered_bounds
+from problems.lcp.data.matrix_structure import semidefinite
+from problems.lcp.data.problem import MixedLCP
+from problems.options import finite_vector, real_array, sound_sparse
+
+
+@frozen(eq=False, slots=False)
+class Program:
+    """min 1/2 x'P x + c'x subject to lower <= x <= upper, A_eq x = b_eq, rows_lower <= G x <= h.
+
+    Made by `from_qp` and `from_lp`; `solve` takes it. The unknowns of `problem` are x, a multiplier without a sign of
+    each equation, and a nonnegative one of each finite side of each row, so that::
+
+        P x + c = A_eq' equations + G' rows + bounds
+
+    Attributes
+    ----------
+    P : Matrix, shape (n, n)
+        Symmetric.
+    c : Array of shape (n,)
+    problem : MixedLCP
+        The optimality conditions.
+    equations : tuple of int
+        Where their multipliers begin and end.
+    equal, above, below : ndarray of int
+        The rows of G that are equations, those with an upper side and those with a lower one, in the order of their
+        multipliers.
+    rows : int
+        The number of rows of G.
+    """
+
+    P: Matrix
+    c: Array
+    problem: MixedLCP
+    equations: tuple[int, int]
+    equal: NDArray[np.intp]
+    above: NDArray[np.intp]
+    below: NDArray[np.intp]
+    rows: int
+
+    @property
+    def n(self) -> int:
+        """The number of variables."""
+        return int(self.c.size)
+
+    @cached_property
+    def convex(self) -> bool:
+        """Whether P is positive semidefinite to working precision, so that every KKT point is a minimum."""
+        return semidefinite(self.P.toarray() if sp.issparse(self.P) else self.P)
+
+    def objective(self, x: Array) -> float:
+        """1/2 x'P x + c'x.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        return float(0.5 * (x @ (self.P @ x)) + self.c @ x)
+
+    def named(self, unknowns: Array, w: Array) -> Mapping[str, Array]:
+        """The solution of `problem` by name: x, and the multipliers `equations`, `rows` and `bounds`.
+
+        A multiplier is positive where a lower side holds x back, negative where an upper one does.
+
+        Parameters
+        ----------
+        unknowns, w : ndarray
+            Of `problem`.
+        """
+        begin, end = self.equations
+        ends = np.cumsum([end, self.equal.size, self.above.size, self.below.size])
+        rows = np.zeros(self.rows)
+        rows[self.equal] += unknowns[ends[0] : ends[1]]
+        rows[self.above] -= unknowns[ends[1] : ends[2]]
+        rows[self.below] += unknowns[ends[2] : ends[3]]
+        return {"x": unknowns[: self.n], "equations": unknowns[begin:end], "rows": rows, "bounds": w[: self.n]}
+
+    def reading(self, multiplier: Array) -> str:
+        """What a proof that the conditions have no solution says of the program.
+
+        Parameters
+        ----------
+        multiplier : ndarray
+            A Farkas vector of `problem`.
+        """
+        if multiplier[self.n :].any():
+            return "The constraints have no common point." if not multiplier[: self.n].any() else ""
+        return "Along a direction that no constraint ends the objective falls for ever."
+
+
+def from_qp(
+    P: Any,
+    c: Any,
+    G: Any = None,
+    h: Any = None,
+    A_eq: Any = None,
+    b_eq: Any = None,
+    lower: Any = None,
+    upper: Any = None,
+    *,
+    rows_lower: Any = None,
+) -> Program:
+    """Min 1/2 x'P x + c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper.
+
+    Nothing is split: a variable without bounds stays one unknown, and a box asks for no multiplier. Of a P that is not
+    positive semidefinite `solve` finds a KKT point, which need not be a minimum, and says so.
+
+    Parameters
+    ----------
+    P : array_like or scipy sparse, shape (n, n)
+        Symmetric.
+    c : array_like, shape (n,)
+    G : array_like or scipy sparse, shape (m, n), optional
+    h : array_like, shape (m,), or one number, optional
+        inf where a row has no upper side.
+    A_eq : array_like or scipy sparse, shape (k, n), optional
+    b_eq : array_like, shape (k,), optional
+    lower, upper : array_like, shape (n,), or one number, optional
+        Of x: -inf and inf, the defaults, are none. Where they are equal x is fixed.
+    rows_lower : array_like, shape (m,), or one number, optional
+        The other side of the rows, rows_lower <= G x; where it equals h the row is an equation.
+
+    Returns
+    -------
+    Program
+
+    Raises
+    ------
+    ValueError
+        For what does not fit together, naming the argument and the index.
+
+    References
+    ----------
+    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 1.2.
+    """
+    c = finite_vector("c", c)
+    n = c.size
+    P = _matrix("P", P, n)
+    if P.shape[0] != n:
+        raise ValueError(f"P: expected shape {(n, n)}, one row a number of c, found {P.shape}")
+    _check_symmetric(P)
+    if (G is None) != (h is None and rows_lower is None):
+        raise ValueError("G: expected rows and one side of them, h or rows_lower, or none of these")
+    if (A_eq is None) != (b_eq is None):
+        raise ValueError("A_eq: expected A_eq and b_eq, or neither")
+    G = np.zeros((0, n)) if G is None else _matrix("G", G, n)
+    B = np.zeros((0, n)) if A_eq is None else _matrix("A_eq", A_eq, n)
+    b = np.zeros(0) if b_eq is None else finite_vector("b_eq", b_eq, B.shape[0])
+    m = G.shape[0]
+    high, low = bound_vector("h", h, m, np.inf), bound_vector("rows_lower", rows_lower, m, -np.inf)
+    if (low > high).any():
+        i = int(np.argmax(low > high))
+        raise ValueError(f"rows_lower: expected at most h, found rows_lower[{i}] = {low[i]} > h[{i}] = {high[i]}")
+    x_low, x_high = bound_vector("lower", lower, n, -np.inf), bound_vector("upper", upper, n, np.inf)
+    ordered_bounds(x_low, x_high)
+    equal = np.flatnonzero(low == high)
+    above = np.flatnonzero((high < np.inf) & (low != high))
+    below = np.flatnonzero((low > -np.inf) & (low != high))
+    parts = [(B, -b), (G[equal], -low[equal]), (-1 * G[above], high[above]), (G[below], -low[below])]
+    free = B.shape[0] + equal.size
+    signed = above.size + below.size
+    A = _optimality(P, [part for part, _ in parts if part.shape[0]])
+    q = np.concatenate([c, *(constant for _, constant in parts)])
+    problem = MixedLCP(
+        A, q, np.concatenate([x_low, np.full(free, -np.inf), np.zeros(signed)]),
+        np.concatenate([x_high, np.full(free + signed, np.inf)]),
+    )  # fmt: skip
+    return Program(P, c, problem, (n, n + B.shape[0]), equal, above, below, m)
+
+
+def from_lp(
+    c: Any,
+    G: Any = None,
+    h: Any = None,
+    A_eq: Any = None,
+    b_eq: Any = None,
+    lower: Any = None,
+    upper: Any = None,
+    *,
+    rows_lower: Any = None,
+) -> Program:
+    """Min c'x subject to G x <= h, A_eq x = b_eq, lower <= x <= upper: `from_qp` with P = 0.
+
+    Parameters
+    ----------
+    c, G, h, A_eq, b_eq, lower, upper, rows_lower : array_like
+        As for `from_qp`; x has no bounds but those that are given.
+
+    Returns
+    -------
+    Program
+
+    Raises
+    ------
+    ValueError
+        For what does not fit together, naming the argument and the index.
+    """
+    c = finite_vector("c", c)
+    P = sp.csr_array((c.size, c.size))
+    if not (sp.issparse(G) or sp.issparse(A_eq)):
+        P = P.toarray()
+    return from_qp(P, c, G, h, A_eq, b_eq, lower, upper, rows_lower=rows_lower)
+
+
+def _matrix(name: str, value: Any, columns: int) -> Matrix:
+    """A finite matrix of so many columns, dense or CSR."""
+    matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
+    if matrix.ndim != 2 or matrix.shape[1] != columns:
+        raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
+    entries = np.asarray(matrix.data if sp.issparse(matrix) else matrix)
+    if not np.isfinite(entries).all():
+        raise ValueError(f"{name}: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
+    return matrix
+
+
+def _check_symmetric(P: Matrix) -> None:
+    if not sp.issparse(P) and np.array_equal(P, P.T):
+        return
+    difference = sp.coo_array(P - P.T)
+    if difference.nnz and difference.data.any():
+        k = int(np.argmax(np.abs(difference.data)))
+        i, j = int(difference.row[k]), int(difference.col[k])
+        raise ValueError(f"P: expected a symmetric matrix, found P[{i}, {j}] unlike P[{j}, {i}]; give (P + P') / 2")
+
+
+def _optimality(P: Matrix, rows: list[Matrix]) -> Matrix:
+    """[[P, -R'], [R, 0]] for the rows R, one under another; sparse where one of them is."""
+    if not rows:
+        return P
+    if sp.issparse(P) or any(sp.issparse(part) for part in rows):
+        R = sp.vstack([sp.csr_array(part) for part in rows], format="csr")
+        return sp.block_array([[sp.csr_array(P), -R.T], [R, None]], format="csr")
+    R = np.vstack(rows)
+    return np.block([[P, -R.T], [R, np.zeros((R.shape[0], R.shape[0]))]])

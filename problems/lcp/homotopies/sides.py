@@ -1,0 +1,137 @@
+"""The pairs of a problem with bounds: a force y and a distance from each finite bound, with lambda c as their product.
+
+Lower bounds come first, then upper ones. An LCP has one pair an unknown, y_i x_i. A two-sided index has two, and both
+forces act on one row: w = s - t. The unknowns are (x, y); of each index one unknown is kept, the others eliminated, so
+that the matrix is of order n whatever the number of bounds.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.homotopies.cores import parity
+
+
+@frozen(eq=False, slots=False)
+class Sides:
+    """Which bounds are finite.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    """
+
+    problem: MixedLCP | LCP
+
+    @cached_property
+    def low(self) -> NDArray[np.intp]:
+        """The indices with a lower bound."""
+        return np.flatnonzero(self.problem.lower > -np.inf)
+
+    @cached_property
+    def high(self) -> NDArray[np.intp]:
+        """The indices with an upper bound."""
+        return np.flatnonzero(self.problem.upper < np.inf)
+
+    @cached_property
+    def index(self) -> NDArray[np.intp]:
+        """The index of each pair."""
+        return np.concatenate([self.low, self.high])
+
+    @cached_property
+    def sign(self) -> Array:
+        """1 for the pairs of lower bounds, -1 for those of upper ones."""
+        return np.repeat([1.0, -1.0], [self.low.size, self.high.size])
+
+    @cached_property
+    def free(self) -> Array | None:
+        """1 where an index has no bound, else 0; None where all have one."""
+        bounded = np.bincount(self.index, minlength=self.problem.n) > 0
+        return None if bounded.all() else np.where(bounded, 0.0, 1.0)
+
+    def gaps(self, x: Array) -> Array:
+        """The distances from the bounds, one a pair."""
+        if self.problem.standard:
+            return x
+        return np.concatenate([(x - self.problem.lower)[self.low], (self.problem.upper - x)[self.high]])
+
+    def pull(self, v: Array) -> Array:
+        """The change of the distances with that of x, in the last axis."""
+        return v if self.problem.standard else self.sign * v[..., self.index]
+
+    def force(self, y: Array) -> Array:
+        """What the forces add to the rows: s - t, shape (n,)."""
+        return y if self.problem.standard else self._summed(self.sign * y)
+
+    def _summed(self, values: Array) -> Array:
+        return np.asarray(np.bincount(self.index, values, self.problem.n), dtype=float)
+
+    def sizes(self, x: Array, unit: float) -> Array:
+        """In what an unknown is large or small: its distance from the nearest bound, or itself but at least a unit."""
+        if self.problem.standard:
+            return x
+        distance = np.minimum(x - self.problem.lower, self.problem.upper - x)
+        return np.where(np.isfinite(distance), distance, np.maximum(np.abs(x), unit))
+
+    def eliminated(self, y: Array, gap: Array, c: Array, larger: bool) -> BoundPairs:
+        """Keep dx of each index, or, where `larger`, the change of a force that is larger than its distance."""
+        n = self.problem.n
+        with np.errstate(all="ignore"):
+            ratio = np.abs(y / gap)
+            steepest = np.full(n, -np.inf)
+            np.maximum.at(steepest, self.index, ratio)
+            main = (ratio > 1.0) & (ratio == steepest[self.index]) & larger
+            # Of two that are equal, the lower one.
+            first = main & (self.sign > 0.0)
+            main &= first | ~(self._summed(first * 1.0) > 0.0)[self.index]
+            swapped = self._summed(main * 1.0)
+            slope, inverse = np.where(main, 0.0, y / gap), np.where(main, 0.0, 1.0 / gap)
+            a = np.where(swapped > 0.0, self._summed(np.where(main, -gap / y, 0.0)), 1.0)
+            into_v = np.where(main, self.sign / y, 0.0)
+        negative = np.count_nonzero(np.where(main, y, gap) < 0.0)
+        total = self._summed(slope)
+        pairs = negative + np.count_nonzero(main)
+        return BoundPairs(self, a, swapped - total * a, c, parity(pairs), main, slope, inverse, into_v, total)
+
+
+@frozen(eq=False)
+class BoundPairs:
+    """The pairs solved for one unknown of each index, as `cores.Pairs` for an LCP: dx = a k + ..., force = b k + ...
+
+    A pair that is eliminated for its force has dy = inverse t - slope sign dx; where it is `main` its force is kept.
+    """
+
+    sides: Sides
+    a: Array
+    b: Array
+    c: Array
+    sign: int
+    main: NDArray[np.bool_]
+    slope: Array
+    inverse: Array
+    into_v: Array
+    total: Array
+
+    def known(self, t: Array) -> tuple[Array, Array, Array]:
+        """What right-hand sides t add: to dx, to the force on the rows, and to the dy."""
+        sides = self.sides
+        v = sides._summed(self.into_v * t)
+        dy = self.inverse * t - self.slope * sides.pull(v)
+        return v, sides.force(dy), dy
+
+    def row(self, border: Array) -> Array:
+        """The coefficients of k in border . dy."""
+        sides = self.sides
+        return sides._summed(border * sides.sign * np.where(self.main, 1.0, -self.slope * self.a[sides.index]))
+
+    def of(self, k: Array, r: Array, l: float) -> tuple[Array, Array]:
+        """(dx, dy)."""
+        v, _, dy = self.known(r + self.c * l)
+        kept = self.sides.sign * k[self.sides.index]
+        return self.a * k + v, dy + np.where(self.main, kept, -self.slope * self.sides.pull(self.a * k))

@@ -1,0 +1,168 @@
+"""What a solution has to satisfy apart from complementarity, as inequalities, and the conditions on their multipliers.
+
+At a solution w_i >= 0 where x_i has no upper bound, w_i <= 0 where it has no lower one, w_i = 0 where it has neither,
+and l <= x <= u. Multipliers y of these rows, of the sign that makes y'w >= 0, give 0 <= y'(A x + q) for all of them:
+
+    q'y + sum_j sup {(A'y)_j x_j : l_j <= x_j <= u_j} < 0
+
+proves that there is no such x. For l = 0 and u = inf that is A'y <= 0 and q'y < 0.
+"""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array, Matrix
+from problems.lcp.data.problem import MixedLCP
+from problems.lcp.proof.rational import IntegerRow, integer_rows
+
+
+@frozen(eq=False)
+class Inequalities:
+    """The points z >= 0 with A z + q >= 0, A of any shape.
+
+    Attributes
+    ----------
+    A : Array or sparse array, shape (m, k)
+    q : Array of shape (m,)
+    rows : ndarray of int, shape (m,), or None
+        The row of the problem that each is; -1 for those of bounds. None where the problem's own are meant.
+    signs : Array of shape (m,), or None
+        With which sign.
+    """
+
+    A: Matrix
+    q: Array
+    rows: NDArray[np.intp] | None = None
+    signs: Array | None = None
+
+    @property
+    def n(self) -> int:
+        """The number of rows."""
+        return int(self.q.size)
+
+    @property
+    def sparse(self) -> bool:
+        """Whether A is stored as a sparse array."""
+        return bool(sp.issparse(self.A))
+
+    def integers_on_rows(self, y: list[int], n: int) -> list[int]:
+        """Multipliers of these rows as those of the n rows of the problem."""
+        if self.rows is None or self.signs is None:
+            return y
+        total = [0] * n
+        for value, row, sign in zip(y, self.rows, self.signs):
+            if row >= 0:
+                total[row] += int(sign) * value
+        return total
+
+    def on_rows(self, y: Array, n: int) -> Array:
+        """The same for floats."""
+        if self.rows is None or self.signs is None:
+            return y
+        own = self.rows >= 0
+        return np.asarray(np.bincount(self.rows[own], (self.signs * y)[own], n), dtype=float)
+
+
+def inequalities(problem: MixedLCP) -> Inequalities:
+    """What x has to satisfy apart from complementarity; no entry is rounded.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    """
+    if problem.standard:
+        return Inequalities(problem.A, problem.q)
+    n, low, high = problem.n, problem.lower, problem.upper
+    finite_low, finite_high = low > -np.inf, high < np.inf
+    # An x_j with a bound at zero is z_j or -z_j, any other one a difference of two.
+    up = low == 0.0
+    down = (high == 0.0) & ~up
+    both = ~up & ~down
+    every: NDArray[np.intp] = np.arange(n)
+    columns = np.concatenate([every, every[both]])
+    column_signs = np.concatenate([np.where(down, -1.0, 1.0), -np.ones(int(both.sum()))])
+    of_w = [(every[~finite_high], 1.0), (every[~finite_low], -1.0)]
+    of_x = [(every[finite_low & ~up], 1.0, -low), (every[finite_high & ~down], -1.0, high)]
+    rows = np.concatenate([i for i, _ in of_w])
+    row_signs = np.concatenate([np.full(i.size, sign) for i, sign in of_w])
+    A = sp.csr_array(problem.A)[rows][:, columns]
+    parts = [sp.diags_array(row_signs) @ A @ sp.diags_array(column_signs)] if rows.size else []
+    constants = [row_signs * problem.q[rows]]
+    identity = sp.eye_array(n, format="csr")[:, columns] @ sp.diags_array(column_signs)
+    for indices, sign, bound in of_x:
+        if indices.size:
+            parts.append(sign * identity[indices])
+            constants.append(bound[indices])
+    number = sum(part.shape[0] for part in parts) - rows.size
+    matrix = sp.vstack(parts, format="csr")
+    owner = np.concatenate([rows, np.full(number, -1)])
+    signs = np.concatenate([row_signs, np.ones(number)])
+    return Inequalities(matrix if problem.sparse else matrix.toarray(), np.concatenate(constants), owner, signs)
+
+
+@frozen
+class Conditions:
+    """The conditions on a multiplier in integers: the rows (A'y)_j and the row q'y.
+
+    Attributes
+    ----------
+    columns : list of IntegerRow
+    constant : IntegerRow
+    lower, upper : lists of float
+        Bounds of what the columns multiply.
+    signs : list of (bool, bool)
+        Whether each y_i may be positive, and whether negative.
+    """
+
+    columns: list[IntegerRow]
+    constant: IntegerRow
+    lower: list[float]
+    upper: list[float]
+    signs: list[tuple[bool, bool]]
+
+    def gap(self, y: list[int]) -> Fraction | None:
+        """Q'y + sup (A'y)'x, exactly; None where a sign is wrong, or that is infinite, or y is zero."""
+        if not any(y):
+            return None
+        for value, (positive, negative) in zip(y, self.signs):
+            if (value > 0 and not positive) or (value < 0 and not negative):
+                return None
+        total = Fraction(self.constant.times(y, 1), 1 << self.constant.shift)
+        for column, low, high in zip(self.columns, self.lower, self.upper):
+            slope = column.times(y, 1)
+            if slope:
+                bound = high if slope > 0 else low
+                if math.isinf(bound):
+                    return None
+                if bound:
+                    total += Fraction(slope, 1 << column.shift) * Fraction(bound)
+        return total
+
+    def hold(self, y: list[int], strict: bool) -> bool:
+        """Whether the signs of y are right, it is not zero, and q'y + sup (A'y)'x <= 0, or < 0 if strict, exactly."""
+        gap = self.gap(y)
+        return gap is not None and (gap < 0 or (gap == 0 and not strict))
+
+
+def conditions_of(problem: MixedLCP | Inequalities) -> Conditions:
+    """The conditions on a multiplier, on the data as given.
+
+    Parameters
+    ----------
+    problem : MixedLCP or Inequalities
+    """
+    A = sp.csr_array(problem.A.T) if problem.sparse else problem.A.T
+    columns = integer_rows(A, np.zeros(A.shape[0]))
+    constant = integer_rows(problem.q[None, :], np.zeros(1))[0]
+    if isinstance(problem, Inequalities):
+        size = A.shape[0]
+        return Conditions(columns, constant, [0.0] * size, [math.inf] * size, [(True, False)] * problem.n)
+    unbounded = zip(np.isinf(problem.upper).tolist(), np.isinf(problem.lower).tolist())
+    return Conditions(columns, constant, problem.lower.tolist(), problem.upper.tolist(), list(unbounded))

@@ -1,0 +1,81 @@
+"""What the attempts of a strategy share: the search, the arguments, and what has been found out about the matrix."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor
+
+from attrs import define, field
+
+from continuation.arrays import Array
+from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
+from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.search.search import Search
+
+
+@define(eq=False)
+class Case:
+    """What attempts may use and ask.
+
+    Attributes
+    ----------
+    search : Search
+        What is found goes there.
+    x0 : Array or None
+        A start, in the units of the search.
+    asked : str
+        The homotopy of the paths for which the strategy names none.
+    restarts, seed : int
+    executor : Executor or None
+    facts : MatrixFacts or None
+        What has been found out about the matrix by now.
+    proof_sought : bool
+        Whether a proof was looked for.
+    followed : str
+        The homotopy of the last path but for restarts.
+    tried : int
+        How many restarts were begun.
+    reason : str
+        Why there is no start.
+    """
+
+    search: Search
+    x0: Array | None
+    asked: str
+    restarts: int
+    seed: int
+    executor: Executor | None
+    facts: MatrixFacts | None = field(default=None, init=False)
+    proof_sought: bool = field(default=False, init=False)
+    followed: str = field(default="", init=False)
+    tried: int = field(default=0, init=False)
+    reason: str = field(default="", init=False)
+
+    @property
+    def problem(self) -> MixedLCP:
+        """The problem in the units of the search."""
+        return self.search.problem
+
+    @property
+    def known(self) -> MatrixFacts:
+        """What the entries of the matrix tell, at least."""
+        if self.facts is None:
+            self.facts = entry_facts(self.search.structure)
+        return self.facts
+
+    @property
+    def first_state(self) -> State:
+        """The state that the point nearest to zero asks for."""
+        x = self.problem.near_zero
+        return self.problem.states(x, self.problem.w(x))
+
+    @property
+    def semidefinite(self) -> bool:
+        """Whether A is known to be positive semidefinite: costs a factorisation."""
+        if self.known.semidefinite is None:
+            self.facts = matrix_facts(self.search.structure, self.known)
+        return bool(self.known.semidefinite)
+
+    @property
+    def in_budget(self) -> bool:
+        """Whether some of the budget is left."""
+        return not self.search.exhausted

@@ -1,0 +1,334 @@
+"""Complementarity problems with a nonlinear F and bounds of any kind: Newton's method, and Wang's path."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import evolve, field, frozen
+
+import continuation
+from continuation import jets
+from continuation.arrays import Array, Matrix
+from continuation.budget import Budget
+from continuation.linear import BorderedSystem
+from continuation.path import Path
+from continuation.status import Status
+from problems.lcp.data.matrix_structure import Structure
+from problems.lcp.data.problem import MixedLCP
+from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, longest_step
+from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
+from problems.lcp.homotopies.references import WANG
+from problems.lcp.homotopies.sides import Sides
+from problems.lcp.homotopies.starts import inside_start, inside_vector
+from problems.lcp.proof.certificate import Certificate, certify
+from problems.lcp.search.solver import solve as solve_affine
+from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, require_callable, value_at
+from problems.options import quiet
+
+NEWTON_STEPS = 20
+"""Of Josephy's method; near a solution it takes four or five."""
+
+AFFINE = Budget(steps=200, factorizations=400)
+"""For each of its problems: mostly a few active sets do, and one that is hard is not worth more."""
+
+
+@frozen(eq=False, slots=False)
+class MixedComplementarity:
+    """Find x in [lower, upper] with F_i(x) >= 0 where x_i = lower_i, <= 0 where x_i = upper_i, and 0 between.
+
+    Parameters
+    ----------
+    F : callable
+        ``F(x) -> (n,)`` for x of shape (n,).
+    jacobian : callable or None
+        ``jacobian(x) -> (n, n)``, dense or sparse. None: by truncated Taylor arithmetic, for an F in plain numpy.
+    lower, upper : array_like, shape (n,)
+        -inf and inf are none. At least one of them is a vector, which gives n.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If F or `jacobian` cannot be used at a point between the bounds, or the bounds do not fit; naming the argument.
+
+    References
+    ----------
+    Facchinei and Pang, Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003.
+    """
+
+    F: Function
+    jacobian: Jacobian | None = None
+    lower: Array = field(default=None, kw_only=True)
+    upper: Array = field(default=None, kw_only=True)
+
+    def __attrs_post_init__(self) -> None:
+        sizes = [np.size(bound) for bound in (self.lower, self.upper) if bound is not None and np.ndim(bound) == 1]
+        if not sizes:
+            raise ValueError("lower: expected a vector of bounds, lower or upper, found none")
+        # The bounds are checked where those of an affine problem are.
+        like = MixedLCP(sp.eye_array(sizes[0], format="csr"), np.zeros(sizes[0]), self.lower, self.upper)
+        object.__setattr__(self, "lower", like.lower)
+        object.__setattr__(self, "upper", like.upper)
+        if like.fixed.any():
+            i = int(np.argmax(like.fixed))
+            found = f"found both {like.lower[i]} at index {i}; leave x[{i}] out"
+            raise ValueError(f"lower: expected less than upper, {found}")
+        require_callable("F", self.F)
+        x = inside_start(like)
+        value_at(self.F, x)
+        if self.jacobian is not None:
+            check_jacobian_shape(self.jacobian, x)
+
+    @property
+    def n(self) -> int:
+        """The number of unknowns."""
+        return int(self.lower.size)
+
+    def slope(self, x: Array) -> Matrix:
+        """F'(x), shape (n, n).
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        if self.jacobian is not None:
+            return self.jacobian(x.copy())
+        return np.asarray(jets.jacobian(self.F, x))
+
+    def linearized(self, x: Array) -> MixedLCP:
+        """The affine problem with F'(x) that has the same F at x.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+
+        Raises
+        ------
+        ValueError
+            If F or F' is not finite there.
+        """
+        slope = self.slope(x)
+        return MixedLCP(slope, np.asarray(self.F(x.copy()), dtype=float) - slope @ x, self.lower, self.upper)
+
+
+@frozen(eq=False, slots=False)
+class InteriorHomotopy:
+    """Wang's homotopy for F: ``(1-l) F(x) - y + l y0 = 0`` and ``y_i`` times its distance from a bound ``= l c_i``.
+
+    y is s - t with s at lower bounds and t at upper ones; an unknown without bounds adds l (x - x0).
+
+    Parameters
+    ----------
+    problem : MixedComplementarity
+    x0 : array_like, shape (n,), optional
+        Strictly between the bounds; by default near zero.
+
+    Raises
+    ------
+    ValueError
+        If x0 is not between the bounds, naming the index.
+    """
+
+    problem: MixedComplementarity
+    x0: Array = None  # type: ignore[assignment]
+    problem_class: ClassVar[str] = "nonlinear complementarity problems"
+    target: ClassVar[float | None] = 0.0
+    references: ClassVar[tuple[str, ...]] = (WANG,)
+    metric: ClassVar[OwnMetric] = OwnMetric()
+
+    def __attrs_post_init__(self) -> None:
+        x0 = inside_start(self._shape) if self.x0 is None else inside_vector("x0", self.x0, self._shape)
+        object.__setattr__(self, "x0", x0)
+
+    @cached_property
+    def _shape(self) -> MixedLCP:
+        """The bounds, with a matrix that nobody asks for."""
+        n = self.problem.n
+        return MixedLCP(sp.csr_array((n, n)), np.zeros(n), self.problem.lower, self.problem.upper)
+
+    @cached_property
+    def sides(self) -> Sides:
+        """The finite bounds."""
+        return Sides(self._shape)
+
+    @cached_property
+    def y0(self) -> Array:
+        """The forces at the start: at least 1."""
+        return np.maximum(1.0, np.abs(self.problem.F(self.x0.copy())))[self.sides.index]
+
+    @cached_property
+    def c(self) -> Array:
+        """Their products with the distances from the bounds."""
+        return self.sides.gaps(self.x0) * self.y0
+
+    @cached_property
+    def own_metric(self) -> RelativeMetric:
+        """Relative changes, as for an LCP."""
+        if self._shape.standard:
+            return RelativeMetric()
+        return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper)
+
+    def start(self) -> tuple[Array, float]:
+        """(x0, y0) and 1."""
+        return np.concatenate([self.x0, self.y0]), 1.0
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """H."""
+        n, sides = self.problem.n, self.sides
+        x, forces = y[:n], y[n:]
+        goal, origin = self._ends(x, forces)
+        return np.concatenate([(1.0 - lam) * goal + lam * origin, sides.gaps(x) * forces - lam * self.c])
+
+    def _ends(self, x: Array, forces: Array) -> tuple[Array, Array]:
+        sides = self.sides
+        free = 0.0 if sides.free is None else sides.free * (x - self.x0)
+        return self.problem.F(x.copy()) - sides.force(forces), sides.force(self.y0 - forces) + free
+
+    def _system(self, y: Array, lam: float) -> PairSystem:
+        n, sides = self.problem.n, self.sides
+        x, forces = y[:n].copy(), y[n:].copy()
+        goal, origin = self._ends(x, forces)
+        structure = Structure(evolve(self._shape, A=self.problem.slope(x)))
+        blend = Blend(sign=1, x=0 if sides.free is None else sides.free, y=1)
+        sizes = sides.sizes(x, 1.0)
+        return PairSystem(structure, sides, blend, lam, sides.gaps(x), forces, self.c, origin - goal, sizes)
+
+    @quiet
+    def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
+        """Factor the bordered matrix by way of one of order n + 1."""
+        return factor_pairs(self._system(y, lam), border.copy())
+
+    @quiet
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
+        s, n, sides = self._system(y, lam), self.problem.n, self.sides
+        whole = np.zeros((y.size, y.size))
+        A = s.structure.problem.A
+        whole[:n, :n] = s.alpha * (A.toarray() if sp.issparse(A) else A) + np.diag(np.broadcast_to(s.beta, n))
+        pull = sides.pull(np.eye(n)).T
+        whole[:n, n:] = -s.gamma * pull.T
+        whole[n:, :n], whole[n:, n:] = s.y[:, None] * pull, np.diag(s.gap)
+        return whole, np.concatenate([s.column, -s.c])
+
+    def max_step(self, u: Array, v: Array) -> float:
+        """How far along v until a bound or a zero of y is reached."""
+        n, sides = self.problem.n, self.sides
+        inside = longest_step(sides.gaps(u[:n]), sides.pull(v[:n]))
+        return min(inside, longest_step(u[n:-1], v[n:-1]))
+
+    def observe(self, y: Array, lam: float) -> dict[str, float]:
+        """The natural residual."""
+        x = y[: self.problem.n]
+        natural = self._shape.natural_map(x, self.problem.F(x.copy()))
+        return {"natural_residual": float(np.abs(natural).max())}
+
+
+@frozen(eq=False)
+class ComplementaritySolution:
+    """The answer to a nonlinear complementarity problem.
+
+    Attributes
+    ----------
+    success : bool
+        Whether x solves it to the tolerance, each row relative to the terms of its linearisation.
+    certificate : Certificate
+        Of the problem linearised at x, whose F there is the same.
+    path : Path or None
+        Of the homotopy, where one was traced.
+    message : str
+    """
+
+    success: bool
+    certificate: Certificate
+    path: Path | None
+    message: str
+
+    @property
+    def x(self) -> Array:
+        """The solution, or the best point found, shape (n,)."""
+        return self.certificate.x
+
+    @property
+    def F(self) -> Array:
+        """F(x), shape (n,)."""
+        return self.certificate.w
+
+    @property
+    def residual(self) -> float:
+        """The natural residual, absolute."""
+        return self.certificate.residual
+
+    @property
+    def relative_residual(self) -> float:
+        """The same with each row relative to its terms."""
+        return self.certificate.relative_residual
+
+
+def solve_complementarity(
+    problem: MixedComplementarity, x0: Any = None, *, tolerance: float = 1e-10, budget: Budget | None = None
+) -> ComplementaritySolution:
+    """Solve a nonlinear complementarity problem: by Newton's method from x0, else along Wang's path and so again.
+
+    Parameters
+    ----------
+    problem : MixedComplementarity
+    x0 : array_like, shape (n,), optional
+        Strictly between the bounds; by default near zero.
+    tolerance : float
+        Of the relative residual.
+    budget : continuation.Budget, optional
+        Of the path.
+
+    Returns
+    -------
+    ComplementaritySolution
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument.
+
+    References
+    ----------
+    Josephy, "Newton's method for generalized equations", Math. Research Center Report 1965, Madison 1979.
+    """
+    if not isinstance(problem, MixedComplementarity):
+        raise TypeError(f"problem: expected a MixedComplementarity, found {type(problem).__name__}")
+    homotopy = InteriorHomotopy(problem, x0)
+    direct = _josephy(problem, homotopy.x0, tolerance)
+    if direct.relative_residual <= tolerance:
+        return ComplementaritySolution(True, direct, None, "Solved by Newton's method from the start.")
+    path = continuation.trace(homotopy, budget=Budget() if budget is None else budget)
+    end = homotopy.x0 if not path.steps else path.endpoint.y[: problem.n]
+    polished = _josephy(problem, np.clip(end, problem.lower, problem.upper), tolerance)
+    best = min(direct, polished, key=lambda one: one.relative_residual)
+    solved = best.relative_residual <= tolerance
+    arrived = path.status is Status.REACHED_TARGET
+    what = "Solved at the end of" if solved else "Not solved, neither by Newton's method nor along"
+    return ComplementaritySolution(
+        solved, best, path, f"{what} Wang's path{'' if arrived else ', which did not arrive'}. {path.message}"
+    )
+
+
+def _josephy(problem: MixedComplementarity, x: Array, tolerance: float) -> Certificate:
+    """The best point of Newton's method: solve the linearised problem, linearise at its solution."""
+    with np.errstate(all="ignore"):
+        affine = problem.linearized(x)
+        best = certify(affine, np.clip(x, problem.lower, problem.upper))
+        for _ in range(NEWTON_STEPS):
+            found = solve_affine(affine, restarts=0, budget=AFFINE)
+            if found.x is None or not found.success:
+                break
+            try:
+                affine = problem.linearized(found.x)
+            except ValueError:  # it left the domain of F
+                break
+            now = certify(affine, found.x)
+            stalled = best.relative_residual <= tolerance and now.relative_residual >= best.relative_residual
+            best = min(best, now, key=lambda one: one.relative_residual)
+            if stalled or best.relative_residual == 0.0:
+                break
+    return best

@@ -1,0 +1,162 @@
+"""What comes through the door of `MixedLCP`, `from_qp` and the readers: sound, or refused with the index."""
+
+import importlib.util
+import json
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as sp
+from hypothesis import find, given
+from hypothesis import strategies as st
+
+from continuation.cli import main
+from problems import lcp
+from problems.lcp.data.files import InputError, read_problem, read_program
+from problems.lcp.mixed_strategies import planted_mixed_lcps
+
+A, Q = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-5.0, -6.0])
+
+REFUSED = {
+    "above": ((0, [1, -2]), r"lower: expected at most upper, found lower\[1\] = 0.0 > upper\[1\] = -2.0"),
+    "nan": (([0, np.nan], 1), "lower: expected numbers or -inf, found nan at index 1"),
+    "infinite lower": (([np.inf, 0], np.inf), "lower: expected numbers or -inf, found inf at index 0"),
+    "infinite upper": ((0, [1, -np.inf]), "upper: expected numbers or inf, found -inf at index 1"),
+    "length": (([0, 0, 0], 1), r"lower: expected 2 numbers, one an unknown, found shape \(3,\)"),
+    "sparse": ((sp.csr_array([[0.0, 1.0]]), 2), "lower: expected a dense vector, found a sparse one"),
+    "text": ((["a", "b"], 2), "lower: expected real numbers"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_bounds_that_are_none_are_refused(case):
+    bounds, message = REFUSED[case]
+    with pytest.raises(ValueError, match=message):
+        lcp.MixedLCP(A, Q, *bounds)
+
+
+def test_integers_one_number_and_none_are_bounds():
+    problem = lcp.MixedLCP(A, Q, np.array([0, 1], dtype=np.int8), 3)
+    assert problem.lower.dtype == float
+    assert problem.upper.tolist() == [3.0, 3.0]
+    assert np.isinf(lcp.MixedLCP(A, Q).lower).all()
+    assert lcp.MixedLCP(A, Q, 0).standard
+
+
+def test_an_lcp_is_a_problem_with_bounds_and_carries_none():
+    problem = lcp.LCP(A, Q)
+    assert isinstance(problem, lcp.MixedLCP)
+    assert problem.lower.strides == problem.upper.strides == (0,)
+    mixed = lcp.MixedLCP(A, Q, 0.0, np.inf)
+    a, b = lcp.solve(problem), lcp.solve(mixed)
+    np.testing.assert_array_equal(a.x, b.x)
+    assert (a.outcome, a.message, a.counts) == (b.outcome, b.message, b.counts)
+
+
+def test_a_fixed_unknown_is_eliminated_and_named():
+    solution = lcp.solve(lcp.MixedLCP(A, Q, [1.5, 0.0], [1.5, np.inf]))
+    np.testing.assert_array_equal(solution.x, [1.5, 2.25])
+    assert "Fixed, and eliminated: x[0]." in solution.message
+    every = lcp.solve(lcp.MixedLCP(A, Q, [1, 2], [1, 2]))
+    assert every.success
+    np.testing.assert_array_equal(every.x, [1.0, 2.0])
+
+
+PROGRAM_REFUSED = {
+    "asymmetric": ({"P": [[1, 2], [0, 1]], "c": [1, 1]}, r"P: expected a symmetric matrix, found P\[0, 1\] unlike"),
+    "rows alone": ({"P": np.eye(2), "c": [1, 1], "G": [[1, 1]]}, "G: expected rows and one side of them"),
+    "equations alone": ({"P": np.eye(2), "c": [1, 1], "b_eq": [1]}, "A_eq: expected A_eq and b_eq, or neither"),
+    "columns": ({"P": np.eye(2), "c": [1, 1], "G": [[1, 1, 1]], "h": 1}, "G: expected 2 columns"),
+    "crossed rows": (
+        {"P": np.eye(2), "c": [1, 1], "G": [[1, 1]], "h": [0], "rows_lower": [1]},
+        r"rows_lower: expected at most h, found rows_lower\[0\] = 1.0 > h\[0\] = 0.0",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", PROGRAM_REFUSED)
+def test_programs_that_do_not_fit_are_refused(case):
+    given_, message = PROGRAM_REFUSED[case]
+    with pytest.raises(ValueError, match=message):
+        lcp.from_qp(**given_)
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".json", ".mat", ".h5"])
+def test_bounds_and_programs_are_read_from_every_container(tmp_path, suffix):
+    bounded = {"A": A, "q": Q, "lower": [0.0, -np.inf], "upper": [1.0, np.inf]}
+    program = {"P": A, "c": Q, "G": np.ones((1, 2)), "h": [2.0], "rows_lower": [-np.inf], "lower": [0.0, 0.0]}
+    for name, data in (("bounded", bounded), ("program", program)):
+        file = tmp_path / (name + suffix)
+        if suffix == ".npz":
+            np.savez(file, **data)
+        elif suffix == ".mat":
+            scipy.io.savemat(file, data)
+        elif suffix == ".h5":
+            with h5py.File(file, "w") as root:
+                for key, value in data.items():
+                    root[key] = value
+        else:
+            text = {k: np.asarray(v).tolist() for k, v in data.items()}
+            text = {k: [None if np.ndim(e) == 0 and np.isinf(e) else e for e in v] for k, v in text.items()}
+            file.write_text(json.dumps(text))
+    problem = read_problem(tmp_path / ("bounded" + suffix))
+    np.testing.assert_array_equal(problem.upper, [1.0, np.inf])
+    np.testing.assert_array_equal(problem.lower, [0.0, -np.inf])
+    assert read_program(tmp_path / ("bounded" + suffix)) is None
+    read = read_program(tmp_path / ("program" + suffix))
+    np.testing.assert_allclose(lcp.solve(read).x, lcp.solve(lcp.from_qp(**program)).x, rtol=0, atol=0)
+
+
+def test_bad_bounds_in_a_file_are_one_line(tmp_path):
+    np.savez(tmp_path / "p.npz", A=A, q=Q, lower=[0.0, 2.0], upper=[1.0, 1.0])
+    with pytest.raises(InputError, match=r"path: lower: expected at most upper, found lower\[1\]"):
+        read_problem(tmp_path / "p.npz")
+
+
+def test_models_are_read_by_highs_where_it_is_installed(tmp_path):
+    pytest.importorskip("highspy")
+    (tmp_path / "t.mps").write_text(
+        "NAME T\nROWS\n N COST\n L LIM1\n G LIM2\nCOLUMNS\n X COST 1.0 LIM1 1.0\n X LIM2 1.0\n Y COST 2.0 LIM1 1.0\n"
+        "RHS\n RHS LIM1 4.0 LIM2 1.0\nBOUNDS\n UP BND X 4.0\n LO BND Y -1.0\nENDATA\n"
+    )
+    solution = lcp.solve(read_program(tmp_path / "t.mps"))
+    np.testing.assert_array_equal(solution.named["x"], [1.0, -1.0])
+    assert solution.objective == -1.0
+
+
+@given(st.from_type(lcp.MixedLCP), st.from_type(lcp.Program))
+def test_hypothesis_finds_problems_and_programs(problem, program):
+    assert type(problem) is lcp.MixedLCP
+    assert problem.n == problem.lower.size
+    assert program.convex
+
+
+@given(planted_mixed_lcps())
+def test_planted_solutions_solve(planted):
+    problem, x = planted
+    assert problem.natural_residual(x) == 0.0
+    assert lcp.certify_exactly(problem, x).solves or problem.n == 0
+
+
+def test_problems_of_every_kind_of_bound_are_drawn():
+    found = find(st.from_type(lcp.MixedLCP), lambda p: p.fixed.any() and np.isinf(p.lower).any() and p.n == 2)
+    assert found.n == 2
+
+
+def test_the_shell_solves_bounds_and_programs(tmp_path, capsys):
+    bounds = {"A": [[2, 1], [1, 2]], "q": [-5, -6], "lower": [0, None], "upper": [1, None]}
+    (tmp_path / "bounds.json").write_text(json.dumps(bounds))
+    assert main(["solve", str(tmp_path / "bounds.json"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["x"] == pytest.approx([1.0, 2.5], rel=1e-15)
+    program = {"P": [[2, 0], [0, 2]], "c": [-2, -6], "G": [[1, 1]], "h": [2], "lower": [0, 0]}
+    (tmp_path / "program.json").write_text(json.dumps(program))
+    assert main(["solve", str(tmp_path / "program.json"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert (said["objective"], said["named"]["rows"]) == (-8.0, [-2.0])
+    assert main(["solve", str(tmp_path / "program.json")]) == 0
+    assert "objective  -8" in capsys.readouterr().out
+    (tmp_path / "model.mps").write_text("NAME")
+    if importlib.util.find_spec("highspy") is None:
+        assert main(["solve", str(tmp_path / "model.mps")]) == 2
+        assert "expected highspy for this format" in capsys.readouterr().err
