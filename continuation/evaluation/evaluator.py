@@ -58,6 +58,11 @@ class CountedSystem:
         """The bordered solve; EvaluationError where the answer is not finite."""
         return self._counted(self.system.solve, r, rho)
 
+    @property
+    def approximates(self) -> bool:
+        """Whether `approximate` is another solve than `solve`."""
+        return hasattr(self.system, "approximate")
+
     def approximate(self, r: Array, rho: float) -> Array:
         """The same for an iteration that measures its own residual: not refined where the structure can do without."""
         return self._counted(getattr(self.system, "approximate", self.system.solve), r, rho)

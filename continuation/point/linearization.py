@@ -19,6 +19,9 @@ REFINED = 1e-14
 ROUND_OFF_LEFT = 1e3
 """Where round-off ends the contraction earlier, a last increment within this factor of the one wanted will do."""
 
+UNSEEN = 1e-6
+"""What an exact solve may find left of a tangent that was refined by another: six digits, as a step's tangent has."""
+
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
 """The last increment of a refined solve, relative to its solution, and the one that will do where round-off ends the
 contraction: a series of order 30 at half its range still has nine digits with it."""
@@ -160,9 +163,15 @@ def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accu
         return anchor.system.approximate(-apply(v), 1.0 - float(np.dot(anchor.border, v)))
 
     done = refinement.run(increment, magnitude, lambda size: size <= accuracy * largest(refinement.x))
-    if done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * largest(refinement.x)):
-        return refinement.x
-    return None
+    if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * largest(refinement.x))):
+        return None
+    v = refinement.x
+    if anchor.system.approximates:
+        # Increments of a solver that is not exact may be small because it does not see what is left.
+        left = anchor.system.solve(-apply(v), 1.0 - float(np.dot(anchor.border, v)))
+        if largest(left) > UNSEEN * largest(v):
+            return None
+    return v
 
 
 @frozen(eq=False)
