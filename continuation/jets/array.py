@@ -38,18 +38,17 @@ def _method(function: Any) -> Callable[..., Any]:
     def method(self: Jet, *args: Any, **keywords: Any) -> Any:
         return function(self, *args, **keywords)
 
-    section = "Parameters\n----------\n*args, **keywords\n    As for that function."
-    method.__doc__ = f"`numpy.{function.__name__}` of this jet.\n\n{section}"
+    parameters = "Parameters\n----------\n*args, **keywords\n    As for that function."
+    method.__doc__ = f"`numpy.{function.__name__}` of this jet.\n\n{parameters}"
     return method
 
 
 class Jet:
     """An array of truncated power series, sum_k c[k] s**k.
 
-    It has the shape of one coefficient and goes through numpy as an array of that shape would: operators,
-    indexing, assignment, ufuncs and the common numpy functions. Comparisons look at the leading coefficient.
-    An operation that jets do not know raises TypeError and names itself; one that has no series at the
-    leading coefficient raises `JetDomainError`.
+    It has the shape of one coefficient and goes through numpy as an array of that shape would: operators, indexing,
+    assignment, ufuncs and the common numpy functions. Comparisons look at the leading coefficient. An operation that
+    jets do not know raises TypeError and names itself; one without a series at that coefficient `JetDomainError`.
 
     Parameters
     ----------
@@ -230,13 +229,10 @@ class ArrayJet(Jet):
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
         caller = sys._getframe(1)
         if caller.f_code.co_name == "_matmul_dispatch" and caller.f_globals["__name__"].startswith("scipy.sparse"):
-            # A sparse matrix times a jet: scipy asks by a conversion whether it can do that. An array of one object
-            # says no, and Python goes on to `__rmatmul__`.
-            return np.array(None, dtype=object)
+            return np.array(None, dtype=object)  # "no" in scipy's terms: Python goes on to `__rmatmul__`
         raise TypeError(
-            "a Jet cannot become a plain array, which would drop its series: leave out numpy.asarray, use np.stack "
-            "for np.array([jet, ...]) and np.zeros_like(y) for an array to assign into, and numpy functions for those "
-            "of other packages; or give a jacobian"
+            "a Jet cannot become a plain array, which would drop its series: leave out numpy.asarray, use np.stack for "
+            "np.array([jet, ...]), np.zeros_like(y) to assign into, and functions of numpy alone; or give a jacobian"
         )
 
     def __bool__(self) -> bool:
@@ -299,8 +295,7 @@ def gather(x: Any) -> Any:
 
 def as_jet(x: Any, like: Jet) -> Jet:
     """`x` as a jet of the order and algebra of `like`."""
-    x = gather(x)
-    if isinstance(x, Jet):
+    if isinstance(x := gather(x), Jet):
         common((like, x))
         return x
     c = np.zeros((len(like.c), *x.shape))
@@ -310,9 +305,8 @@ def as_jet(x: Any, like: Jet) -> Jet:
 
 def common(operands: Any) -> Algebra:
     """The algebra of the jets among the operands, whose orders must agree."""
-    jets = [x for x in operands if isinstance(x, Jet)]
-    first = jets[0]
-    for jet in jets[1:]:
+    first, *others = (x for x in operands if isinstance(x, Jet))
+    for jet in others:
         if len(jet.c) != len(first.c) or type(jet.algebra) is not type(first.algebra):
             raise ValueError(f"jets of different kinds meet: orders {first.order} and {jet.order}")
     return first.algebra

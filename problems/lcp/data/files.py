@@ -5,36 +5,25 @@ A container (.npz, .json, .mat, .h5) holds named arrays, ``A`` and ``q``; the ot
 
 from __future__ import annotations
 
-import json
 import math
 import re
-import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import scipy.io
 import scipy.sparse as sp
 
-from continuation.archive.datasets import dataset, member, subgroup
-from continuation.archive.image import Image
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.matlab import read_level5
+from problems.lcp.data.containers import ALONE, BOUNDS, PROGRAM, READERS, read_hdf5
 from problems.lcp.data.models import MODEL_FORMATS, read_model
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, sound_sparse
-
-ALONE = ""
-"""The name of the array in a file that holds one array without a name."""
-
-LIMIT = 1 << 32
-"""Bytes that a compressed file may unfold to; one that is not compressed is as large as it is."""
 
 ROWS = 1 << 22
 """Rows of a sparse matrix, or as many as its file has bytes: each takes memory, also where it has no entry."""
@@ -44,16 +33,8 @@ _UNREADABLE = (
     MemoryError, RuntimeError, AttributeError, IndexError, zipfile.BadZipFile, zlib.error, scipy.io.matlab.MatReadError,
 )  # fmt: skip
 
-_BOUNDS = ("lower", "upper")
-
 _CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
 """In the name of a file that holds named arrays."""
-
-_PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *_BOUNDS, "rows_lower")
-"""The arguments of `from_qp`; a container with c in place of q is one of a program."""
-
-_WANTED = ("A", "q", "x0", *_PROGRAM)
-"""What is looked for in an HDF5 file, which may hold much else."""
 
 _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECASE)
 
@@ -103,8 +84,8 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
         vector = _named(_contents("q", q), "q", "q", q)
     try:
         problem: MixedLCP = LCP(A, _flat(vector))
-        if any(name in contents for name in _BOUNDS):
-            problem = MixedLCP(A, _flat(vector), *(_bound(contents, name, path) for name in _BOUNDS))
+        if any(name in contents for name in BOUNDS):
+            problem = MixedLCP(A, _flat(vector), *(_bound(contents, name, path) for name in BOUNDS))
         if problem.n == 0:
             raise ValueError("A: expected a square matrix, found shape (0, 0)")
         return problem
@@ -139,8 +120,8 @@ def read_program(path: str | PathLike[str]) -> Program | None:
     if "c" not in contents or "q" in contents or "A" in contents:
         return None
     given: dict[str, Any] = {}
-    for name in _PROGRAM:
-        if name in contents and name in ("h", *_BOUNDS, "rows_lower"):
+    for name in PROGRAM:
+        if name in contents and name in ("h", *BOUNDS, "rows_lower"):
             given[name] = _bound(contents, name, path)
         elif name in contents:
             value = _named(contents, name, "path", path)
@@ -196,13 +177,13 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
         raise InputError(argument, f"expected a file, found nothing at {_shown(file)}")
     if not Path(file).is_file():
         raise InputError(argument, f"expected a file, found a directory or a device at {_shown(file)}")
-    if suffix not in _READERS:
-        known = ", ".join(_READERS)
+    if suffix not in READERS:
+        known = ", ".join(READERS)
         raise InputError(argument, f"expected one of {known}, found {suffix or 'no extension'} in {_shown(file)}")
     try:
         # Sizes that a head claims overflow when they are multiplied.
         with np.errstate(over="ignore"):
-            return _hdf5(file, group) if suffix in (".h5", ".hdf5") else _READERS[suffix](file)
+            return read_hdf5(file, group) if suffix in (".h5", ".hdf5") else READERS[suffix](file)
     except _UNREADABLE as error:
         reason = str(error) or type(error).__name__
         complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
@@ -242,118 +223,3 @@ def _flat(value: Matrix) -> Matrix:
     """A row or a column as a vector, anything else as it is: which of them a format has is its own affair."""
     array = value.toarray() if sp.issparse(value) else value
     return array.ravel() if array.ndim == 2 and 1 in array.shape else array
-
-
-def _claims(size: int, file: str) -> None:
-    """Whether so many bytes are to be unpacked from a file: not more than it has, nor than a limit where it is packed.
-
-    Raises
-    ------
-    ValueError
-        If they are more.
-    """
-    if size > max(LIMIT, Path(file).stat().st_size):
-        raise ValueError(f"it claims {size} bytes, expected at most {LIMIT} where a file is compressed")
-
-
-def _npz(file: str) -> Mapping[str, Any]:
-    if zipfile.is_zipfile(file):
-        with zipfile.ZipFile(file) as archive:
-            _claims(sum(part.file_size for part in archive.infolist()), file)
-    stored = np.load(file, mmap_mode="r", allow_pickle=False)
-    if not isinstance(stored, np.lib.npyio.NpzFile):
-        raise ValueError("it holds one array, not named arrays")
-    with stored:
-        if {"format", "shape", "data"} <= set(stored.files):
-            return {ALONE: sp.load_npz(file)}
-        return {name: stored[name] for name in stored.files}
-
-
-def _npy(file: str) -> Mapping[str, Any]:
-    if zipfile.is_zipfile(file):
-        raise ValueError("it holds named arrays, not one")
-    # A map of the file is no larger than the file, whatever its head claims.
-    return {ALONE: np.array(np.load(file, mmap_mode="r", allow_pickle=False))}
-
-
-def _json(file: str) -> Mapping[str, Any]:
-    value = json.loads(Path(file).read_text(encoding="utf-8"))
-    if isinstance(value, dict):
-        return value
-    if isinstance(value, list):
-        return {ALONE: value}
-    raise ValueError(f"it holds {value!r}, not an object with A and q")
-
-
-def _mat(file: str) -> Mapping[str, Any]:
-    raw = Path(file).read_bytes()
-    if 0 not in raw[:4]:
-        return read_level5(raw, LIMIT)
-    # Level 4, which begins with small numbers.
-    try:
-        with warnings.catch_warnings(action="error"):
-            _claims(8 * sum(math.prod(shape) for _, shape, kind in scipy.io.whosmat(file) if kind != "sparse"), file)
-            return {name: value for name, value in scipy.io.loadmat(file).items() if not name.startswith("__")}
-    except UserWarning as warning:
-        raise ValueError(str(warning)) from None
-
-
-def _matrix_market(file: str) -> Mapping[str, Any]:
-    rows, columns, entries, form, _, _ = scipy.io.mminfo(file)
-    # A number and the end of its line take two bytes at least.
-    if (rows * columns if form == "array" else entries) > Path(file).stat().st_size:
-        raise ValueError(f"it claims {entries} entries, and is too short for them")
-    return {ALONE: scipy.io.mmread(file)}
-
-
-def _text(file: str) -> Mapping[str, Any]:
-    text = Path(file).read_text(encoding="utf-8")
-    rows = [line.split("#")[0].replace(",", " ").split() for line in text.splitlines()]
-    numbers = [[float(number) for number in row] for row in rows if row]
-    if not numbers:
-        raise ValueError("it is empty")
-    return {ALONE: np.array(numbers)}
-
-
-def _hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
-    image = Image(Path(file))
-    try:
-        with h5py.File(image, "r") as root:
-            if group is not None:
-                at = root
-                for part in filter(None, group.split("/")):
-                    if part not in at:
-                        raise ValueError(f"no group {group}")
-                    at = subgroup(at, part)
-            else:
-                nested = subgroup(root, "problem") if "problem" in root and "A" not in root else None
-                at = root if nested is None else nested
-            found = {name: _from_hdf5(at, name) for name in _WANTED if name in at}
-            if not found:
-                raise ValueError(f"none of {', '.join(_WANTED)} in its group {at.name}")
-            return found
-    finally:
-        image.close()
-
-
-def _from_hdf5(group: Any, name: str) -> Matrix:
-    """A dataset, or the parts of a compressed sparse matrix in a group."""
-    node = member(group, name)
-    if isinstance(node, h5py.Dataset):
-        return dataset(group, name, None, None, LIMIT)[()]
-    parts = [dataset(node, part, None, (None,), LIMIT)[()] for part in ("data", "indices", "indptr")]
-    shape = tuple(int(n) for n in (dataset(node, "shape", None, (2,))[()] if "shape" in node else node.attrs["shape"]))
-    return sp.csr_array((parts[0], parts[1], parts[2]), shape=shape)
-
-
-_READERS: Mapping[str, Callable[[str], Mapping[str, Any]]] = {
-    ".npz": _npz,
-    ".json": _json,
-    ".mat": _mat,
-    ".h5": _hdf5,
-    ".hdf5": _hdf5,
-    ".mtx": _matrix_market,
-    ".npy": _npy,
-    ".txt": _text,
-    ".csv": _text,
-}
