@@ -117,7 +117,11 @@ def _nonlinearity(
     there = point.u + h * v
     d = corrected(there)
     e = corrected(there + d)
-    turned = float(np.median(np.abs(d[moving]) / (h * np.abs(v[moving]))))
+    relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
+    turned = float(np.median(relative))
+    if moving[-1]:
+        # Unknowns that all move alike turn against the parameter alone.
+        turned = max(turned, 0.5 * float(relative[-1]))
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0
     first, second = float(np.linalg.norm(d / scale)), float(np.linalg.norm(e / scale))
