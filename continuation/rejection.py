@@ -23,6 +23,9 @@ class Rejection(Enum):
     ELSEWHERE = "the end found is not where the path was heading"
     CONTROLLER = "the controller refuses it, as it does the shortest step where the Jacobian is wrong"
     ORIENTATION = "the determinant changes its sign on the arc, and no branch point is found there"
+    CROSSINGS = "several branches cross on the arc"
+    OTHER_BRANCH = "the arc crosses a branch and ends on it"
+    AT_CROSSING = "the arc ends in a crossing, as far as can be told"
     MIDPOINT = "the inside of the arc is not on the path"
     ARC = "the inside of the arc could not be evaluated"
 
@@ -45,12 +48,15 @@ class Rejected:
         What is particular to this attempt.
     contraction : float
         Largest ratio of successive increments of the corrector; nan where it did not get so far.
+    factor : float
+        Of the step length: what an examination of the arc says of the next attempt.
     """
 
     h: float
     reason: Rejection
     detail: str = ""
     contraction: float = math.nan
+    factor: float = 0.5
 
     def __str__(self) -> str:
         return f"{self.reason.value}: {self.detail}" if self.detail else self.reason.value

@@ -6,11 +6,10 @@ a `Rejection`.
 
 from __future__ import annotations
 
-from attrs import frozen
+from attrs import field, frozen
 
 from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events.branch_point import locate_branch_point
 from continuation.events.scan import first_terminal, scan_events
 from continuation.path import LocatedEvent
 from continuation.point.arc import angle_between, arc_between, cut, length_between, position
@@ -19,6 +18,7 @@ from continuation.point.projection import PathSolver, arc_on_path
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.status import Kind
+from continuation.step.crossing import Crossings
 from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.stepper import Arrival
@@ -43,6 +43,11 @@ class Examiner:
     solver: PathSolver
     settings: Settings
     target: Target
+    crossings: Crossings = field(init=False)
+
+    @crossings.default
+    def _crossings(self) -> Crossings:
+        return Crossings(self.solver)
 
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
@@ -64,15 +69,18 @@ class Examiner:
         arc = arc_between(point, arrival, prediction)
         crossed: list[tuple[int, Linearization]] = []
         try:
-            if arrival.orientation not in (0, orientation):
-                index = self.settings.branch_index
-                branch = None if index is None else locate_branch_point(self.solver, point, arrival)
-                if index is None or branch is None:
-                    return _rejected(attempt, Rejection.ORIENTATION)
-                crossed.append((index, branch))
-                orientation = arrival.orientation
             if not arc_on_path(self.solver, arc, attempt.correction.distance):
                 return _rejected(attempt, Rejection.MIDPOINT)
+            index, flipped = self.settings.branch_index, arrival.orientation not in (0, orientation)
+            if index is not None:
+                points = self.crossings.on_arc(arc, attempt, prediction, flipped)
+                if isinstance(points, Rejected):
+                    return points
+                crossed = [(index, at) for at in points]
+            elif flipped:
+                return _rejected(attempt, Rejection.ORIENTATION)
+            if flipped:
+                orientation = arrival.orientation
             ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
             found, monitors = scan_events(self.solver, events, state.monitors, ending.arc)
         except EvaluationError as error:

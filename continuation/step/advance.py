@@ -139,7 +139,7 @@ class Advance:
                 examined = self.examiner.examine(point, state, attempt, prediction, landed=False)
                 if isinstance(examined, Accepted):
                     return self._moved(point, state, examined, memory, h, rejected)
-                failed, h = examined, attempt.h / 2.0
+                failed, h = examined, attempt.h * examined.factor
             rejected = (*rejected, failed)
             self.solver.evaluator.counts.rejected += 1
             if failed.reason is Rejection.SINGULAR:

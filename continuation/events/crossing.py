@@ -1,0 +1,67 @@
+"""Which branches cross an arc, and about where: seen from a factorisation at its beginning, whatever lies on it.
+
+With M_a and M_c the bordered matrices of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of
+C = I - M_a^{-1} M_c. So on an arc that no branch crosses C has no real eigenvalue beyond one; a determinant's sign,
+which sees parity only, is not asked. Units and the scaling of equations change nothing: M_a^{-1} M_c has those of u
+alone. On a straight branch of an H that is affine in the parameter the places are exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from continuation.arrays import Array, generic_vector
+from continuation.point.linearization import Linearization
+
+PRODUCTS = 40
+"""At most so many dimensions of the Krylov space; on a path that nothing crosses two are usual."""
+
+CONVERGED = 0.05
+"""Of an eigenvalue: it tells about where the crossing lies, and Newton's method does the rest."""
+
+EXHAUSTED = 1e-10
+"""A vector that loses all but this to the ones before it has no direction of its own."""
+
+
+def singular_places(a: Linearization, apply: Callable[[Array], Array], border: Array, farthest: float) -> list[float]:
+    """Where on the way from M_a to another bordered matrix M there are singular ones: t in order, 1 at M itself.
+
+    Arnoldi's method on C with a vector in general position, until the eigenvalues on the right are known. Each
+    dimension takes a product with M and a solve at a.
+
+    Parameters
+    ----------
+    a : Linearization
+    apply : callable
+        v -> H' v at the other point.
+    border : ndarray, shape (N + 1,)
+        The last row there: its tangent in the dual metric, so that a path that merely turns gives complex eigenvalues.
+    farthest : float
+        Beyond 1 the places are extrapolated: up to here they are told.
+    """
+    scale = np.sqrt(a.weights)
+    n = min(PRODUCTS, a.u.size)
+    Q, H = np.zeros((n + 1, a.u.size)), np.zeros((n + 1, n))
+    Q[0] = generic_vector(a.u.size)
+    Q[0] /= np.linalg.norm(Q[0])
+    for k in range(n):
+        q = Q[k] / scale
+        x = Q[k] - scale * a.solve(apply(q), float(np.dot(border, q)))
+        size = float(np.linalg.norm(x))
+        for _ in range(2):
+            part = Q[: k + 1] @ x
+            H[: k + 1, k] += part
+            x = x - part @ Q[: k + 1]
+        H[k + 1, k] = float(np.linalg.norm(x))
+        whole = k + 1 == a.u.size or H[k + 1, k] <= EXHAUSTED * size
+        values, vectors = np.linalg.eig(H[: k + 1, : k + 1])
+        left = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
+        ahead = values.real + left > 1.0 / farthest
+        known = left <= CONVERGED * np.abs(values)
+        if whole or (k > 0 and known[ahead].all()):
+            break
+        Q[k + 1] = x / H[k + 1, k]
+    real = np.abs(values.imag) <= left + EXHAUSTED * np.abs(values)
+    return sorted(float(1.0 / value) for value in values[real].real if value > 1.0 / farthest)

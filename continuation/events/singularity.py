@@ -1,0 +1,242 @@
+"""Simple branch points as regular zeros: Newton's method on a minimally augmented system, and the two directions there.
+
+All of it is done in the units of the path: columns are multiplied by the extents of the metric, rows divided by what
+they are made of, so that neither units nor the place of zero count.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse.linalg import splu
+
+from continuation.arrays import Array, Matrix, generic_vector
+from continuation.contraction import HALVING, Contraction, Iteration
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.linear import Banded, Symmetric
+from continuation.metric import norm
+
+POLISHING = Contraction(iterations=15, ratio=np.inf)
+"""Newton's method from a guess: its first increments may grow, and where it goes is checked afterwards."""
+
+POLISHED, POLISHED_NEARLY = 1e-14, 1e-6
+"""The last increment, in extents; and the size below which increments that no longer halve are round-off."""
+
+SECOND = 1e-5
+"""Of an extent: the step of second derivatives, a central difference of first ones; ten digits of the path."""
+
+RANK = 1e-6
+"""What may be left of the singular value, relative to H', where it is said to vanish: the root of POLISHED and more."""
+
+TRANSVERSAL = 1e-9
+"""The least discriminant, relative to the coefficients, of directions that are not one: the digits of SECOND."""
+
+IMPERFECT = 1e-8
+"""What the augmented system may add to H, relative to its terms: more, and H has no zero where H' loses its rank."""
+
+
+@frozen(eq=False)
+class SimpleBranchPoint:
+    """A point where H vanishes and H' has rank N - 1.
+
+    Attributes
+    ----------
+    u : ndarray, shape (N + 1,)
+    directions : tuple of two ndarrays, shape (N + 1,)
+        Of the two branches, of unit length in the metric.
+    """
+
+    u: Array
+    directions: tuple[Array, Array]
+
+
+@frozen(eq=False)
+class ScaledDerivative:
+    """H' in the units of a path.
+
+    Attributes
+    ----------
+    evaluator : Evaluator
+    extent : ndarray, shape (N + 1,)
+        By which columns are multiplied.
+    rows : ndarray, shape (N,)
+        By which rows are divided.
+    """
+
+    evaluator: Evaluator
+    extent: Array
+    rows: Array
+
+    def at(self, u: Array) -> Matrix:
+        """H' at u, shape (N, N + 1), dense or sparse."""
+        full = full_derivative(self.evaluator, u)
+        if sp.issparse(full):
+            return sp.csc_array(sp.diags_array(1.0 / self.rows) @ full @ sp.diags_array(self.extent))
+        return full * self.extent / self.rows[:, None]
+
+    def second(self, u: Array, phi: Array, w: Array) -> Array:
+        """The row phi' H''[w, .], shape (N + 1,), by a central difference of H' along w."""
+        eps = SECOND / float(np.linalg.norm(w))
+        move = eps * w * self.extent
+        row: Array = (self.at(u + move).T @ phi - self.at(u - move).T @ phi) / (2.0 * eps)
+        return row
+
+
+def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
+    """H' = [H_y, H_lam], shape (N, N + 1), dense or sparse."""
+    H_y, H_lam = evaluator.derivative(u[:-1], float(u[-1]))
+    evaluator.counts.jacobians += 1
+    column = np.asarray(H_lam, dtype=float).reshape(-1, 1)
+    if isinstance(H_y, Symmetric):
+        H_y = H_y.matrix
+    if isinstance(H_y, Banded):
+        H_y = H_y.tosparse()
+    if sp.issparse(H_y):
+        return sp.csc_array(sp.hstack([H_y, sp.csc_array(column)]))
+    if not isinstance(H_y, np.ndarray):
+        raise EvaluationError("a matrix is needed at a branch point, and the Jacobian is an operator")
+    return np.hstack([H_y, column])
+
+
+def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> Array:
+    """The largest entry of each row of H' at some points, its columns in units of the path; 1 where there is none."""
+    sizes = np.zeros(extent.size - 1)
+    for u in points:
+        full = abs(full_derivative(evaluator, u))
+        if sp.issparse(full):
+            found = (full @ sp.diags_array(extent)).max(axis=1).toarray().ravel()
+        else:
+            found = (full * extent).max(axis=1)
+        sizes = np.maximum(sizes, found)
+    return np.where(sizes > 0.0, sizes, 1.0)
+
+
+@frozen(eq=False)
+class Bordered:
+    """The doubly bordered matrix [[H', b], [C, 0]] of order N + 2, factored: regular where H' has rank N - 1 or N.
+
+    Its solutions give the null spaces of H' at a simple branch point (Govaerts, Numerical Methods for Bifurcations of
+    Dynamical Equilibria, Section 3.3).
+    """
+
+    matrix: Matrix
+    column: Array
+    rows: Array
+
+    @cached_property
+    def _factor(self) -> object:
+        H, column, rows = self.matrix, self.column, self.rows
+        if sp.issparse(H):
+            return splu(sp.csc_array(sp.block_array([[H, sp.csc_array(column[:, None])], [sp.csc_array(rows), None]])))
+        return lu_factor(np.block([[H, column[:, None]], [rows, np.zeros((2, 1))]]), check_finite=False)
+
+    def solve(self, r: Array, transposed: bool = False) -> Array:
+        """The solution of the bordered system, or of its transpose."""
+        if sp.issparse(self.matrix):
+            x: Array = self._factor.solve(r, trans="T" if transposed else "N")
+            return x
+        y: Array = lu_solve(self._factor, r, trans=int(transposed), check_finite=False)
+        return y
+
+    @cached_property
+    def left(self) -> Array:
+        """(phi, gamma): what spans the left null space, and two numbers, how far H' is from losing rank."""
+        unit = np.zeros(self.column.size + 2)
+        unit[-1] = 1.0
+        return self.solve(unit, transposed=True)
+
+    @cached_property
+    def kernel(self) -> Array:
+        """Columns that span the right null space, with a last row, shape (N + 2, 2)."""
+        rights = np.zeros((self.column.size + 2, 2))
+        rights[-2, 0] = rights[-1, 1] = 1.0
+        return self.solve(rights)
+
+    def refreshed(self, matrix: Matrix) -> Bordered:
+        """Another H' with this one's null vectors as its borders: then the bordered matrix is conditioned best."""
+        phi, kernel = self.left[:-2], np.linalg.qr(self.kernel[:-1])[0].T
+        return Bordered(matrix, phi / np.linalg.norm(phi), kernel)
+
+
+def branch_point_near(evaluator: Evaluator, guess: Array, weights: Array, rows: Array) -> SimpleBranchPoint | None:
+    """Newton's method on H(u) + beta b = 0, gamma(u) = 0; None where that fails or finds no simple branch point.
+
+    The system is regular at a simple branch point, where beta = 0 (Govaerts, Section 8.1, with the imperfection as an
+    unknown). One factorisation and five evaluations of H' for each increment.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+    guess : ndarray, shape (N + 1,)
+    weights : ndarray, shape (N + 1,)
+        Of the metric of the path.
+    rows : ndarray, shape (N,)
+        What the rows of H' are made of; see `row_sizes`.
+    """
+    extent, n = 1.0 / np.sqrt(weights), guess.size - 1
+    scaled = ScaledDerivative(evaluator, extent, rows)
+    generic = generic_vector(3 * n + 2)
+    newton = Iteration(np.append(guess, 0.0), POLISHING)
+    here = Bordered(np.zeros((n, n + 1)), generic[:n], generic[n:].reshape(2, n + 1))
+
+    def at(u: Array) -> Bordered:
+        evaluator.counts.factorizations += 1
+        matrix = scaled.at(u)
+        return here.refreshed(matrix) if here.matrix is not None and newton.count else Bordered(
+            matrix, here.column, here.rows
+        )
+
+    def increment() -> Array:
+        nonlocal here
+        u, beta = newton.x[:-1], float(newton.x[-1])
+        here = at(u)
+        phi, gamma = here.left[:-2], here.left[-2:]
+        gradient = np.array([-scaled.second(u, phi, here.kernel[:-1, i]) for i in range(2)])
+        first = here.solve(np.concatenate([-(evaluator.residual(u) / rows + beta * here.column), np.zeros(2)]))
+        inner = np.linalg.solve(gradient @ here.kernel[:-1], -gamma - gradient @ first[:-1])
+        step = first + here.kernel @ inner
+        step[:-1] *= extent
+        return step
+
+    def measure(step: Array, _: Array) -> float:
+        return float(np.abs(step[:-1] / extent).max())
+
+    def done(size: float) -> bool:
+        return size <= POLISHED or (size < POLISHED_NEARLY and newton.ratio >= HALVING)
+
+    try:
+        if not newton.run(increment, measure, done):
+            return None
+        u = newton.x[:-1]
+        here = at(u)
+        if np.abs(here.left[-2:]).max() > RANK or abs(float(newton.x[-1])) > IMPERFECT:
+            return None
+        found = directions(scaled, here, u)
+    except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):
+        return None
+    if found is None:
+        return None
+    first, second = (extent * d for d in found)
+    return SimpleBranchPoint(u, (first / norm(weights, first), second / norm(weights, second)))
+
+
+def directions(scaled: ScaledDerivative, here: Bordered, u: Array) -> tuple[Array, Array] | None:
+    """The directions of the two branches, in units of the path; None where no two branches cross transversally.
+
+    The roots of the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel
+    (Keller 1977; Allgower and Georg, Section 8.1).
+    """
+    w = np.linalg.qr(here.kernel[:-1])[0]
+    rows = [scaled.second(u, here.left[:-2], w[:, i]) for i in range(2)]
+    a, b, c = float(rows[0] @ w[:, 0]), float(rows[0] @ w[:, 1]), float(rows[1] @ w[:, 1])
+    discriminant = b * b - a * c
+    if not discriminant > TRANSVERSAL * max(abs(a), abs(b), abs(c)) ** 2:
+        return None
+    # The two roots of a alpha^2 + 2 b alpha beta + c beta^2, in homogeneous coordinates, without cancellation.
+    root = np.sqrt(discriminant)
+    q = -(b + (root if b >= 0 else -root))
+    return w @ np.array([q, a]), w @ np.array([c, q])

@@ -1,0 +1,184 @@
+"""Random problems on whose path branches cross at known places: transversal, pitchforks, transcritical ones.
+
+In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the others follow it smoothly. What the tracer
+sees is mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array
+
+Scalar = Callable[[float, float], tuple[float, float, float]]
+"""(x_0, s) -> p and its two derivatives."""
+
+
+@frozen(eq=False)
+class Crossed:
+    """A homotopy with known crossings.
+
+    Attributes
+    ----------
+    scalar : Scalar
+    curve : callable
+        s, or for an arm x_0, to the point (x_0, s) of the path, for the start and for what is checked.
+    crossings : list of (x_0, s)
+        On the way, in order.
+    begin, end : float
+        Of s.
+    mix, shape : ndarray, shape (N, N), (N, 4)
+        T, and the coefficients of the unknowns that follow.
+    units, origin, equations : ndarray
+        D and a, c and b, E.
+    """
+
+    scalar: Scalar
+    curve: Callable[[float], tuple[float, float]]
+    crossings: list[tuple[float, float]]
+    begin: float
+    end: float
+    mix: Array
+    shape: Array
+    units: Array
+    origin: Array
+    equations: Array
+    unmix: Array = field(init=False)
+
+    @unmix.default
+    def _unmix(self) -> Array:
+        return np.linalg.inv(self.mix)
+
+    def _x(self, y: Any, lam: Any) -> tuple[Array, float]:
+        return self.unmix @ ((y - self.origin[:-1]) / self.units[:-1]), (lam - self.origin[-1]) / self.units[-1]
+
+    def point(self, x0: float, s: float) -> tuple[Array, float]:
+        """The point of the path in the tracer's units."""
+        x = np.append(x0, self._follow(x0, s)[0])
+        return self.units[:-1] * (self.mix @ x) + self.origin[:-1], self.units[-1] * s + self.origin[-1]
+
+    def first(self, y: Array, lam: float) -> tuple[float, float]:
+        """(x_0, s) of a point."""
+        x, s = self._x(y, lam)
+        return float(x[0]), float(s)
+
+    def _follow(self, x0: Any, s: Any) -> tuple[Any, Any, Any]:
+        a, b, c, d = self.shape[1:].T
+        phase = b * s + c
+        return a * np.sin(phase) + d * x0 * s, d * s, a * b * np.cos(phase) + d * x0
+
+    def start(self) -> tuple[Array, float]:
+        return self.point(*self.curve(self.begin))
+
+    @property
+    def target(self) -> float:
+        return float(self.units[-1] * self.curve(self.end)[1] + self.origin[-1])
+
+    def residual(self, y: Any, lam: Any) -> Any:
+        x, s = self._x(y, lam)
+        p = self.scalar(x[0], s)[0]
+        return self.equations @ np.concatenate([np.stack([p]), x[1:] - self._follow(x[0], s)[0]])
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
+        x, s = self._x(y, lam)
+        _, px, ps = self.scalar(float(x[0]), s)
+        _, fx, fs = self._follow(float(x[0]), s)
+        inner = np.eye(x.size)
+        inner[0, 0] = px
+        inner[1:, 0] = -fx
+        H_y = self.equations @ inner @ self.unmix / self.units[:-1]
+        return H_y, self.equations @ np.append(ps, -fs) / self.units[-1]
+
+
+def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Crossed:
+    mix = np.eye(n) + rng.normal(0.0, 0.5 / np.sqrt(n), (n, n))
+    equations = np.eye(n) + rng.normal(0.0, 0.5 / np.sqrt(n), (n, n))
+    D = 10.0 ** rng.uniform(-units, units, n + 1)
+    shift = D * rng.normal(0.0, 1.0, n + 1) * 10.0 ** rng.uniform(0.0, 3.0 * min(units, 1.0), n + 1)
+    E = 10.0 ** rng.uniform(-units, units, n)
+    shape = rng.normal(0.0, 0.5, (n, 4))
+    return Crossed(mix=mix, shape=shape, units=D, origin=shift, equations=E[:, None] * equations, **known)
+
+
+def transversal(rng: np.random.Generator, n: int, units: float) -> Crossed:
+    """Two graphs x_0 = f(s), g(s) that differ by 10^-2..1 and cross at most three times; the path is the first."""
+    while True:
+        a = rng.normal(0.0, 1.0, 3)
+        b = a + rng.normal(0.0, 1.0, 3) * 10.0 ** rng.uniform(-2.0, 0.0)
+
+        def graph(k: Array, s: Any) -> Any:
+            return k[0] * s + k[1] * s**2 / 2.0 + k[2] * 0.3 * (np.sin(2.0 * s) - 2.0 * s)
+
+        def slope(k: Array, s: Any) -> Any:
+            return k[0] + k[1] * s + k[2] * 0.6 * (np.cos(2.0 * s) - 1.0)
+
+        def p(x: float, s: float) -> tuple[float, float, float]:
+            u, v = x - graph(a, s), x - graph(b, s)
+            return u * v, u + v, -slope(a, s) * v - slope(b, s) * u
+
+        begin = float(-2.0 + rng.uniform(-0.3, 0.3))
+        s = np.linspace(begin, 2.0, 4002)
+        gap = graph(a - b, s)
+        roots = []
+        for k in np.flatnonzero(gap[:-1] * gap[1:] < 0.0):
+            t = s[k]
+            for _ in range(50):
+                t -= graph(a - b, t) / slope(a - b, t)
+            roots.append(float(t))
+        size = np.abs(a - b).max()
+        # Crossings that touch, or lie at the ends, are not simple or not on the way.
+        if (
+            roots
+            and all(abs(slope(a - b, t)) > 0.05 * size for t in roots)
+            and min(abs(gap[0]), abs(gap[-1])) > 1e-2 * size
+            and all(begin < t < 2.0 for t in roots)
+            and all(abs(t - u) > 0.05 for t, u in zip(roots, roots[1:]))
+        ):
+            return _dressed(
+                rng, n, units, scalar=p, curve=lambda s: (float(graph(a, s)), s), begin=begin, end=2.0,
+                crossings=[(float(graph(a, t)), t) for t in roots],
+            )
+
+
+def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
+    """x_0 (s - s_0 - k x_0^2) = 0 along the trunk."""
+    at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0)) * rng.choice([-1.0, 1.0])
+
+    def p(x: float, s: float) -> tuple[float, float, float]:
+        return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
+
+    return _dressed(
+        rng, n, units, scalar=p, curve=lambda s: (0.0, s), crossings=[(0.0, at)], begin=float(-rng.uniform(1.0, 2.0)),
+        end=float(rng.uniform(1.0, 2.0)),
+    )
+
+
+def arm(rng: np.random.Generator, n: int, units: float) -> Crossed:
+    """The same along the arms, over the crossing: to x_0 = 0.3; `begin` and `end` are values of x_0."""
+    at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0))
+
+    def p(x: float, s: float) -> tuple[float, float, float]:
+        return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
+
+    return _dressed(
+        rng, n, units, scalar=p, curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],
+        begin=float(-rng.uniform(0.3, 3.0)), end=0.3,
+    )
+
+
+def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
+    """x_0 (x_0 - k (s - s_0)) = 0, on either branch."""
+    at, k = float(rng.uniform(-0.9, 0.9)), float(rng.normal())
+    straight = bool(rng.integers(2))
+
+    def p(x: float, s: float) -> tuple[float, float, float]:
+        return x * (x - k * (s - at)), 2.0 * x - k * (s - at), -k * x
+
+    return _dressed(
+        rng, n, units, scalar=p, curve=lambda s: (0.0 if straight else k * (s - at), s), crossings=[(0.0, at)],
+        begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)),
+    )

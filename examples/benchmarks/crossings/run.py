@@ -1,0 +1,82 @@
+"""Branch points on random paths: missed, invented, branches switched in silence, paths that stick; each preset.
+
+    python examples/benchmarks/crossings/run.py [how many of each] [seed]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from families import Crossed, arm, pitchfork, transcritical, transversal
+
+import continuation as ct
+
+FAMILIES: dict[str, Callable[..., Crossed]] = {
+    "transversal": transversal,
+    "pitchfork": pitchfork,
+    "arm": arm,
+    "transcritical": transcritical,
+}
+PRESETS = (ct.FAST, ct.DEFAULT, ct.CONSERVATIVE, ct.SERIES)
+LOCATED = 1e-10
+"""Of the path's extent (x_0 and s are of size one)."""
+
+
+def judged(problem: Crossed, on_arm: bool, preset: ct.Preset) -> tuple[str, float, Any]:
+    """What is wrong with the trace of a problem, "" if nothing; the largest error of a branch point; the path."""
+    options: dict[str, Any] = {"preset": preset, "budget": ct.Budget(steps=1000, seconds=60)}
+    if on_arm:
+        # To the end by an event: the parameter is a function of neither end.
+        trunk = problem.point(0.0, problem.curve(0.0)[1] - 2.0)[1]
+        options |= {"target": None, "direction": -int(np.sign(problem.units[-1])), "events": [_on(problem), ct.TargetValue(trunk)]}
+    path = ct.trace(problem, **options)
+    if not path.success:
+        return f"stuck: {path.status.name}", np.nan, path
+    found = [event for event in path.events if event.kind == ct.Kind.BRANCH_POINT]
+    x, s = problem.first(path.endpoint.y, path.endpoint.lam)
+    expected = (problem.end, problem.curve(problem.end)[1]) if on_arm else problem.curve(s)
+    if max(abs(x - expected[0]), abs(s - expected[1])) > 1e-7:
+        return ("switched, " + ("said" if len(found) % 2 != len(problem.crossings) % 2 else "silent")), np.nan, path
+    if len(found) != len(problem.crossings):
+        return f"found {len(found)} of {len(problem.crossings)}", np.nan, path
+    places = [problem.first(event.y, event.lam) for event in found]
+    error = max(max(abs(p - q), abs(r - t)) for (p, r), (q, t) in zip(places, problem.crossings))
+    return ("" if error <= LOCATED else "badly located"), error, path
+
+
+def _on(problem: Crossed) -> Any:
+    """A terminal event where x_0 passes its end."""
+    return ct.Monitor(lambda u, v: problem.first(u[:-1], float(u[-1]))[0] - problem.end, name="the end of the arm", terminal=1)
+
+
+def main(count: int, seed: int, only: str = "") -> None:
+    """Print the counts for each family and preset."""
+    for name, family in FAMILIES.items():
+        for preset in PRESETS:
+            rng = np.random.default_rng(seed)
+            wrong: Counter[str] = Counter()
+            worst, factorizations, examples = 0.0, 0, []
+            for k in range(count):
+                n = int(rng.integers(1, 51)) if k % 2 else int(rng.integers(1, 6))
+                problem = family(rng, n, float(rng.choice([0.0, 2.0, 6.0])))
+                outcome, error, path = judged(problem, name == "arm", preset)
+                factorizations += path.counts.factorizations
+                worst = max(worst, 0.0 if np.isnan(error) else error)
+                if outcome:
+                    wrong[outcome] += 1
+                    examples.append(k)
+            print(
+                f"{name:14s} {preset.name:13s} wrong {sum(wrong.values())}/{count} {dict(wrong)}  worst place {worst:.1e}"
+                f"  factorizations {factorizations}  {examples[:8]}",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    count, seed = (*map(int, sys.argv[1:]), 100, 1)[:2] if len(sys.argv) != 2 else (int(sys.argv[1]), 1)
+    main(count, seed)
