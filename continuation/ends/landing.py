@@ -11,7 +11,7 @@ from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import TargetValue, TurningPoint
-from continuation.events.locate import locate
+from continuation.events.locate import locate, may_vanish
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import NEAR_SINGULAR, Linearization
@@ -135,11 +135,14 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if before * after < 0.0:
         points = locate(solver, TargetValue(value), arc, before, after)
         return points[0] if points else None
-    if before == 0.0 or arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
+    if before == 0.0:
         return None
+    if arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
+        taken = may_vanish(TargetValue(value), arc, before, after) and locate(solver, TargetValue(value), arc, before, after)
+        return taken[0] if taken else None
     # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
-    nearest = min((arc.segment.at(t)[-1] - value) * np.sign(before) for t in np.linspace(0.0, 1.0, 9))
-    if nearest > 0.5 * min(abs(before), abs(after)):
+    turn = brentq(lambda t: arc.segment.derivative(t)[-1], 0.0, 1.0, xtol=RESOLUTION)
+    if (arc.segment.at(turn)[-1] - value) * before > 0.5 * min(abs(before), abs(after)) * abs(before):
         return None
     fold = locate(solver, TurningPoint(), arc, float(arc.a.tangent[-1]), float(arc.b.tangent[-1]))
     if not fold:
