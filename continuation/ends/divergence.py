@@ -30,6 +30,9 @@ HORIZON = 1e12
 ORDERS = 1.0 / 12.0, 12.0
 """Orders of poles that are told from an asymptote; a logarithm or an exponential looks like one beyond."""
 
+ABOUT = 0.02
+"""Three points give an order to two digits: one that is so near to a whole number, or to its inverse, is that."""
+
 DIGITS = 9
 """Of the parameter's way, in messages."""
 
@@ -84,4 +87,6 @@ def _limit(distances: tuple[float, float, float], lams: tuple[float, float, floa
     power = float(brentq(lambda p: decay(p) - ratio, 1.0 / most, 1.0 / least))
     a, b = (distances[1] / distances[0]) ** -power, (distances[2] / distances[0]) ** -power
     limit = third + (third - second) * b / (a - b)
-    return f"A pole: the unknowns grow like |lam - {rounded(limit)}|^-{1.0 / power:.2g}."
+    whole = round(1.0 / power) if power <= 1.0 else 1.0 / round(power)
+    order = whole if abs(power * whole - 1.0) <= ABOUT else 1.0 / power
+    return f"A pole: the unknowns grow like |lam - {rounded(limit)}|^-{order:.2g}."

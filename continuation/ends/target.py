@@ -35,6 +35,11 @@ FOLD = 0.4, 0.8
 """Where lam - value ~ sigma^w, the ratio of lam's way to the tangent's is 1/w: between these it is a simple fold."""
 
 
+KNOWN = 1e-5
+"""An end known to less than this, in the metric of the path, is none: an exponential decay looks like a fold, too. The
+cube root of round-off is what is left of an end where three sheets meet."""
+
+
 class EndsAt(Enum):
     """What a path may end on."""
 
@@ -186,4 +191,7 @@ class Target:
             if fold.length <= RELATIVE_FLOOR:
                 return fold
         limit = endgame.limit(arc.a)
-        return fold if limit is None or (fold is not None and fold.length <= limit.length) else limit
+        found = fold if limit is None or (fold is not None and fold.length <= limit.length) else limit
+        if found is not None and found.length > KNOWN:
+            raise EvaluationError("the parameter stands still near the target, and no limit was found there")
+        return found

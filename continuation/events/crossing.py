@@ -25,7 +25,9 @@ EXHAUSTED = 1e-10
 """A vector that loses all but this to the ones before it has no direction of its own."""
 
 
-def singular_places(a: Linearization, apply: Callable[[Array], Array], border: Array, farthest: float) -> list[float]:
+def singular_places(
+    a: Linearization, apply: Callable[[Array], Array], border: Array, ahead: float, behind: float = np.inf
+) -> list[float]:
     """Where on the way from M_a to another bordered matrix M there are singular ones: t in order, 1 at M itself.
 
     Arnoldi's method on C with a vector in general position, until the eigenvalues on the right are known. Each
@@ -38,9 +40,10 @@ def singular_places(a: Linearization, apply: Callable[[Array], Array], border: A
         v -> H' v at the other point.
     border : ndarray, shape (N + 1,)
         The last row there: its tangent in the dual metric, so that a path that merely turns gives complex eigenvalues.
-    farthest : float
-        Beyond 1 the places are extrapolated: up to here they are told.
+    ahead, behind : float
+        Beyond 1, and below 0, the places are extrapolated: they are told from -behind to ahead, if that is finite.
     """
+    right, left_end = 1.0 / ahead, -1.0 / behind if np.isfinite(behind) else -np.inf
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
     Q, H = np.zeros((n + 1, a.u.size)), np.zeros((n + 1, n))
@@ -58,10 +61,10 @@ def singular_places(a: Linearization, apply: Callable[[Array], Array], border: A
         whole = k + 1 == a.u.size or H[k + 1, k] <= EXHAUSTED * size
         values, vectors = np.linalg.eig(H[: k + 1, : k + 1])
         left = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
-        ahead = values.real + left > 1.0 / farthest
+        told = (values.real + left > right) | (values.real - left < left_end)
         known = left <= CONVERGED * np.abs(values)
-        if whole or (k > 0 and known[ahead].all()):
+        if whole or (k > 0 and known[told].all()):
             break
         Q[k + 1] = x / H[k + 1, k]
     real = np.abs(values.imag) <= left + EXHAUSTED * np.abs(values)
-    return sorted(float(1.0 / value) for value in values[real].real if value > 1.0 / farthest)
+    return sorted(float(1.0 / value) for value in values[real].real if value > right or value < left_end)

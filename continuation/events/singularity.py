@@ -33,7 +33,7 @@ RANK = 1e-6
 """What may be left of the singular value, relative to H', where it is said to vanish: the root of POLISHED and more."""
 
 TRANSVERSAL = 1e-9
-"""The least discriminant, relative to the coefficients, of directions that are not one: the digits of SECOND."""
+"""The least discriminant, relative to its terms, of directions that are not one: the digits of SECOND."""
 
 IMPERFECT = 1e-8
 """What the augmented system may add to H, relative to its terms: more, and H has no zero where H' loses its rank."""
@@ -162,7 +162,9 @@ class Bordered:
         return Bordered(matrix, phi / np.linalg.norm(phi), kernel)
 
 
-def branch_point_near(evaluator: Evaluator, guess: Array, weights: Array, rows: Array) -> SimpleBranchPoint | None:
+def branch_point_near(
+    evaluator: Evaluator, guess: Array, heading: Array, weights: Array, rows: Array
+) -> SimpleBranchPoint | None:
     """Newton's method on H(u) + beta b = 0, gamma(u) = 0; None where that fails or finds no simple branch point.
 
     The system is regular at a simple branch point, where beta = 0 (Govaerts, Section 8.1, with the imperfection as an
@@ -171,7 +173,8 @@ def branch_point_near(evaluator: Evaluator, guess: Array, weights: Array, rows: 
     Parameters
     ----------
     evaluator : Evaluator
-    guess : ndarray, shape (N + 1,)
+    guess, heading : ndarray, shape (N + 1,)
+        About where; and about where a branch leads, as long as the point may be off the guess.
     weights : ndarray, shape (N + 1,)
         Of the metric of the path.
     rows : ndarray, shape (N,)
@@ -206,16 +209,17 @@ def branch_point_near(evaluator: Evaluator, guess: Array, weights: Array, rows: 
         return float(np.abs(step[:-1] / extent).max())
 
     def done(size: float) -> bool:
-        return size <= POLISHED or (size < POLISHED_NEARLY and newton.ratio >= HALVING)
+        lost = norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
+        return lost or size <= POLISHED or (size < POLISHED_NEARLY and newton.ratio >= HALVING)
 
     try:
-        if not newton.run(increment, measure, done):
+        if not newton.run(increment, measure, done) or newton.size > POLISHED_NEARLY:
             return None
         u = newton.x[:-1]
         here = at(u)
         if np.abs(here.left[-2:]).max() > RANK or abs(float(newton.x[-1])) > IMPERFECT:
             return None
-        found = directions(scaled, here, u)
+        found = directions(scaled, here, u, heading / extent)
     except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):
         return None
     if found is None:
@@ -224,17 +228,20 @@ def branch_point_near(evaluator: Evaluator, guess: Array, weights: Array, rows: 
     return SimpleBranchPoint(u, (first / norm(weights, first), second / norm(weights, second)))
 
 
-def directions(scaled: ScaledDerivative, here: Bordered, u: Array) -> tuple[Array, Array] | None:
+def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Array) -> tuple[Array, Array] | None:
     """The directions of the two branches, in units of the path; None where no two branches cross transversally.
 
     The roots of the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel
     (Keller 1977; Allgower and Georg, Section 8.1).
     """
-    w = np.linalg.qr(here.kernel[:-1])[0]
+    # The path's own direction first: it nearly is a root, and so no large term has to cancel where nothing is known of
+    # the size of an unknown that stands still.
+    kernel = np.linalg.qr(here.kernel[:-1])[0]
+    w = np.linalg.qr(kernel @ np.column_stack([kernel.T @ heading, generic_vector(2)]))[0]
     rows = [scaled.second(u, here.left[:-2], w[:, i]) for i in range(2)]
     a, b, c = float(rows[0] @ w[:, 0]), float(rows[0] @ w[:, 1]), float(rows[1] @ w[:, 1])
     discriminant = b * b - a * c
-    if not discriminant > TRANSVERSAL * max(abs(a), abs(b), abs(c)) ** 2:
+    if not discriminant > TRANSVERSAL * (b * b + abs(a * c)):
         return None
     # The two roots of a alpha^2 + 2 b alpha beta + c beta^2, in homogeneous coordinates, without cancellation.
     root = np.sqrt(discriminant)

@@ -71,9 +71,14 @@ class Examiner:
         try:
             if not arc_on_path(self.solver, arc, attempt.correction.distance):
                 return _rejected(attempt, Rejection.MIDPOINT)
+            ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
             index, flipped = self.settings.branch_index, arrival.orientation not in (0, orientation)
-            if index is not None:
-                points = self.crossings.on_arc(arc, attempt, prediction, flipped)
+            if ending.limit is not None:
+                # A singular end by itself makes H' lose its rank there.
+                flipped = False
+            elif index is not None:
+                end = ending.arc.b.u if ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER) else None
+                points = self.crossings.on_arc(arc, attempt, prediction, flipped, end)
                 if isinstance(points, Rejected):
                     return points
                 crossed = [(index, at) for at in points]
@@ -81,7 +86,6 @@ class Examiner:
                 return _rejected(attempt, Rejection.ORIENTATION)
             if flipped:
                 orientation = arrival.orientation
-            ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
             found, monitors = scan_events(self.solver, events, state.monitors, ending.arc)
         except EvaluationError as error:
             return _rejected(attempt, Rejection.ARC, str(error))

@@ -6,10 +6,13 @@ sign has changed, on the other it has not; so what lies on the arc decides, and 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array, largest
+from continuation.contraction import RELIABLE
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events.crossing import singular_places
@@ -22,19 +25,26 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Arrival
 
-LOOKS = 0.5, 0.25
+LOOKS = 0.5, 0.25, 0.75
 """Where on the predicted arc H' is compared with that at its beginning: half way the prediction is sixteen times nearer
 to the path than at its end, where it may lie on the other branch. From there the places are extrapolated."""
 
 CHANGED = 0.25
-"""Where H' has changed by more than this part half way, it is looked at a quarter of the way too, since two crossings
-may lie between: on 3,200 steps of acceptance problems that is one in forty."""
+"""Where H' has changed by more than this part half way, it is looked at on either side too, since two crossings may lie
+before and one behind: on 3,200 steps of acceptance problems that is one in forty. Half as much will do where the
+corrector contracts badly, as it does between two branches."""
 
 REFINEMENTS, CLOSE = 4, 0.03
 """At most so many better places of one crossing are sought, until they change by less than the other."""
 
-BEYOND = 1.1
+BEYOND = 1.15
 """So far the places are believed, in arcs."""
+
+ONWARD = 0.25
+"""So far behind the arc's end, in steps, H' is compared with that there, to look back."""
+
+TINY = 1e-3
+"""Of what lies ahead of the arc's end nothing is asked."""
 
 NEAR_ARC = 2e-2
 """How far from the arc a branch point on it may lie, in its lengths: five times what an arc may be off the path."""
@@ -43,7 +53,11 @@ ON_PATH = 1e-13
 """Of the path's extent: a branch point this near to a zero of H is one, whatever its equations are made of there."""
 
 APART = 1e-3
-"""Crossings nearer to each other, or to the arc's end, than this part of the arc are not stepped between."""
+"""Extrapolated, a crossing that is nearer to the arc's end than this is in it."""
+
+BESIDE = 0.1
+"""From so near to a crossing, in steps, the next one begins badly: past it the factorisation at hand has a part of the
+wrong sign, and ten times too small."""
 
 AWAY = 0.7
 """The factor of a step that arrived so near to a crossing that nothing can be said there."""
@@ -59,7 +73,9 @@ class Crossings:
 
     solver: PathSolver
 
-    def on_arc(self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool) -> list[Linearization] | Rejected:
+    def on_arc(
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, end: Array | None
+    ) -> list[Linearization] | Rejected:
         """The branch points on an arc, at most one; or why the arc does not count, and which step to try.
 
         Parameters
@@ -71,22 +87,37 @@ class Crossings:
             Of the arc.
         flipped : bool
             Whether the determinant's sign changes from its beginning to its end.
+        end : ndarray or None
+            Where the path ends on the arc, if it does: what lies beyond does not count.
         """
-        places = self._places(arc, attempt, prediction, flipped)
-        if not places and not flipped:
+        looked = self._looked(arc, attempt, prediction)
+        places = max(([t for t in found if t < BEYOND] for found in looked.values()), key=len, default=[])
+        if flipped and not places and (apply := self._derivative(arc.b.u)) is not None:
+            places = singular_places(arc.a, apply, arc.b.border, 1.0)
+        last = np.inf if end is None else position(arc, end) / position(arc, arc.b.u)
+        places = [t for t in places if t < last]
+        if end is not None and not (places or (flipped and last == 1.0)):
             return []
-        if any(abs(t - 1.0) < APART for t in places):
+        if end is None and any(abs(t - 1.0) < APART for t in places):
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         inside = [t for t in places if t < 1.0]
         if len(inside) > 1:
             first, second = inside[:2]
             return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (first + second))
-        t = self._refined(arc, attempt, prediction, (inside or places or [LOOKS[0]])[0])
-        found = self._found(arc, prediction(t * attempt.h))
+        found = None
+        if places or flipped:
+            t = self._refined(arc, attempt, prediction, (inside or places or [LOOKS[0]])[0])
+            found = self._found(arc, prediction(t * attempt.h))
+        changed = len(looked) == len(LOOKS)
+        if found is None and changed and not flipped and (behind := self._behind(arc, attempt)) is not None:
+            found = self._found(arc, arc.segment.at(behind))
         if found is None:
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or inside else []
+            lost = flipped or (inside and not self._continues(arc, looked))
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if lost else []
         at = position(arc, found.u) / position(arc, arc.b.u)
-        if abs(at - 1.0) < APART:
+        if at > last:
+            return []
+        if end is None and abs(at - 1.0) < BESIDE:
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         if at > 1.0:
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else []
@@ -94,32 +125,55 @@ class Crossings:
             return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
         return [self._point(arc, found, at)]
 
-    def _places(self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool) -> list[float]:
-        """Where on the arc the bordered matrix seems to be singular, up to BEYOND."""
-        if arc.b.anchor is arc.a.anchor:
-            # One factorisation served both, in general position: nothing lies between (`relinearize`).
-            return []
-        found: list[float] = []
+    def _looked(self, arc: Arc, attempt: Arrival, prediction: Prediction) -> dict[float, list[float]]:
+        """The places that each look along the prediction shows, in arcs; the first look alone where it shows none."""
+        contracts = attempt.correction.contraction <= RELIABLE
+        least, found = CHANGED if contracts else 0.5 * CHANGED, {}
         for at in LOOKS:
-            try:
-                apply = self.solver.evaluator.differential(prediction(at * attempt.h))
-            except EvaluationError:
-                return found
-            if apply is None:
-                return []
-            places = [at * t for t in singular_places(arc.a, apply, arc.a.border, max(BEYOND / at, 1.0 / CHANGED))]
-            near = [t for t in places if t < BEYOND]
-            found = near if len(near) >= len(found) else found
-            if not places:
+            if (apply := self._derivative(prediction(at * attempt.h))) is None:
                 break
-        if flipped and not found and (apply := self.solver.evaluator.differential(arc.b.u)) is not None:
-            found = singular_places(arc.a, apply, arc.b.border, 1.0)
+            found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, max(BEYOND / at, 1.0 / least))]
+            if not found[LOOKS[0]]:
+                break
         return found
+
+    def _derivative(self, u: Array) -> Callable[[Array], Array] | None:
+        """v -> H' v at a point; None where there is none."""
+        try:
+            return self.solver.evaluator.differential(u)
+        except EvaluationError:
+            return None
+
+    def _continues(self, arc: Arc, looked: dict[float, list[float]]) -> bool:
+        """Whether the matrix at the arc's end is what the looks along the prediction lead to expect.
+
+        On the other branch it is about as far from singular, on the other side.
+        """
+        if len(looked) < len(LOOKS) or (apply := self._derivative(arc.b.u)) is None:
+            return False
+        first = {at: at / places[0] if places else 0.0 for at, places in looked.items()}
+        # The cubic through these and 0 at the beginning.
+        expected = 4.0 * first[0.75] - 6.0 * first[0.5] + 4.0 * first[0.25]
+        there = singular_places(arc.a, apply, arc.b.border, 1.0 / CHANGED)
+        found = 1.0 / there[0] if there else 0.0
+        return abs(found - expected) <= 0.5 * abs(1.0 - found)
+
+    def _behind(self, arc: Arc, attempt: Arrival) -> float | None:
+        """Where on the arc the bordered matrix seems to have been singular, seen from its end and a little farther on.
+
+        Where two branches are as near to each other as the prediction is to either, looks along the prediction tell
+        little. The end is on one of them: if that comes from a crossing on the arc, the matrix there gets more regular.
+        """
+        b = arc.b
+        if (apply := self._derivative(b.u + ONWARD * attempt.h * b.tangent)) is None:
+            return None
+        places = [1.0 + ONWARD * t for t in singular_places(b, apply, b.border, TINY, 1.0 / ONWARD)]
+        return max((t for t in places if t < 1.0), default=None)
 
     def _refined(self, arc: Arc, attempt: Arrival, prediction: Prediction, t: float) -> float:
         """A place nearer to the crossing: looked at from the beginning again, where it seems to be."""
         for _ in range(REFINEMENTS):
-            apply = self.solver.evaluator.differential(prediction(t * attempt.h))
+            apply = self._derivative(prediction(t * attempt.h))
             if apply is None or not (places := singular_places(arc.a, apply, arc.a.border, 2.0)):
                 break
             nearest = min(places, key=lambda place: abs(place - 1.0))
@@ -133,7 +187,7 @@ class Crossings:
         a, evaluator = arc.a, self.solver.evaluator
         try:
             rows = row_sizes(evaluator, 1.0 / np.sqrt(a.weights), (a.u, arc.b.u))
-            found = branch_point_near(evaluator, guess, a.weights, rows)
+            found = branch_point_near(evaluator, guess, arc.b.u - a.u, a.weights, rows)
             if found is None or (
                 largest(evaluator.residual(found.u) / rows) > ON_PATH and far_from_round_off(evaluator, found.u)
             ):

@@ -12,6 +12,7 @@ from continuation.controllers import Bounds, Geometric
 from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance
+from continuation.step.crossing import Crossings
 from problems.bifurcation import ExponentialCosine
 from problems.bifurcation.truth import exponential_cosine
 
@@ -65,8 +66,9 @@ def test_the_audit_agrees(n, backwards):
 
 @pytest.fixture
 def unguarded(monkeypatch):
-    """The engine without the guard that refuses arcs whose middle is off the path: with it, nothing jumps here."""
+    """The engine without the guards of arcs, their middle and their crossings: with either, little jumps here."""
     monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance: True)
+    monkeypatch.setattr(Crossings, "on_arc", lambda self, arc, attempt, prediction, flipped, end: [])
 
 
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
