@@ -34,6 +34,9 @@ CHANGED = 0.25
 before and one behind: on 3,200 steps of acceptance problems that is one in forty. Half as much will do where the
 corrector contracts badly, as it does between two branches."""
 
+DOUBTFUL = 0.1
+"""Where the corrector contracts less well than this, and H' changes much, the arc's end must be what was expected."""
+
 REFINEMENTS, CLOSE = 4, 0.03
 """At most so many better places of one crossing are sought, until they change by less than the other."""
 
@@ -104,16 +107,19 @@ class Crossings:
         if len(inside) > 1:
             first, second = inside[:2]
             return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (first + second))
+        doubtful = len(looked) == len(LOOKS) and attempt.correction.contraction > DOUBTFUL
+        if not flipped:
+            seen = any(found and found[0] < at for at, found in looked.items())
+            if not (places or doubtful) or (not seen and self._continues(arc, looked)):
+                return []
         found = None
         if places or flipped:
             t = self._refined(arc, attempt, prediction, (inside or places or [LOOKS[0]])[0])
             found = self._found(arc, prediction(t * attempt.h))
-        changed = len(looked) == len(LOOKS)
-        if found is None and changed and not flipped and (behind := self._behind(arc, attempt)) is not None:
+        if found is None and not flipped and (behind := self._behind(arc, attempt)) is not None:
             found = self._found(arc, arc.segment.at(behind))
         if found is None:
-            lost = flipped or (inside and not self._continues(arc, looked))
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if lost else []
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or inside or doubtful else []
         at = position(arc, found.u) / position(arc, arc.b.u)
         if at > last:
             return []
@@ -133,7 +139,8 @@ class Crossings:
             if (apply := self._derivative(prediction(at * attempt.h))) is None:
                 break
             found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, max(BEYOND / at, 1.0 / least))]
-            if not found[LOOKS[0]]:
+            # A series reaches over more than a cubic: its steps are looked at in all places.
+            if not found[LOOKS[0]] and not hasattr(prediction, "segment"):
                 break
         return found
 
@@ -145,7 +152,7 @@ class Crossings:
             return None
 
     def _continues(self, arc: Arc, looked: dict[float, list[float]]) -> bool:
-        """Whether the matrix at the arc's end is what the looks along the prediction lead to expect.
+        """Whether the matrix at the arc's end is what the looks along the prediction lead to expect, and no crossing near.
 
         On the other branch it is about as far from singular, on the other side.
         """
@@ -156,7 +163,7 @@ class Crossings:
         expected = 4.0 * first[0.75] - 6.0 * first[0.5] + 4.0 * first[0.25]
         there = singular_places(arc.a, apply, arc.b.border, 1.0 / CHANGED)
         found = 1.0 / there[0] if there else 0.0
-        return abs(found - expected) <= 0.5 * abs(1.0 - found)
+        return abs(found - expected) <= 0.5 * abs(1.0 - found) and abs(1.0 - found) > BESIDE
 
     def _behind(self, arc: Arc, attempt: Arrival) -> float | None:
         """Where on the arc the bordered matrix seems to have been singular, seen from its end and a little farther on.
