@@ -45,7 +45,9 @@ NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
 
 
-def initial_extent(evaluator: Evaluator, point: Linearization, target: float | None, residual: Array) -> Array:
+def initial_extent(
+    evaluator: Evaluator, point: Linearization, target: float | None, residual: Array, farthest: float = np.inf
+) -> Array:
     """How far each component goes while the path turns by about TURN, or to the target if that is nearer.
 
     Parameters
@@ -56,6 +58,8 @@ def initial_extent(evaluator: Evaluator, point: Linearization, target: float | N
     target : float or None
     residual : ndarray, shape (N,)
         H at the point: a start need not lie on the path to the last digit.
+    farthest : float
+        How far along the tangent is far where there is no target: a path of straight pieces has no other scale.
 
     Returns
     -------
@@ -67,6 +71,7 @@ def initial_extent(evaluator: Evaluator, point: Linearization, target: float | N
     if np.isfinite(gap) and v[-1] != 0.0:
         whole = abs(gap / v[-1])
         v = v * np.sign(gap / v[-1])
+    whole = whole if np.isfinite(whole) else farthest
     size = np.abs(v)
     moving = size > 0.0
     h = NEAR * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
