@@ -22,6 +22,9 @@ STEP = 6e-6
 AGREE = 1e-4
 """Jets are believed where they agree with a difference so well, relative to the largest."""
 
+PARALLEL = 1e-9
+"""The derivative of a switch along a path, relative to the largest, that is round-off or next to it."""
+
 NAMES = ("jacobian", "bordered", "differential", "taylor")
 """Capabilities of pieces that the map has where they have them."""
 
@@ -87,10 +90,10 @@ class Pieces:
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
 
     def distance(self, u: Array, v: Array) -> float:
-        """How far the borders are from u along v, to first order: the median over the switches; inf where none is."""
+        """How far borders are from u along v, to first order: half of the switches are no nearer; inf where none is."""
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
-        ahead = (s > 0.0) & (slope > 0.0)
-        return float(np.median(s[ahead] / slope[ahead])) if ahead.any() else np.inf
+        ahead = (s > 0.0) & (slope > PARALLEL * slope.max(initial=0.0))
+        return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2]) if ahead.any() else np.inf
 
     def _by_jets(self, u: Array, v: Array) -> Array:
         from continuation import jets

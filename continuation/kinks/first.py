@@ -25,6 +25,13 @@ DIP = 0.25
 """A switch that comes down to less than this part of what it is on both sides may have two zeros there: the segment
 says so to a few thousandths of its length, and the path is asked."""
 
+TIED = 16.0
+"""Two looks at round-off from two places differ by less than this: what is zero at the beginning of an arc was so
+at the end of the one before, and switches so near to zero in one place vanish together."""
+
+NEAR = 1e-6
+"""Of a switch's largest value on an arc: an end nearer to zero is looked at more closely."""
+
 HALVINGS = 40
 """How near to a kink a switch that vanished there is looked for on its right side, in halves of a sixteenth."""
 
@@ -94,11 +101,14 @@ def first_zero(
         places = np.linspace(0.0, 1.0, LOOKS)
         inner = [pieces.values(arc.segment.at(float(t))) for t in places[1:-1]]
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
-        if not _suspects(grid).any():
+        if not (_suspects(grid) | (grid[-1] <= NEAR * np.abs(grid).max(axis=0))).any():
             return None
         # Round-off about zero is no crossing: such a switch has not left it.
-        noise = switch_noise(solver, pieces, arc.a)
+        fine = switch_noise(solver, pieces, arc.a)
+        noise = TIED * fine
+        fresh = grid[0] > fine
         grid = np.where(np.abs(grid) <= noise, 0.0, grid)
+        grid[0, fresh] = np.maximum(grid[0, fresh], fine[fresh])
         suspects = np.flatnonzero(_suspects(grid) & (grid != 0.0).any(axis=0))
         switches = {int(j): _Switch(pieces, int(j), int(s[j]), float(noise[j])) for j in suspects}
         found = _first(solver, switches, s, arc, grid)
@@ -107,7 +117,7 @@ def first_zero(
     if found is None:
         return None
     point, j = found
-    zero = np.abs(pieces.values(point.u)) <= switch_noise(solver, pieces, point)
+    zero = np.abs(pieces.values(point.u)) <= TIED * switch_noise(solver, pieces, point)
     zero[j] = True
     return point, tuple(np.flatnonzero(zero).tolist())
 

@@ -133,4 +133,5 @@ def rays(homotopy: object, u: Array) -> Array:
     if not zero.size:
         return np.array([here.tangent, -here.tangent])
     here = linearize(evaluator, u, ones, here.border)
-    return np.array([ray.v for ray in rays_at(Corner(pieces, evaluator, here, signs, tuple(zero.tolist())))])
+    found = rays_at(Corner(pieces, evaluator, here, signs, tuple(zero.tolist())))
+    return np.array([ray.v for ray in found]).reshape(-1, u.size)
