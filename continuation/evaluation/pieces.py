@@ -90,10 +90,15 @@ class Pieces:
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
 
     def distance(self, u: Array, v: Array) -> float:
-        """How far borders are from u along v, to first order: half of the switches are no nearer; inf where none is."""
+        """How far borders are from u along v, to first order: half of the switches are no nearer.
+
+        Where no border is ahead it is the size of the point, or 1 at zero: there is no other length then.
+        """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
         ahead = (s > 0.0) & (slope > PARALLEL * slope.max(initial=0.0))
-        return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2]) if ahead.any() else np.inf
+        if ahead.any():
+            return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2])
+        return (float(np.abs(u).max()) or 1.0) / (float(np.abs(v).max()) or 1.0)
 
     def _by_jets(self, u: Array, v: Array) -> Array:
         from continuation import jets

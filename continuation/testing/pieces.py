@@ -17,6 +17,9 @@ from continuation.testing.subject import Place, Subject, called, directions, fai
 SAME = 1e4
 """Values of one map from two formulas, in units of their round-off: a mistake is larger."""
 
+LOOK = 64.0
+"""Last places by which a point is moved to see what they make of the map."""
+
 SMOOTH = 1e-4
 """The derivative of a switch from two sides of a point, relative to its size: differences have eight digits."""
 
@@ -68,12 +71,21 @@ def pieces(subject: Subject) -> None:
         with called("residual of the piece", place.where):
             found = np.asarray(piece.residual(place.y, place.lam), dtype=float)
             wanted = np.asarray(subject.homotopy.residual(place.y, place.lam), dtype=float)
-            round_off = subject.evaluator.round_off(place.u, wanted)
+            round_off = _round_off(subject, place, wanted)
         if found.shape != wanted.shape:
             fail(f"piece: {place.where} expected a residual of shape {wanted.shape}, found {found.shape}")
         if not (np.abs(found - wanted) <= SAME * round_off + np.finfo(float).tiny).all():
             signed = _shown(signs)
             fail(f"piece: {place.where} the piece {signed} differs from the map by {difference(found, wanted):.3g}")
+
+
+def _round_off(subject: Subject, place: Place, value: Array) -> Array:
+    """What a last place of the largest values along the path makes of the map at a place."""
+    move = np.spacing(np.abs(subject.path.u).max(axis=0)) * np.sign(directions(place.u.size, 1, 29)[0])
+    moves = [LOOK * move, -LOOK * move, LOOK * np.where(np.arange(move.size) % 2, move, -move)]
+    looks = [np.asarray(subject.homotopy.residual((place.u + m)[:-1], float((place.u + m)[-1]))) for m in moves]
+    rounded: Array = np.max([np.abs(look - value) for look in looks], axis=0) / LOOK
+    return rounded
 
 
 def derivatives_of_pieces(subject: Subject) -> None:
