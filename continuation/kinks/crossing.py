@@ -9,12 +9,15 @@ from continuation.arrays import Array
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.kinks.rays import SAME_RAY, Corner, Ray, UnresolvedError, rays_at
-from continuation.metric import inner, norm
+from continuation.metric import inner, norm, share
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 
 AGREES = 1e-6
 """How far, in the metric, the next piece may have its path beside the kink: pieces agree there to round-off."""
+
+STILL = 1e-12
+"""The parameter's share of a tangent that is round-off: it stands still there, and turns neither way."""
 
 
 @frozen(eq=False)
@@ -51,6 +54,8 @@ class Crossing:
             return "unresolved kink" if self.reason else "dead end"
         if len(self.rays) > 2:
             return "branching kink"
+        if min(share(p.weights, p.tangent) for p in (self.at, self.onward)) <= STILL:
+            return "kink"
         turns = self.onward.tangent[-1] * self.at.tangent[-1] < 0.0
         return "turning kink" if turns else "kink"
 

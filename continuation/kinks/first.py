@@ -67,11 +67,17 @@ class _Switch:
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
-    """What round-off in a point of the path makes of the switches there, shape (m,)."""
-    noise, generic = solver.noise_by_component(point), generic_vector(point.u.size)
+    """What round-off in a point of the path makes of the switches there, shape (m,).
+
+    The terms of each equation are known to their last places; what the path makes of that is seen with general signs.
+    """
+    evaluator, generic = solver.evaluator, generic_vector(point.u.size)
+    terms = evaluator.round_off(point.u, evaluator.residual(point.u))
+    signs = np.sign(generic)
+    noise = np.maximum(*(np.abs(point.solve(terms * some[:-1])) for some in (signs, signs[::-1])))
+    noise += solver.noise_by_component(point)
     here = pieces.values(point.u)
-    moves = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
-    looks = [np.abs(pieces.values(point.u + noise * move) - here) for move in (moves, moves[::-1])]
+    looks = [np.abs(pieces.values(point.u + noise * move) - here) for move in (signs, signs[::-1])]
     noisy: Array = SEEN * np.maximum(*looks) + np.spacing(np.abs(here))
     return noisy
 
@@ -101,8 +107,15 @@ def first_zero(
         places = np.linspace(0.0, 1.0, LOOKS)
         inner = [pieces.values(arc.segment.at(float(t))) for t in places[1:-1]]
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
-        if not (_suspects(grid) | (grid[-1] <= NEAR * np.abs(grid).max(axis=0))).any():
+        near = np.abs(grid[[0, -1]]) <= NEAR * np.abs(grid).max(axis=0)
+        if not (_suspects(grid) | near[1]).any():
             return None
+        # Points of a path are as good as the tolerance. On which side of a switch they are that vanishes next to them
+        # is a matter of round-off.
+        a, b = (_on_path(solver, arc, t) if close.any() else p for t, p, close in zip((0.0, 1.0), (arc.a, arc.b), near))
+        if a is not arc.a or b is not arc.b:
+            arc = part_between(arc, a, b)
+            grid[[0, -1]] = s * pieces.values(a.u), s * pieces.values(b.u)
         # Round-off about zero is no crossing: such a switch has not left it.
         fine = switch_noise(solver, pieces, arc.a)
         noise = TIED * fine
