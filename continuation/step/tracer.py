@@ -193,7 +193,7 @@ class Tracer:
         settings = self.settings
         u0 = self._evaluator.start()
         if self._check:
-            report = check_jacobian(self.homotopy)
+            report = check_jacobian(self._evaluator.homotopy)
             if not report.correct:
                 raise ValueError(f"jacobian: {report}")
         signs: Signs = ()
