@@ -19,9 +19,9 @@ from continuation import (
     switch_branch,
     trace,
 )
+from continuation import kink_rays as rays
 from continuation.archive import PathLog, open_archive, resume
 from continuation.evaluation.pieces import Pieces
-from continuation.kinks.start import rays
 from continuation.testing import CheckFailure, check_homotopy
 
 from ...util import every_preset
