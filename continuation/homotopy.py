@@ -225,6 +225,40 @@ class SupportsEvents(Protocol):
 
 
 @runtime_checkable
+class SupportsPieces(Protocol):
+    """A piecewise smooth map: smooth where no switching function changes its sign, and continuous where one does.
+
+    `start`, `residual` and the other capabilities that belong to a path (`target`, `max_step`, `metric`, `events`,
+    `finish`, `observe`) are asked of the map; `jacobian`, `bordered`, `differential` and `taylor` of its pieces.
+    """
+
+    def switches(self, y: Array, lam: float) -> Array:
+        """The switching functions, shape (m,): smooth, and none vanishes on an open part of a path.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        lam : float
+        """
+        ...
+
+    def piece(self, signs: Array) -> Homotopy:
+        """The smooth homotopy that the map is where the switches have these signs, defined a little beyond.
+
+        Parameters
+        ----------
+        signs : ndarray of int, shape (m,)
+            Each of them -1 or +1.
+
+        Raises
+        ------
+        ValueError
+            If such signs cannot hold together anywhere: then there is no such piece.
+        """
+        ...
+
+
+@runtime_checkable
 class SupportsReferences(Protocol):
     """Where the method was published."""
 

@@ -99,6 +99,11 @@ class LocatedEvent:
         Index of the step in which it lies (from step - 1 to step).
     ends_step : bool
         Whether it is that step's own point.
+    switches : tuple of int
+        At a kink: the switching functions that vanish there.
+    rays : ndarray, shape (k, N + 1), or None
+        At a kink: the directions of all branches that meet there, of unit length in the metric, each pointing away
+        from it. The first leads back to where the path came from, the second, if any, is the one the path goes on in.
     """
 
     name: str
@@ -111,6 +116,8 @@ class LocatedEvent:
     orientation: int
     step: int
     ends_step: bool = False
+    switches: tuple[int, ...] = ()
+    rays: Array | None = None
 
     @property
     def y(self) -> Array:
@@ -208,6 +215,11 @@ class Path:
     def turning_points(self) -> list[LocatedEvent]:
         """The located turning points of the parameter."""
         return [event for event in self.events if event.kind == Kind.TURNING_POINT and event.name == "turning point"]
+
+    @property
+    def kinks(self) -> list[LocatedEvent]:
+        """The kinks, where the path goes from one smooth piece of the map to another."""
+        return [event for event in self.events if event.kind == Kind.KINK]
 
     def __call__(self, s: float | Array) -> Array:
         """The path at arclength s: dense output, shape (N + 1,) or (k, N + 1).

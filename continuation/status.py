@@ -21,6 +21,8 @@ class Status(IntEnum):
     INTERRUPTED = 10
     START_NOT_ON_PATH = 11
     PREDICTOR_FAILED = 12
+    DEAD_END = 13
+    UNRESOLVED_KINK = 14
 
     def __str__(self) -> str:
         return _SENTENCES[self]
@@ -53,6 +55,8 @@ _SENTENCES = {
     Status.INTERRUPTED: "The trace was interrupted; all accepted points are kept and it can be resumed.",
     Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
     Status.PREDICTOR_FAILED: "The predictor found no curve to follow from the last point; take another `predictor`.",
+    Status.DEAD_END: "No branch leaves the kink at which the path ends, but the one it came on.",
+    Status.UNRESOLVED_KINK: "The path ends at a kink whose branches could not be told; see the message.",
 }
 
 
@@ -65,6 +69,7 @@ class Kind(IntEnum):
     TURNING_POINT = 3
     BRANCH_POINT = 4
     EVENT = 5
+    KINK = 6
 
     def __repr__(self) -> str:
         return f"Kind.{self.name}"

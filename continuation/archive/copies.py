@@ -122,6 +122,7 @@ def _joint(sources: Sequence[Contents]) -> Layout:
         observed=tuple(sorted({name for layout in layouts for name in layout.observed})),
         scalars=tuple(sorted({name for layout in layouts for name in layout.scalars})),
         tangents=any(layout.tangents for layout in layouts),
+        pieces=any(layout.pieces for layout in layouts),
     )
 
 

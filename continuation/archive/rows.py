@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.archive.schema import ACCEPTED, LOCATED, NO_EVENT, Layout
+from continuation.archive.schema import ACCEPTED, KINK_PART, LOCATED, NO_EVENT, Layout
+from continuation.arrays import Array
 from continuation.path import LocatedEvent, Step
 from continuation.point.segment import hermite
 
@@ -26,10 +27,14 @@ _NAN = math.nan
 
 @frozen
 class Row:
-    """A row to be: an accepted step, the event that it ends on if it does, or an event between two steps."""
+    """A row to be: an accepted step, the event that it ends on if it does, or an event between two steps.
+
+    Or a `part` of the kink `event`: its switch and its ray of that number, as far as it has so many.
+    """
 
     step: Step | None
     event: LocatedEvent | None = None
+    part: int | None = None
 
     @property
     def point(self) -> Step | LocatedEvent:
@@ -37,6 +42,27 @@ class Row:
         point = self.step if self.step is not None else self.event
         assert point is not None
         return point
+
+    @property
+    def tangent(self) -> Array:
+        """The point's tangent, or the ray that a part is."""
+        if self.part is None:
+            return self.point.tangent
+        rays = None if self.event is None else self.event.rays
+        return np.full_like(self.point.u, _NAN) if rays is None or self.part >= len(rays) else rays[self.part]
+
+    @property
+    def switch(self) -> int:
+        """The number of the switch that a part is."""
+        switches = () if self.event is None or self.part is None else self.event.switches
+        return switches[self.part] if self.part is not None and self.part < len(switches) else -1
+
+
+def parts_of(event: LocatedEvent | None) -> list[Row]:
+    """The rows of a kink's switches and rays, which follow its own; none for other events."""
+    rays = 0 if event is None or event.rays is None else len(event.rays)
+    switches = 0 if event is None else len(event.switches)
+    return [Row(None, event, part) for part in range(max(rays, switches))]
 
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
@@ -55,9 +81,11 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
     block |= dict(zip(_FLOATS, floats))
     block |= {name: column.astype(dtype) for (name, dtype), column in zip(_INTEGERS.items(), integers)}
     if layout.tangents:
-        tangents = np.array([row.point.tangent for row in rows])
+        tangents = np.array([row.tangent for row in rows])
         block["tangent_y"] = np.ascontiguousarray(tangents[:, :-1])
         block["tangent_parameter"] = np.ascontiguousarray(tangents[:, -1])
+    if layout.pieces:
+        block["switch"] = np.array([row.switch for row in rows], dtype="i4")
     for name in layout.observed:
         block[f"observed_{name}"] = np.array([_observed(row, name) for row in rows])
     return block
@@ -65,6 +93,12 @@ def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[
 
 def _values(row: Row, number: Callable[[str], int]) -> tuple[tuple[float, ...], tuple[int, ...]]:
     step, event = row.step, row.event
+    if row.part is not None:
+        at = row.point
+        return (
+            (at.arclength, _NAN, at.residual_norm, _NAN, _NAN, _NAN, _NAN, _NAN),
+            (0, at.kind, KINK_PART, NO_EVENT, -1, -1),
+        )
     index, monitor = (NO_EVENT, _NAN) if event is None else (number(event.name), event.monitor)
     if step is None:
         assert event is not None
@@ -104,18 +138,30 @@ def from_columns(
         if cells["role"][i] == ACCEPTED:
             seen = {name: column[i] for name, column in extras.items()}
             steps.append(_step(cells, i, points[i], tangents[i], seen, first + len(steps)))
+        if cells["role"][i] == KINK_PART and events:
+            events[-1] = _with_part(events[-1], int(block["switch"][i]), tangents[i])
     accepted = {step.index: step.u for step in steps}
     events = [evolve(e, ends_step=e.step in accepted and np.array_equal(e.u, accepted[e.step])) for e in events]
-    return (_joined(steps) if "tangent_y" in block else steps), events
+    return (_joined(steps, events) if "tangent_y" in block else steps), events
 
 
-def _joined(steps: Sequence[Step]) -> list[Step]:
+def _joined(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> list[Step]:
     """The steps joined by cubics through points and tangents, for dense output."""
     joined = list(steps[:1])
+    onward = {e.step: e.rays[1] for e in events if e.rays is not None and len(e.rays) > 1}
     for before, after in pairwise(steps):
-        segment = hermite(before.u, before.tangent, after.u, after.tangent, before.tangent)
-        joined.append(evolve(after, segment=segment))
+        v = onward.get(before.index, before.tangent)
+        joined.append(evolve(after, segment=hermite(before.u, v, after.u, after.tangent, v)))
     return joined
+
+
+def _with_part(event: LocatedEvent, switch: int, ray: Array) -> LocatedEvent:
+    """The kink with one more switch and ray, where there are such."""
+    if switch >= 0:
+        event = evolve(event, switches=(*event.switches, switch))
+    if not np.isnan(ray).any():
+        event = evolve(event, rays=ray[None] if event.rays is None else np.vstack([event.rays, ray]))
+    return event
 
 
 def _event(cells: Mapping[str, Any], i: int, u: Any, v: Any, names: Sequence[str], step: int) -> LocatedEvent:

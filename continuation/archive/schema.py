@@ -24,8 +24,8 @@ TEXT = 240
 NAME = 64
 """Bytes (UTF-8) of an event's name."""
 
-ACCEPTED, LOCATED = 0, 1
-"""Roles of a row: an accepted step, or an event located between two of them."""
+ACCEPTED, LOCATED, KINK_PART = 0, 1, 2
+"""Roles of a row: an accepted step, an event located between two of them, or what belongs to the kink before it."""
 
 NO_EVENT = -1
 CONTROLLER_STATE = 4
@@ -96,7 +96,7 @@ POINT_COLUMNS = (
     Column("orientation", "i1", "1", "sign of the determinant of [H'; tangent']; 0 where it is unknown"),
     Column("kind", "i1", "1", "what the point is", more=_flags(tuple(kind.flag for kind in Kind))),
     Column("role", "i1", "1", "accepted step, or event located between two steps",
-           more=_flags(("accepted_step", "located_event"), (ACCEPTED, LOCATED))),
+           more=_flags(("accepted_step", "located_event", "kink_part"), (ACCEPTED, LOCATED, KINK_PART))),
     Column("event_index", "i2", "1", "number of the event in event_name; -1 where there is none"),
     Column("event_monitor", "f8", "1", "value of the event's monitor at the located point; NaN where there is none"),
     Column("corrector_iterations", "i2", "1", "iterations of the corrector; -1 at located events"),
@@ -111,6 +111,11 @@ TANGENT_COLUMNS = (
     Column("tangent_y", "f8", "1", "unit tangent, components of the unknowns", ("point", "component")),
     Column("tangent_parameter", "f8", "1", "unit tangent, component of the parameter"),
 )
+
+KINK_COLUMNS = (
+    Column("switch", "i4", "1", "number of a switching function that vanishes at the kink; -1 where there is none"),
+)
+"""In files of homotopies with pieces, which hold tangents too: those of the rows `kink_part` are the kink's rays."""
 
 PATH_COLUMNS = (
     Column("path", "i8", "1", "number of the path", ("path",), {"cf_role": "trajectory_id"}),
@@ -146,6 +151,8 @@ class Layout:
     scalars : tuple of str
         The homotopy's numeric parameters: columns ``homotopy_<name>``, one value a path.
     tangents : bool
+    pieces : bool
+        Whether kinks are held with their switches and rays.
     """
 
     unknowns: int
@@ -153,13 +160,15 @@ class Layout:
     observed: tuple[str, ...] = ()
     scalars: tuple[str, ...] = ()
     tangents: bool = False
+    pieces: bool = False
 
     @property
     def point_columns(self) -> tuple[Column, ...]:
         """The columns of the point table."""
         tangents = TANGENT_COLUMNS if self.tangents else ()
+        kinks = KINK_COLUMNS if self.pieces else ()
         own = (Column(f"observed_{name}", "f8", "1", f"{name}, observed by the homotopy") for name in self.observed)
-        return (*POINT_COLUMNS, *tangents, *own)
+        return (*POINT_COLUMNS, *tangents, *kinks, *own)
 
     @property
     def path_columns(self) -> tuple[Column, ...]:

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from continuation.archive import frames
+from continuation.archive.schema import KINK_PART
 from continuation.archive.tables import Table
 from continuation.checks import complain, is_number
 from continuation.path import Path
@@ -76,7 +77,7 @@ def selected(archive: Archive, status: Any, kind: Any, event: Any, parameter: An
         if not all(isinstance(one, Status) for one in wanted):
             raise complain(TypeError, "status", "a Status, or several", status)
         paths = np.isin(archive.paths["status"], [int(one) for one in wanted])
-    points = paths[archive.points["path_index"]]
+    points = paths[archive.points["path_index"]] & (archive.points["role"] != KINK_PART)
     if kind is not None:
         if not isinstance(kind, Integral):
             raise complain(TypeError, "kind", "a Kind", kind)

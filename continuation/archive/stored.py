@@ -12,7 +12,7 @@ from typing import Any, Protocol, overload
 import numpy as np
 
 from continuation.archive.rows import from_columns
-from continuation.archive.schema import LOCATED
+from continuation.archive.schema import ACCEPTED, KINK_PART
 from continuation.archive.tables import Table
 from continuation.path import LocatedEvent, Step
 
@@ -94,9 +94,9 @@ class StoredSteps(Sequence[Step]):
         self._recent.append(self._count)
         self._count += 1
 
-    def locate(self) -> None:
-        """An event has got a row of its own after the steps that were written so far, before the last one."""
-        self._located.append(self._count - 1)
+    def locate(self, after: bool = False) -> None:
+        """An event has got a row of its own, before the last step; or, `after` it, a part of a kink has."""
+        self._located.append(self._count - (not after))
 
     def committed(self) -> None:
         """The file holds all of it: what is not to be kept can go, but for the last step."""
@@ -107,7 +107,7 @@ class StoredSteps(Sequence[Step]):
 
     def known(self, roles: Any, ends: Sequence[Step]) -> None:
         """Begin with what a file holds already: the roles of the path's rows, and its first and last step."""
-        places = np.flatnonzero(roles == LOCATED)
+        places = np.flatnonzero(roles != ACCEPTED)
         self._located = (places - np.arange(len(places))).tolist()
         self._count = len(roles) - len(places)
         self._memory = {step.index: step for step in ends}
@@ -160,7 +160,7 @@ class StoredSteps(Sequence[Step]):
             stop = rows.start + self._row(count - 1) + 1
             for start in range(rows.start, stop, _WINDOW):
                 part = slice(start, min(start + _WINDOW, stop))
-                steps = archive.points.some("role", part) != LOCATED
+                steps = archive.points.some("role", part) == ACCEPTED
                 found = [archive.points.some(column, part)[steps] for column in columns]
                 yield found[0] if len(found) == 1 else np.column_stack(found)
 
@@ -201,12 +201,16 @@ def events(archive: _Archive, path: int) -> list[LocatedEvent]:
     size = rows.stop - rows.start
     found: list[LocatedEvent] = []
     steps = 0
-    for start in range(0, size, _WINDOW):
-        stop = min(start + _WINDOW, size)
+    stop = 0
+    while stop < size:
+        start, stop = stop, min(stop + _WINDOW, size)
+        # A kink and its parts stay together.
+        while stop < size and archive.points.some("role", slice(rows.start + stop, rows.start + stop + 1)) == KINK_PART:
+            stop += 1
         part = slice(rows.start + start, rows.start + stop)
         if np.any(archive.points.some("event_index", part) >= 0):
             found += window(archive, path, start, stop, steps)[1]
-        steps += int(np.count_nonzero(archive.points.some("role", part) != LOCATED))
+        steps += int(np.count_nonzero(archive.points.some("role", part) == ACCEPTED))
     return found
 
 
@@ -217,7 +221,7 @@ def stored_path(archive: _Archive, opener: Opener, file: File, path: int, every:
     roles = archive.points.some("role", rows)
     steps = StoredSteps(opener, file, path, every)
     ends: list[Step] = []
-    accepted = np.flatnonzero(roles != LOCATED)
+    accepted = np.flatnonzero(roles == ACCEPTED)
     if len(accepted):
         ends += window(archive, path, int(accepted[0]), int(accepted[0]) + 1, 0)[0]
         last = len(accepted) - 1

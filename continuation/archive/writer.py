@@ -23,12 +23,13 @@ from continuation.archive.problem import problem_data
 from continuation.archive.provenance import root_attributes, scalars
 from continuation.archive.reader import open_archive
 from continuation.archive.record import Record, counted
-from continuation.archive.rows import Row, to_columns
+from continuation.archive.rows import Row, parts_of, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
 from continuation.archive.store import Store
 from continuation.archive.stored import StoredSteps, kept_every
 from continuation.archive.structure import SLOTS
 from continuation.checks import complain
+from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Step
 from continuation.status import Status
 from continuation.step.state import State
@@ -80,7 +81,7 @@ class PathLog:
     durable : bool
         Wait for the disk at each commit: survives a power cut, not only a kill.
     tangents : bool
-        Store the unit tangents as well.
+        Store the unit tangents as well; always done, with the rays of its kinks, where the homotopy has pieces.
     title : str
     limits : Limits
         When to commit.
@@ -255,7 +256,9 @@ class PathLog:
         last = here.pop() if here and here[-1].kind == step.kind else None
         for event in here:
             self._add(path, Row(None, event))
-        self._add(path, Row(step, last))
+        kept = self._store is not None and self._store.layout.pieces
+        for row in (Row(step, last), *(parts_of(last) if kept else ())):
+            self._add(path, row)
 
     def _add(self, path: _Open, row: Row) -> None:
         u = row.point.u
@@ -265,7 +268,7 @@ class PathLog:
         self._buffer.rows.append(row)
         steps: Any = path.tracer.path.steps
         if row.step is None and isinstance(steps, StoredSteps):
-            steps.locate()
+            steps.locate(row.part is not None)
         self._buffer.nbytes += u.nbytes
         path.rows += 1
 
@@ -284,7 +287,8 @@ class PathLog:
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
         names = {name for row in self._early for name in row["scalars"]} | set(scalars(homotopy))
-        layout = Layout(unknowns, max(len(state), CONTROLLER_STATE), observed, tuple(sorted(names)), self._tangents)
+        pieces, width = isinstance(homotopy, SupportsPieces), max(len(state), CONTROLLER_STATE)
+        layout = Layout(unknowns, width, observed, tuple(sorted(names)), self._tangents or pieces, pieces)
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, self._title)

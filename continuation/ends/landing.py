@@ -138,8 +138,9 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if before == 0.0:
         return None
     if arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
-        taken = may_vanish(TargetValue(value), arc, before, after) and locate(solver, TargetValue(value), arc, before, after)
-        return taken[0] if taken else None
+        if not may_vanish(TargetValue(value), arc, before, after):
+            return None
+        return next(iter(locate(solver, TargetValue(value), arc, before, after)), None)
     # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
     turn = brentq(lambda t: arc.segment.derivative(t)[-1], 0.0, 1.0, xtol=RESOLUTION)
     if (arc.segment.at(turn)[-1] - value) * before > 0.5 * min(abs(before), abs(after)) * abs(before):

@@ -7,6 +7,7 @@ they are made of, so that neither units nor the place of zero count.
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -128,7 +129,7 @@ class Bordered:
     rows: Array
 
     @cached_property
-    def _factor(self) -> object:
+    def _factor(self) -> Any:
         H, column, rows = self.matrix, self.column, self.rows
         if sp.issparse(H):
             return splu(sp.csc_array(sp.block_array([[H, sp.csc_array(column[:, None])], [sp.csc_array(rows), None]])))

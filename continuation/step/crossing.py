@@ -71,6 +71,23 @@ branches are as far apart as they were. One farther on is first approached, to h
 
 
 @frozen(eq=False)
+class Crossed:
+    """A branch point on an arc.
+
+    Attributes
+    ----------
+    point : Linearization
+        Of the path; the factorisation is that of the arc's beginning.
+    rays : ndarray, shape (4, N + 1)
+        The directions of the branches that meet there, of unit length in the metric, each pointing away from it: back,
+        onward, and both of the other branch.
+    """
+
+    point: Linearization
+    rays: Array
+
+
+@frozen(eq=False)
 class Crossings:
     """Looks for them, with the parts it needs."""
 
@@ -78,8 +95,8 @@ class Crossings:
 
     def on_arc(
         self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, end: Array | None
-    ) -> list[Linearization] | Rejected:
-        """The branch points on an arc, at most one; or why the arc does not count, and which step to try.
+    ) -> Crossed | Rejected | None:
+        """The branch point on an arc, if there is one; or why the arc does not count, and which step to try.
 
         Parameters
         ----------
@@ -93,6 +110,8 @@ class Crossings:
         end : ndarray or None
             Where the path ends on the arc, if it does: what lies beyond does not count.
         """
+        # An arc that was cut, as at a kink, is the beginning of what was predicted.
+        attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
         looked = self._looked(arc, attempt, prediction)
         places = max(([t for t in found if t < BEYOND] for found in looked.values()), key=len, default=[])
         if flipped and not places and (apply := self._derivative(arc.b.u)) is not None:
@@ -100,7 +119,7 @@ class Crossings:
         last = np.inf if end is None else position(arc, end) / position(arc, arc.b.u)
         places = [t for t in places if t < last]
         if end is not None and not (places or (flipped and last == 1.0)):
-            return []
+            return None
         if end is None and any(abs(t - 1.0) < APART for t in places):
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         inside = [t for t in places if t < 1.0]
@@ -111,7 +130,7 @@ class Crossings:
         if not flipped:
             seen = any(found and found[0] < at for at, found in looked.items())
             if not (places or doubtful) or (not seen and self._continues(arc, looked)):
-                return []
+                return None
         found = None
         if places or flipped:
             t = self._refined(arc, attempt, prediction, (inside or places or [LOOKS[0]])[0])
@@ -119,17 +138,17 @@ class Crossings:
         if found is None and not flipped and (behind := self._behind(arc, attempt)) is not None:
             found = self._found(arc, arc.segment.at(behind))
         if found is None:
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or inside or doubtful else []
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or inside or doubtful else None
         at = position(arc, found.u) / position(arc, arc.b.u)
         if at > last:
-            return []
+            return None
         if end is None and abs(at - 1.0) < BESIDE:
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         if at > 1.0:
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else []
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
         if not flipped:
             return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
-        return [self._point(arc, found, at)]
+        return self._point(arc, found, at)
 
     def _looked(self, arc: Arc, attempt: Arrival, prediction: Prediction) -> dict[float, list[float]]:
         """The places that each look along the prediction shows, in arcs; the first look alone where it shows none."""
@@ -145,14 +164,14 @@ class Crossings:
         return found
 
     def _derivative(self, u: Array) -> Callable[[Array], Array] | None:
-        """v -> H' v at a point; None where there is none."""
+        """The map v -> H' v at a point; None where there is none."""
         try:
             return self.solver.evaluator.differential(u)
         except EvaluationError:
             return None
 
     def _continues(self, arc: Arc, looked: dict[float, list[float]]) -> bool:
-        """Whether the matrix at the arc's end is what the looks along the prediction lead to expect, and no crossing near.
+        """Whether the matrix at the arc's end is what the looks along the prediction lead to expect, no crossing near.
 
         On the other branch it is about as far from singular, on the other side.
         """
@@ -207,13 +226,14 @@ class Crossings:
             return None
         return found
 
-    def _point(self, arc: Arc, found: SimpleBranchPoint, at: float) -> Linearization:
+    def _point(self, arc: Arc, found: SimpleBranchPoint, at: float) -> Crossed:
         """The branch point as a point of the path, its tangent that of the branch which goes on."""
         weights, heading = arc.a.weights, arc.segment.derivative(at)
         along = [inner(weights, heading, d) for d in found.directions]
         k = int(np.argmax(np.abs(along)))
         tangent: Array = found.directions[k] * np.sign(along[k])
-        return evolve(arc.a, u=found.u, tangent=tangent)
+        other = found.directions[1 - k]
+        return Crossed(evolve(arc.a, u=found.u, tangent=tangent), np.array([-tangent, tangent, other, -other]))
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:
