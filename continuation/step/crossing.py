@@ -29,6 +29,9 @@ LOOKS = 0.5, 0.25, 0.75
 """Where on the predicted arc H' is compared with that at its beginning: half way the prediction is sixteen times nearer
 to the path than at its end, where it may lie on the other branch. From there the places are extrapolated."""
 
+EIGHTHS = (*LOOKS, 0.125, 0.375, 0.625, 0.875)
+"""The same for a series, whose steps reach over more than a cubic's, and cost as many solves as it has terms."""
+
 CHANGED = 0.25
 """Where H' has changed by more than this part half way, it is looked at on either side too, since two crossings may lie
 before and one behind: on 3,200 steps of acceptance problems that is one in forty. Half as much will do where the
@@ -126,10 +129,12 @@ class Crossings:
         if len(inside) > 1:
             first, second = inside[:2]
             return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (first + second))
-        doubtful = len(looked) == len(LOOKS) and attempt.correction.contraction > DOUBTFUL
+        doubtful = len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
         if not flipped:
             seen = any(found and found[0] < at for at, found in looked.items())
-            if not (places or doubtful) or (not seen and self._continues(arc, looked)):
+            # A series is so near to the path that its looks tell all.
+            whole = hasattr(prediction, "segment") and not seen and self._continues(arc, looked)
+            if whole or not (places or doubtful):
                 return None
         found = None
         if places or flipped:
@@ -154,12 +159,12 @@ class Crossings:
         """The places that each look along the prediction shows, in arcs; the first look alone where it shows none."""
         contracts = attempt.correction.contraction <= RELIABLE
         least, found = CHANGED if contracts else 0.5 * CHANGED, {}
-        for at in LOOKS:
+        series = hasattr(prediction, "segment")
+        for at in EIGHTHS if series else LOOKS:
             if (apply := self._derivative(prediction(at * attempt.h))) is None:
                 break
             found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, max(BEYOND / at, 1.0 / least))]
-            # A series reaches over more than a cubic: its steps are looked at in all places.
-            if not found[LOOKS[0]] and not hasattr(prediction, "segment"):
+            if not found[LOOKS[0]] and not series:
                 break
         return found
 
