@@ -70,6 +70,7 @@ class Kind(IntEnum):
     BRANCH_POINT = 4
     EVENT = 5
     KINK = 6
+    SINGULAR_POINT = 7
 
     def __repr__(self) -> str:
         return f"Kind.{self.name}"

@@ -24,9 +24,18 @@ CONVERGED = 0.05
 EXHAUSTED = 1e-10
 """A vector that loses all but this to the ones before it has no direction of its own."""
 
+RANKS, SAME, INDEPENDENT = 4, 1e-3, 1e-4
+"""At most so many vectors of one eigenvalue are sought; that near is the same one, and less than the last, of unit
+length, depends on the others: eigenvectors are known to about the root of what eigenvalues are."""
+
 
 def singular_places(
-    a: Linearization, apply: Callable[[Array], Array], border: Array, ahead: float, behind: float = np.inf
+    a: Linearization,
+    apply: Callable[[Array], Array],
+    border: Array,
+    ahead: float,
+    behind: float = np.inf,
+    accuracy: float = CONVERGED,
 ) -> list[float]:
     """Where on the way from M_a to another bordered matrix M there are singular ones: t in order, 1 at M itself.
 
@@ -42,13 +51,54 @@ def singular_places(
         The last row there: its tangent in the dual metric, so that a path that merely turns gives complex eigenvalues.
     ahead, behind : float
         Beyond 1, and below 0, the places are extrapolated: they are told from -behind to ahead, if that is finite.
+    accuracy : float
+        Of the eigenvalues, relative.
     """
     right, left_end = 1.0 / ahead, -1.0 / behind if np.isfinite(behind) else -np.inf
+    values, _ = _eigenvalues(a, apply, border, right, left_end, generic_vector(a.u.size), accuracy)
+    return sorted(float(1.0 / value) for value in values)
+
+
+def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
+    """How many ranks the matrix loses at a singular place: eigenvectors of one eigenvalue found from several vectors.
+
+    A Krylov space holds one vector of an eigenspace, whatever its dimension.
+
+    Parameters
+    ----------
+    a, apply, border
+        As for `singular_places`.
+    place : float
+        One of these.
+    """
+    found: list[Array] = []
+    for k in range(RANKS):
+        start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
+        values, vectors = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
+        near = [i for i, value in enumerate(values) if abs(value * place - 1.0) < SAME]
+        if not near:
+            break
+        found.append(vectors[:, near[0]])
+        sizes = np.linalg.svd(np.array(found), compute_uv=False)
+        if sizes[-1] < INDEPENDENT:
+            return k
+    return len(found)
+
+
+def _eigenvalues(
+    a: Linearization,
+    apply: Callable[[Array], Array],
+    border: Array,
+    right: float,
+    left: float,
+    start: Array,
+    accuracy: float,
+) -> tuple[Array, Array]:
+    """The real eigenvalues of C beyond right, or below left, and their vectors in the metric, as columns."""
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
     Q, H = np.zeros((n + 1, a.u.size)), np.zeros((n + 1, n))
-    Q[0] = generic_vector(a.u.size)
-    Q[0] /= np.linalg.norm(Q[0])
+    Q[0] = start / np.linalg.norm(start)
     for k in range(n):
         q = Q[k] / scale
         x = Q[k] - scale * a.solve(apply(q), float(np.dot(border, q)))
@@ -60,11 +110,12 @@ def singular_places(
         H[k + 1, k] = float(np.linalg.norm(x))
         whole = k + 1 == a.u.size or H[k + 1, k] <= EXHAUSTED * size
         values, vectors = np.linalg.eig(H[: k + 1, : k + 1])
-        left = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
-        told = (values.real + left > right) | (values.real - left < left_end)
-        known = left <= CONVERGED * np.abs(values)
+        error = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
+        told = (values.real + error > right) | (values.real - error < left)
+        known = error <= accuracy * np.abs(values)
         if whole or (k > 0 and known[told].all()):
             break
         Q[k + 1] = x / H[k + 1, k]
-    real = np.abs(values.imag) <= left + EXHAUSTED * np.abs(values)
-    return sorted(float(1.0 / value) for value in values[real].real if value > right or value < left_end)
+    real = np.abs(values.imag) <= error + EXHAUSTED * np.abs(values)
+    wanted = real & ((values.real > right) | (values.real < left))
+    return values[wanted].real, Q[: k + 1].T @ vectors[:, wanted].real

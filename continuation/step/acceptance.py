@@ -27,6 +27,9 @@ from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
+MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
+"""What is said of a point where several branches cross at once."""
+
 
 @frozen(eq=False)
 class Accepted:
@@ -119,7 +122,8 @@ class Examiner:
             found = found[: last + 1]
         located = [self._located(i, event, point, state, ending.arc.b) for i, event in found]
         if branch is not None:
-            located = [evolve(at, rays=branch.rays) if at.kind is Kind.BRANCH_POINT else at for at in located]
+            known = {"rays": branch.rays} if branch.rays is not None else MULTIPLE
+            located = [evolve(at, **known) if at.kind is Kind.BRANCH_POINT else at for at in located]
         if crossing is not None:
             located[-1] = evolve(located[-1], name=crossing.name, switches=crossing.switches, rays=crossing.rays)
         return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)

@@ -15,7 +15,7 @@ from continuation.arrays import Array, largest
 from continuation.contraction import RELIABLE
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events.crossing import singular_places
+from continuation.events.crossing import multiplicity, singular_places
 from continuation.events.singularity import SimpleBranchPoint, branch_point_near, row_sizes
 from continuation.metric import inner, norm
 from continuation.point.arc import Arc, position
@@ -65,6 +65,10 @@ BESIDE = 0.1
 """From so near to a crossing, in steps, the next one begins badly: past it the factorisation at hand has a part of the
 wrong sign, and ten times too small."""
 
+PASSES, LOCATED = 60, 1e-12
+"""A point where H' loses several ranks is no regular zero of a system of ours: its place on the arc is iterated, to the
+second of an arc, each time by a part of what was off."""
+
 AWAY = 0.7
 """The factor of a step that arrived so near to a crossing that nothing can be said there."""
 
@@ -81,13 +85,13 @@ class Crossed:
     ----------
     point : Linearization
         Of the path; the factorisation is that of the arc's beginning.
-    rays : ndarray, shape (4, N + 1)
+    rays : ndarray, shape (4, N + 1), or None
         The directions of the branches that meet there, of unit length in the metric, each pointing away from it: back,
-        onward, and both of the other branch.
+        onward, and both of the other branch. None where H' loses several ranks at once: they are not known then.
     """
 
     point: Linearization
-    rays: Array
+    rays: Array | None
 
 
 @frozen(eq=False)
@@ -126,9 +130,11 @@ class Crossings:
         if end is None and any(abs(t - 1.0) < APART for t in places):
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         inside = [t for t in places if t < 1.0]
-        if len(inside) > 1:
-            first, second = inside[:2]
-            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (first + second))
+        together = self._counted(arc, attempt, prediction, [t for t in inside if t - inside[0] < APART], flipped)
+        if len({*inside} - {*together}) > 0:
+            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (inside[0] + min({*inside} - {*together})))
+        if len(together) > 1:
+            return self._together(arc, attempt, prediction, together, flipped)
         doubtful = len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
         if not flipped:
             seen = any(found and found[0] < at for at, found in looked.items())
@@ -154,6 +160,43 @@ class Crossings:
         if not flipped:
             return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
         return self._point(arc, found, at)
+
+    def _counted(
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, places: list[float], flipped: bool
+    ) -> list[float]:
+        """The same places, each as often as H' loses a rank there, if their number does not agree with the sign."""
+        if not places or flipped == bool(len(places) % 2) or (apply := self._derivative(arc.b.u)) is None:
+            return places
+        there = singular_places(arc.a, apply, arc.b.border, BEYOND)
+        if not there or abs(there[0] - places[0]) > BESIDE:
+            return places
+        return multiplicity(arc.a, apply, arc.b.border, there[0]) * places[:1]
+
+    def _together(
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, places: list[float], flipped: bool
+    ) -> Crossed | Rejected:
+        """Several crossings in about one place: a point where H' loses several ranks, or simple ones side by side.
+
+        Which branch goes on is not asked there: the path passes if the determinant's sign agrees with their number, and
+        the prediction was good, as it is along a branch that symmetry keeps.
+        """
+        t = self._refined(arc, attempt, prediction, places[0])
+        if self._found(arc, prediction(t * attempt.h)) is not None:
+            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (places[0] + places[1]))
+        if flipped != bool(len(places) % 2) or attempt.correction.contraction > DOUBTFUL:
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5)
+        for _ in range(PASSES):
+            u, _ = self.solver.project(arc.a, prediction(t * attempt.h), arc.a.border)
+            if (apply := self._derivative(u)) is None:
+                break
+            found = singular_places(arc.a, apply, arc.a.border, 2.0, accuracy=LOCATED)
+            if not found:
+                break
+            before, t = t, t * min(found, key=lambda place: abs(place - 1.0))
+            if abs(t - before) <= LOCATED:
+                break
+        tangent = arc.segment.derivative(t)
+        return Crossed(evolve(arc.a, u=u, tangent=tangent / norm(arc.a.weights, tangent)), None)
 
     def _looked(self, arc: Arc, attempt: Arrival, prediction: Prediction) -> dict[float, list[float]]:
         """The places that each look along the prediction shows, in arcs; the first look alone where it shows none."""

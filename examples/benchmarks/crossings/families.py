@@ -1,12 +1,13 @@
 """Random problems on whose path branches cross at known places: transversal, pitchforks, transcritical ones.
 
-In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the others follow it smoothly. What the tracer
-sees is mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
+In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the others follow it smoothly. What the
+tracer sees is mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,8 @@ class Crossed:
         T, and the coefficients of the unknowns that follow.
     units, origin, equations : ndarray
         D and a, c and b, E.
+    angle : float
+        The least difference of slopes at a crossing.
     """
 
     scalar: Scalar
@@ -47,6 +50,7 @@ class Crossed:
     units: Array
     origin: Array
     equations: Array
+    angle: float = 1.0
     unmix: Array = field(init=False)
 
     @unmix.default
@@ -70,6 +74,11 @@ class Crossed:
         a, b, c, d = self.shape[1:].T
         phase = b * s + c
         return a * np.sin(phase) + d * x0 * s, d * s, a * b * np.cos(phase) + d * x0
+
+    @property
+    def resolution(self) -> float:
+        """What round-off in y leaves of a crossing's place: more where zero is far off and the branches nearly touch."""
+        return 100.0 * float(np.finfo(float).eps * np.abs(self.origin / self.units).max()) / self.angle
 
     def start(self) -> tuple[Array, float]:
         return self.point(*self.curve(self.begin))
@@ -104,44 +113,56 @@ def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Cr
     return Crossed(mix=mix, shape=shape, units=D, origin=shift, equations=E[:, None] * equations, **known)
 
 
+def _graph(k: Array, s: Any) -> Any:
+    return k[0] * s + k[1] * s**2 / 2.0 + k[2] * 0.3 * (np.sin(2.0 * s) - 2.0 * s)
+
+
+def _slope(k: Array, s: Any) -> Any:
+    return k[0] + k[1] * s + k[2] * 0.6 * (np.cos(2.0 * s) - 1.0)
+
+
+def _roots(k: Array, s: Array) -> list[float]:
+    """Where a graph changes its sign, by Newton's method from a table."""
+    value, roots = _graph(k, s), []
+    for t in s[np.flatnonzero(value[:-1] * value[1:] < 0.0)]:
+        for _ in range(50):
+            t -= _graph(k, t) / _slope(k, t)
+        roots.append(float(t))
+    return roots
+
+
 def transversal(rng: np.random.Generator, n: int, units: float) -> Crossed:
     """Two graphs x_0 = f(s), g(s) that differ by 10^-2..1 and cross at most three times; the path is the first."""
     while True:
         a = rng.normal(0.0, 1.0, 3)
         b = a + rng.normal(0.0, 1.0, 3) * 10.0 ** rng.uniform(-2.0, 0.0)
-
-        def graph(k: Array, s: Any) -> Any:
-            return k[0] * s + k[1] * s**2 / 2.0 + k[2] * 0.3 * (np.sin(2.0 * s) - 2.0 * s)
-
-        def slope(k: Array, s: Any) -> Any:
-            return k[0] + k[1] * s + k[2] * 0.6 * (np.cos(2.0 * s) - 1.0)
-
-        def p(x: float, s: float) -> tuple[float, float, float]:
-            u, v = x - graph(a, s), x - graph(b, s)
-            return u * v, u + v, -slope(a, s) * v - slope(b, s) * u
-
         begin = float(-2.0 + rng.uniform(-0.3, 0.3))
-        s = np.linspace(begin, 2.0, 4002)
-        gap = graph(a - b, s)
-        roots = []
-        for k in np.flatnonzero(gap[:-1] * gap[1:] < 0.0):
-            t = s[k]
-            for _ in range(50):
-                t -= graph(a - b, t) / slope(a - b, t)
-            roots.append(float(t))
-        size = np.abs(a - b).max()
+        roots, size = _roots(a - b, np.linspace(begin, 2.0, 4002)), np.abs(a - b).max()
         # Crossings that touch, or lie at the ends, are not simple or not on the way.
         if (
             roots
-            and all(abs(slope(a - b, t)) > 0.05 * size for t in roots)
-            and min(abs(gap[0]), abs(gap[-1])) > 1e-2 * size
+            and all(abs(_slope(a - b, t)) > 0.05 * size for t in roots)
+            and min(abs(_graph(a - b, begin)), abs(_graph(a - b, 2.0))) > 1e-2 * size
             and all(begin < t < 2.0 for t in roots)
-            and all(abs(t - u) > 0.05 for t, u in zip(roots, roots[1:]))
+            and all(abs(t - u) > 0.05 for t, u in pairwise(roots))
         ):
-            return _dressed(
-                rng, n, units, scalar=p, curve=lambda s: (float(graph(a, s)), s), begin=begin, end=2.0,
-                crossings=[(float(graph(a, t)), t) for t in roots],
-            )
+            break
+
+    def p(x: float, s: float) -> tuple[float, float, float]:
+        u, v = x - _graph(a, s), x - _graph(b, s)
+        return u * v, u + v, -_slope(a, s) * v - _slope(b, s) * u
+
+    return _dressed(
+        rng,
+        n,
+        units,
+        scalar=p,
+        curve=lambda s: (float(_graph(a, s)), s),
+        begin=begin,
+        end=2.0,
+        crossings=[(float(_graph(a, t)), t) for t in roots],
+        angle=float(min(abs(_slope(a - b, t)) for t in roots)),
+    )
 
 
 def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:

@@ -11,10 +11,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-
 from families import Crossed, arm, pitchfork, transcritical, transversal
 
 import continuation as ct
+from continuation.arrays import Array
 
 FAMILIES: dict[str, Callable[..., Crossed]] = {
     "transversal": transversal,
@@ -33,7 +33,7 @@ def judged(problem: Crossed, on_arm: bool, preset: ct.Preset) -> tuple[str, floa
     if on_arm:
         # To the end by an event: the parameter is a function of neither end.
         trunk = problem.point(0.0, problem.curve(0.0)[1] - 2.0)[1]
-        options |= {"target": None, "direction": -int(np.sign(problem.units[-1])), "events": [_on(problem), ct.TargetValue(trunk)]}
+        options |= {"target": None, "direction": -1, "events": [_on(problem), ct.TargetValue(trunk)]}
     path = ct.trace(problem, **options)
     if not path.success:
         return f"stuck: {path.status.name}", np.nan, path
@@ -46,15 +46,19 @@ def judged(problem: Crossed, on_arm: bool, preset: ct.Preset) -> tuple[str, floa
         return f"found {len(found)} of {len(problem.crossings)}", np.nan, path
     places = [problem.first(event.y, event.lam) for event in found]
     error = max(max(abs(p - q), abs(r - t)) for (p, r), (q, t) in zip(places, problem.crossings))
-    return ("" if error <= LOCATED else "badly located"), error, path
+    return ("" if error <= LOCATED + problem.resolution else "badly located"), error, path
 
 
 def _on(problem: Crossed) -> Any:
     """A terminal event where x_0 passes its end."""
-    return ct.Monitor(lambda u, v: problem.first(u[:-1], float(u[-1]))[0] - problem.end, name="the end of the arm", terminal=1)
+
+    def beyond(u: Array, v: Array) -> float:
+        return problem.first(u[:-1], float(u[-1]))[0] - problem.end
+
+    return ct.Monitor(beyond, name="the end of the arm", terminal=1)
 
 
-def main(count: int, seed: int, only: str = "") -> None:
+def main(count: int, seed: int) -> None:
     """Print the counts for each family and preset."""
     for name, family in FAMILIES.items():
         for preset in PRESETS:
@@ -71,8 +75,8 @@ def main(count: int, seed: int, only: str = "") -> None:
                     wrong[outcome] += 1
                     examples.append(k)
             print(
-                f"{name:14s} {preset.name:13s} wrong {sum(wrong.values())}/{count} {dict(wrong)}  worst place {worst:.1e}"
-                f"  factorizations {factorizations}  {examples[:8]}",
+                f"{name:14s} {preset.name:13s} wrong {sum(wrong.values())}/{count} {dict(wrong)}  worst place"
+                f" {worst:.1e}  factorizations {factorizations}  {examples[:8]}",
                 flush=True,
             )
 
