@@ -22,6 +22,9 @@ STEP = 6e-6
 AGREE = 1e-4
 """Jets are believed where they agree with a difference so well, relative to the largest."""
 
+BESIDE = 1e-9
+"""How near to a border, in lengths of the direction in which it leaves, a start is that was given on it."""
+
 PARALLEL = 1e-9
 """The derivative of a switch along a path, relative to the largest, that is round-off or next to it."""
 
@@ -97,16 +100,19 @@ class Pieces:
                 self._jets.append(False)
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
 
-    def distance(self, u: Array, v: Array) -> float:
+    def distance(self, u: Array, v: Array, direction: Array | None = None) -> float:
         """How far borders are from u along v, to first order: half of the switches are no nearer.
 
-        Where no border is ahead it is the size of the point, or 1 at zero: there is no other length then.
+        Where no border is ahead it is the size of the direction in which a path was told to leave, else of the point,
+        or 1 at zero: there is no other length then. Borders beside the point, by the same measure, are not ahead.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
-        ahead = (s > 0.0) & (slope > PARALLEL * slope.max(initial=0.0))
+        beside = 0.0 if direction is None else BESIDE * np.abs(self.along(u, direction))
+        ahead = (s > beside) & (slope > PARALLEL * slope.max(initial=0.0))
         if ahead.any():
             return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2])
-        return (float(np.abs(u).max()) or 1.0) / (float(np.abs(v).max()) or 1.0)
+        size = float(np.abs(u if direction is None else direction).max())
+        return (size or 1.0) / (float(np.abs(v).max()) or 1.0)
 
     def _by_jets(self, u: Array, v: Array) -> Array:
         from continuation import jets

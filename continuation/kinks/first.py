@@ -7,13 +7,14 @@ from itertools import pairwise
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from continuation.arrays import Array, generic_vector
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
-from continuation.events.locate import LOOKS, _descent, _root
+from continuation.events.locate import AT_ROUND_OFF, LOOKS, NEARLY_ZERO, _descent, _root
 from continuation.point.arc import Arc, position
-from continuation.point.linearization import Linearization
+from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver
 from continuation.point.segment import hermite
 from continuation.status import Kind
@@ -38,6 +39,9 @@ HALVINGS = 40
 TOUCHING = 1e-9
 """Of a switch's largest value on the way to a limit of the path: so far beyond zero it may be at that limit, which is
 known to a root of round-off."""
+
+NEWTON = 8
+"""Iterations that bring a zero from four digits to round-off, and two that see that no more is to be had."""
 
 ROUNDS = 50
 """Zeros located on one arc, each before the one found last; more than that are not between two points of a path."""
@@ -64,6 +68,24 @@ class _Switch:
         """The same at a point of the path, 0 where it is round-off."""
         g = self.monitor(point.u, point.tangent)
         return g if abs(g) > self.noise else 0.0
+
+
+@frozen(eq=False)
+class _Watched:
+    """All switches, the signs of the piece, and what is round-off of each."""
+
+    pieces: Pieces
+    signs: Array
+    noise: Array
+
+    def switch(self, j: int) -> _Switch:
+        """One of them."""
+        return _Switch(self.pieces, j, int(self.signs[j]), float(self.noise[j]))
+
+    def crossed(self, point: Linearization) -> list[int]:
+        """Those that have the wrong sign at a point."""
+        found: list[int] = np.flatnonzero(self.signs * self.pieces.values(point.u) < -self.noise).tolist()
+        return found
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
@@ -123,8 +145,7 @@ def first_zero(
         grid = np.where(np.abs(grid) <= noise, 0.0, grid)
         grid[0, fresh] = np.maximum(grid[0, fresh], fine[fresh])
         suspects = np.flatnonzero(_suspects(grid) & (grid != 0.0).any(axis=0))
-        switches = {int(j): _Switch(pieces, int(j), int(s[j]), float(noise[j])) for j in suspects}
-        found = _first(solver, switches, s, arc, grid)
+        found = _first(solver, _Watched(pieces, s, noise), arc, grid, suspects)
     except SwitchError as error:
         raise EvaluationError(str(error)) from error
     if found is None:
@@ -158,32 +179,33 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 
 
 def _first(
-    solver: PathSolver, switches: dict[int, _Switch], s: Array, arc: Arc, grid: Array
+    solver: PathSolver, watched: _Watched, arc: Arc, grid: Array, suspects: NDArray[np.int64]
 ) -> tuple[Linearization, int] | None:
     """The first zero of the suspects: where the segment has the earliest, then whatever lies before that."""
     found: tuple[Linearization, int] | None = None
     whole, end = position(arc, arc.b.u), np.inf
-    for j in sorted(switches, key=lambda j: _estimate(grid[:, j])):
-        if _estimate(grid[:, j]) > end + 1.0 / (LOOKS - 1):
-            break
-        point = _zero(solver, switches[j], arc, grid[:, j])
+    for j in sorted(suspects.tolist(), key=lambda j: _estimate(grid[:, j])):
+        # A switch that has changed its sign before is seen at the zero found; one that only dips is not.
+        if _estimate(grid[:, j]) > end + (0.0 if _change(grid[:, j]) else 1.0 / (LOOKS - 1)):
+            continue
+        point = _zero(solver, watched.switch(j), arc, grid[:, j])
         if point is not None and (found is None or position(arc, point.u) < position(arc, found[0].u)):
             found, end = (point, j), position(arc, point.u) / whole
     for _ in range(ROUNDS):
         if found is None:
             return None
         point = found[0]
-        crossed = [j for j in switches if j != found[1] and switches[j].seen(point) < 0.0]
+        crossed = [j for j in watched.crossed(point) if j != found[1]]
         if not crossed:
             return found
-        part, switch = part_between(arc, arc.a, point), switches[crossed[0]]
+        part, first = part_between(arc, arc.a, point), watched.switch(crossed[0])
         places = np.linspace(0.0, 1.0, LOOKS)[1:-1]
-        inner = [switch.monitor(part.segment.at(float(t)), point.tangent) for t in places]
-        values = np.array([grid[0, switch.index], *inner, switch.seen(point)])
-        earlier = _zero(solver, switch, part, np.where(np.abs(values) <= switch.noise, 0.0, values))
+        inner = [first.monitor(part.segment.at(float(t)), point.tangent) for t in places]
+        values = np.array([grid[0, first.index], *inner, first.seen(point)])
+        earlier = _zero(solver, first, part, np.where(np.abs(values) <= first.noise, 0.0, values))
         if earlier is None:
             raise EvaluationError("a switch has changed its sign on the arc, and its zero is not found")
-        found = earlier, switch.index
+        found = earlier, first.index
     raise EvaluationError("switches vanish without end on the arc")
 
 
@@ -225,6 +247,9 @@ def _zero(solver: PathSolver, switch: _Switch, arc: Arc, values: Array) -> Linea
     change = _change(values)
     if change is not None:
         left, right = change
+        quick = _by_newton(solver, switch, arc, float(places[left]), float(places[right])) if left >= 0 else None
+        if quick is not None:
+            return quick
         if left >= 0 and (switch.seen(at(left)) <= 0.0 or switch.seen(at(right)) > 0.0):
             values = np.array([values[0], *(switch.seen(at(k)) for k in range(1, len(values)))])
             change = _change(values)
@@ -248,10 +273,47 @@ def _zero(solver: PathSolver, switch: _Switch, arc: Arc, values: Array) -> Linea
 
 def _between(solver: PathSolver, switch: _Switch, arc: Arc, a: Linearization, b: Linearization) -> Linearization:
     ga, gb = switch.monitor(a.u, a.tangent), switch.monitor(b.u, b.tangent)
-    point = b if gb >= 0.0 else _root(solver, switch, part_between(arc, a, b), None, ga, gb)
+    if gb >= 0.0:
+        return b
+    part = part_between(arc, a, b)
+    point = _root(solver, switch, part, None, ga, gb)
     if point is None:
         raise EvaluationError(f"switch {switch.index} jumps from one sign to the other")
     return point
+
+
+def _by_newton(solver: PathSolver, switch: _Switch, arc: Arc, low: float, high: float) -> Linearization | None:
+    """The zero by Newton's method along the path, from the segment's, with one factorisation made there.
+
+    None where it does not come to round-off between the places: then bracketing will, with many more points.
+    """
+    evaluator, segment = solver.evaluator, arc.segment
+
+    def g(t: float) -> float:
+        return switch.monitor(segment.at(t), arc.a.tangent)
+
+    scale = max(ga := g(low), -(gb := g(high)))
+    if not ga > 0.0 > gb:
+        return None
+    t = float(brentq(g, low, high, xtol=1e-15, rtol=1e-14))
+    u, _ = solver.project(arc.a if t < 0.5 else arc.b, segment.at(t), arc.border)
+    near = linearize(evaluator, u, arc.a.weights, arc.border)
+    value = switch.monitor(u, near.tangent)
+    whole, wide = position(arc, arc.b.u), high - low
+    for _ in range(NEWTON):
+        slope = switch.sign * float(switch.pieces.along(u, near.tangent)[switch.index])
+        if abs(value) <= AT_ROUND_OFF * scale or slope >= 0.0:
+            break
+        ahead, _ = solver.project(near, u - (value / slope) * near.tangent, arc.border)
+        there = switch.monitor(ahead, near.tangent)
+        if not abs(there) < abs(value):
+            break
+        u, value = ahead, there
+    t = position(arc, u) / whole
+    inside = max(low - wide, 0.0) < t < min(high + wide, 1.0)
+    if not inside or abs(value) > min(switch.noise, NEARLY_ZERO * scale):
+        return None
+    return relinearize(evaluator, u, near.weights, near.anchor, arc.border)
 
 
 def _left_at_once(solver: PathSolver, switch: _Switch, arc: Arc, t: float) -> Linearization:

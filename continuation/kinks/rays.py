@@ -149,15 +149,15 @@ class _Family:
         own = [family.applied(corner.signs, r) for r in R]
         if any(image is None for image in own):
             return family
-        flips = [corner.signs_with([-corner.signs[j] if j == k else corner.signs[j] for j in corner.beta])
-                 for k in corner.beta]
+        flips = [
+            corner.signs_with([-corner.signs[j] if j == k else corner.signs[j] for j in corner.beta])
+            for k in corner.beta
+        ]
         if not all(corner.pieces.exists(signs) for signs in flips):
             return family
         columns = [family.column(k, flips[k], np.array(own)) for k in range(b)]
         Z = np.array([point.solve(c) for c in columns])
-        return cls(
-            corner, sizes, R, GR, family.tilts, np.array(columns), Z, np.array([corner.tilts(z) for z in Z]).T
-        )
+        return cls(corner, sizes, R, GR, family.tilts, np.array(columns), Z, np.array([corner.tilts(z) for z in Z]).T)
 
     def applied(self, signs: Signs, r: Array) -> Array | None:
         """The derivative of a piece along r; None where it has no matrix to be applied."""

@@ -9,7 +9,7 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.evaluation.pieces import Pieces, Signs, SwitchError
+from continuation.evaluation.pieces import BESIDE, Pieces, Signs, SwitchError
 from continuation.kinks.first import switch_noise
 from continuation.kinks.rays import Corner, UnresolvedError, rays_at
 from continuation.metric import Metric
@@ -17,10 +17,6 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.step.start import SingularStartError, StartError, first_point, point_from_tangent
 from continuation.tolerance import Tolerance
-
-BESIDE = 1e-9
-"""How far ahead of a given start, relative to it, a given direction says on which side of a switch the path lies: a
-kink is known to a thousandth of that or better."""
 
 PIECES = 10
 """Corrections of a start, each of which may lead it to another piece."""
@@ -102,7 +98,8 @@ def _out_of_kink(
 
 
 def _signs_beside(pieces: Pieces, u: Array, v: Array) -> Signs:
-    return pieces.signs(u + v * (BESIDE * (float(np.abs(u).max()) or 1.0) / float(np.abs(v).max())))
+    """A kink is known to a thousandth of BESIDE or better: so far ahead, a direction tells the side of a switch."""
+    return pieces.signs(u + v * (BESIDE * max(1.0, float(np.abs(u).max()) / float(np.abs(v).max()))))
 
 
 def kink_rays(homotopy: Any, u: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from functools import partial
 from typing import Any, Protocol, Unpack
 
 import numpy as np
@@ -116,7 +117,8 @@ class Tracer:
         self.state: State | None = state
         self._finish = finish_of(homotopy, asked["finish"])
         self._pieces = Pieces(homotopy) if isinstance(homotopy, SupportsPieces) else None
-        straight = None if self._pieces is None else self._pieces.distance
+        leaving = None if asked["start"] is None else np.asarray(asked["start"][1], dtype=float)
+        straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
         self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy), straight)
         observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._recorder = StepRecorder(self._evaluator, observe)
