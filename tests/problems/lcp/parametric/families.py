@@ -1,0 +1,41 @@
+"""Problems whose piecewise linear paths are known."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.path import Path
+from problems.lcp import LCP, MixedLCP, along
+
+
+def murty(n: int) -> LCP:
+    """With d = e its path visits all 2^n faces."""
+    q = -np.array([sum(2.0 ** (n - j) for j in range(1, i + 1)) for i in range(1, n + 1)])
+    return LCP(np.tril(np.full((n, n), 2.0), -1) + np.eye(n), q)
+
+
+def lasso(X: Array, y: Array) -> Path:
+    """The path of min 1/2 |X b - y|^2 + t |b|_1 from the least t with b = 0 on, to 0."""
+    problem = MixedLCP(X.T @ X, -X.T @ y)
+    return along(problem, np.zeros(problem.n), (np.inf, 0.0), level=1.0)
+
+
+def mairal_yu(p: int) -> tuple[Array, Array]:
+    """Of p unknowns, with (3^p - 1) / 2 kinks."""
+    X, y, least = np.eye(1), np.ones(1), 1.0
+    for _ in range(p - 1):
+        a = least / (2.0 * (2.0 * y @ y + 1.0))
+        X = np.block([[X, (2.0 * a * y)[:, None]], [np.zeros((1, X.shape[1])), np.full((1, 1), a)]])
+        y = np.append(y, 1.0)
+        least = lasso(X, y).kinks[-1].lam
+    return X, y
+
+
+def integer_problem(seed: int) -> tuple[LCP, Array]:
+    """Of integers so small that switches often vanish together."""
+    random = np.random.default_rng(seed)
+    n = int(random.integers(2, 7))
+    A = random.integers(-2, 3, (n, n)).astype(float)
+    A = A @ A.T if seed % 3 == 0 else A
+    return LCP(A, random.integers(-3, 4, n)), random.integers(1, 3, n).astype(float)
