@@ -13,6 +13,9 @@ from attrs import frozen
 from scipy.linalg import null_space
 
 from continuation.arrays import Array
+from problems.lcp.data.problem import LCP
+from problems.lcp.pivoting.almost import Ended
+from problems.lcp.pivoting.starts import covering
 
 LARGEST_LISTED = 10
 """Switches up to which all 2^m pieces are tried: 30 ms for ten; beyond, the one ray that pivots find."""
@@ -154,3 +157,20 @@ def way(S: Array, r: Array) -> Way | None:
         basic[row], other[column] = other[column], leaving
         column = int(np.flatnonzero(other == (leaving + m if leaving < m else leaving - m))[0])
     return None
+
+
+def a_solution(S: Array, r: Array) -> Array | None:
+    """A v' >= 0 with ``S v' + r >= 0``, complementary, by Lemke's method; None where that ends on a ray.
+
+    Parameters
+    ----------
+    S : ndarray, shape (m, m)
+    r : ndarray, shape (m,)
+    """
+    path = covering(LCP(S, r), np.ones(r.size))
+    if path is None or path.run(AT_ORDER * r.size) is not Ended.REACHED:
+        return None
+    grown = np.zeros(r.size)
+    active = np.flatnonzero(path.active)
+    grown[active] = np.linalg.solve(S[np.ix_(active, active)], -r[active])
+    return grown

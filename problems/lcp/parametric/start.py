@@ -10,7 +10,7 @@ from scipy.linalg import qr
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import Basis, SingularBasisError
-from problems.lcp.parametric.corner import FEW, LARGEST_LISTED, rays
+from problems.lcp.parametric.corner import FEW, LARGEST_LISTED, a_solution, rays
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.parametric.walk import FLAT, Walk
 
@@ -111,7 +111,7 @@ def from_solution(
     if walk.tied.size:
         S, r, along = walk.small()
         if walk.tied.size > LARGEST_LISTED:
-            grown = _any_solution(S, r)
+            grown = a_solution(S, r)
             if grown is None:
                 return None
             switched, chosen = grown > 0.0, along @ np.append(grown, 1.0)
@@ -173,12 +173,3 @@ def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) ->
     if _agreement(kernel, ray, sign) < 0.0:
         kernel = -kernel
     return _aimed(walk, kernel, x, t)
-
-
-def _any_solution(S: Array, r: Array) -> Array | None:
-    """A solution of the small LCP with e' = 1."""
-    from problems.lcp.data.problem import LCP
-    from problems.lcp.search.solver import solve
-
-    found = solve(LCP(S, r))
-    return found.x if found.solved else None

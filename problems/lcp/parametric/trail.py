@@ -12,6 +12,7 @@ from continuation.arrays import Array, largest
 from continuation.budget import Budget
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
+from problems.lcp.data.problem import State
 from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.walk import Corner, Left, Walk
 
@@ -147,6 +148,31 @@ class Trail:
             Step(len(self.path), first.u, unit, last.arclength + ahead, ahead, residual_norm=first.residual_norm)
         )
         return True
+
+
+def state_at(walk: Walk, last: float, most: int) -> State | None:
+    """The pieces of the point where t is `last`, by a walk of so many corners at most; None where it leads elsewhere.
+
+    Parameters
+    ----------
+    walk : Walk
+    last : float
+    most : int
+    """
+    for _ in range(most):
+        if not _located(walk):
+            return None
+        left, step = walk.next_corner()
+        if not walk.still and _arrives(walk, last, (last - walk.t) / walk.dt, step):
+            return walk.state
+        if left is Left.RAY:
+            return None
+        try:
+            if walk.turn() is None:
+                return None
+        except SingularBasisError:
+            return None
+    return None
 
 
 def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:

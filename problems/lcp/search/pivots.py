@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+from attrs import evolve, frozen
 
+from continuation.arrays import Array
 from problems.lcp.active_set.face import Mask
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.problem import LCP, active_state
+from problems.lcp.parametric.basis import SingularBasisError
+from problems.lcp.parametric.start import from_solution
+from problems.lcp.parametric.trail import state_at
 from problems.lcp.pivoting.almost import AlmostComplementary, Ended
 from problems.lcp.pivoting.starts import Game, covering
 from problems.lcp.proof.farkas import infeasibility
@@ -33,6 +38,14 @@ LABELS = (0, -1)
 
 AT_END = Policy(steps=2)
 """Corrections of the active set of the last basis, which is right but for rounding."""
+
+
+@frozen(eq=False)
+class Nearby:
+    """The solution of a problem nearby: x, and w = A x + q there."""
+
+    x: Array
+    w: Array
 
 
 def most_pivots(n: int) -> int:
@@ -73,6 +86,38 @@ def by_lemke(search: Search, seed: int) -> bool:
         search.proof = infeasibility(problem, guess=path.ray())
         return search.proof is not None
     return _reached(search, path, ended)
+
+
+def by_guess(search: Search, guess: Nearby) -> bool:
+    """Follow LCP(q + t (q' - q), A) from t = 1, where the guess is the solution, to 0; whether that led to one.
+
+    q' = w - A x with x and w those of the guess: whatever problem it is the solution of, it solves that for q' too.
+
+    Parameters
+    ----------
+    search : Search
+        Takes up what is found.
+    guess : Nearby
+        In the units of the search.
+
+    References
+    ----------
+    Cottle, Pang and Stone, section 4.5.
+    """
+    problem = search.problem
+    x = problem.clipped(guess.x)
+    low, high = x <= problem.lower, x >= problem.upper
+    w = np.where(low & ~problem.fixed, np.maximum(guess.w, 0.0), np.where(high, np.minimum(guess.w, 0.0), 0.0))
+    dense = problem.A.toarray() if problem.sparse else problem.A
+    d = w - (dense @ x + problem.q)
+    if not np.isfinite(d).all():
+        return False
+    try:
+        walk = from_solution(evolve(problem, A=dense), d, np.zeros(problem.n), x, 1.0, -1.0)
+    except SingularBasisError:
+        return False
+    state = None if walk is None else state_at(walk, 0.0, most_pivots(problem.n))
+    return state is not None and search.settle(state, AT_END)
 
 
 def constraints(problem: LCP) -> Mask:
