@@ -27,9 +27,12 @@ class Basis:
     Attributes
     ----------
     matrix : Array of shape (n, n), in Fortran's order
-    rows, columns : lists of int
-        Column n is that of t, whose entries are `shares`.
     shares : Array of shape (n,)
+        The entries of column n, that of t.
+    order : int
+        How many rows and columns.
+    row_place, column_place : integer arrays of shape (n,), (n + 1,)
+        Where a row or column is among those of the basis; -1 if it is not.
     block : Array of shape (n, room), in Fortran's order
         The columns, all rows of them.
     inverse : Array of shape (room, room), in Fortran's order
@@ -38,29 +41,35 @@ class Basis:
 
     matrix: Array
     shares: Array
-    rows: list[int] = field(factory=list)
-    columns: list[int] = field(factory=list)
+    order: int = field(init=False, default=0)
     row_place: NDArray[np.intp] = field(init=False)
     column_place: NDArray[np.intp] = field(init=False)
     block: Array = field(init=False)
     inverse: Array = field(init=False)
+    _rows: NDArray[np.intp] = field(init=False)
+    _columns: NDArray[np.intp] = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         n = self.shares.size
         self.row_place, self.column_place = np.full(n, -1), np.full(n + 1, -1)
+        self._rows, self._columns = np.zeros(n + 1, dtype=np.intp), np.zeros(n + 1, dtype=np.intp)
         self._allocate(0)
-        self.reset(list(self.rows), list(self.columns))
 
     @property
-    def order(self) -> int:
-        """How many rows and columns."""
-        return len(self.rows)
+    def rows(self) -> NDArray[np.intp]:
+        """Shape (order,)."""
+        return self._rows[: self.order]
+
+    @property
+    def columns(self) -> NDArray[np.intp]:
+        """Shape (order,)."""
+        return self._columns[: self.order]
 
     def column(self, j: int) -> Array:
         """A column of [A, d], shape (n,)."""
         return self.shares if j == self.shares.size else self.matrix[:, j]
 
-    def reset(self, rows: list[int], columns: list[int]) -> None:
+    def reset(self, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> None:
         """Take these rows and columns, and invert their block.
 
         Raises
@@ -69,11 +78,12 @@ class Basis:
             If it has no inverse.
         """
         self.row_place[:], self.column_place[:] = -1, -1
-        self.rows, self.columns = rows, columns
-        self.row_place[rows], self.column_place[columns] = np.arange(len(rows)), np.arange(len(columns))
-        self._allocate(len(rows))
+        k = self.order = rows.size
+        self.rows[:], self.columns[:] = rows, columns
+        self.row_place[rows] = self.column_place[columns] = np.arange(k)
+        self._allocate(k)
         for place, j in enumerate(columns):
-            self.block[:, place] = self.column(j)
+            self.block[:, place] = self.column(int(j))
         self.invert()
 
     def invert(self) -> None:
@@ -109,22 +119,23 @@ class Basis:
         z : Array of shape (room, m)
         left : Array of shape (n, m)
         """
-        z = np.zeros((self.inverse.shape[0], right.shape[1]), order="F")
-        if self.order == 0:
-            return z, right.copy()
-        rows, k = self.rows, self.order
-        padded = np.zeros_like(z)
-        left = right.copy()
-        for attempt in range(4):
+        k, rows = self.order, self.rows
+        if k == 0:
+            return np.zeros((0, right.shape[1])), right
+        padded = np.zeros((self.inverse.shape[0], right.shape[1]), order="F")
+        padded[:k] = right[rows]
+        z = self.inverse @ padded
+        np.negative(z, out=z)
+        left = self.block @ z
+        left += right
+        for attempt in range(3):
             padded[:k] = left[rows]
             correction = self.inverse @ padded
             z -= correction
-            left = self.block @ z + right
-            size = np.abs(z).max(axis=0)
-            relative = np.abs(correction).max(axis=0) <= INEXACT * size
-            if attempt and relative.all():
+            left -= self.block @ correction
+            if (np.abs(correction).max(axis=0) <= INEXACT * np.abs(z).max(axis=0)).all():
                 break
-            if attempt == 2:
+            if attempt == 1:
                 self.invert()
         return z, left
 
@@ -138,10 +149,10 @@ class Basis:
         right = np.zeros(self.inverse.shape[0])
         right[:k] = entering[self.rows]
         h = self.inverse @ right
-        g = self.block[row, :] @ self.inverse
+        g = self.block[row] @ self.inverse
         pivot = entering[row] - float(self.block[row, :k] @ h[:k])
-        self.rows.append(row)
-        self.columns.append(column)
+        self.order += 1
+        self._rows[k], self._columns[k] = row, column
         self.row_place[row] = self.column_place[column] = k
         h[k] = g[k] = -1.0
         self._update(1.0 / pivot, h, g)
@@ -157,7 +168,7 @@ class Basis:
         h[place] -= 1.0
         self._update(-1.0 / pivot, h, self.inverse[place].copy())
         self.block[:, place] = column
-        self.columns[place] = entering
+        self._columns[place] = entering
         self.column_place[leaving], self.column_place[entering] = -1, place
 
     def exchange_row(self, leaving: int, entering: int) -> None:
@@ -167,7 +178,7 @@ class Basis:
         pivot = g[place]
         g[place] -= 1.0
         self._update(-1.0 / pivot, self.inverse[:, place].copy(), g)
-        self.rows[place] = entering
+        self._rows[place] = entering
         self.row_place[leaving], self.row_place[entering] = -1, place
 
     def leave_both(self, row: int, column: int) -> None:
@@ -182,8 +193,10 @@ class Basis:
         self.inverse[last] = 0.0
         self.block[:, at_column] = self.block[:, last]
         self.block[:, last] = 0.0
-        self.rows[at_row], self.columns[at_column] = self.rows[-1], self.columns[-1]
-        self.row_place[self.rows.pop()], self.column_place[self.columns.pop()] = at_row, at_column
+        last_row, last_column = self._rows[last], self._columns[last]
+        self._rows[at_row], self._columns[at_column] = last_row, last_column
+        self.row_place[last_row], self.column_place[last_column] = at_row, at_column
+        self.order = last
         self.row_place[row] = self.column_place[column] = -1
 
     def share(self, row: int, value: float) -> None:

@@ -45,6 +45,11 @@ class Ray:
     grown: Array
     driven: float
 
+    @property
+    def back(self) -> bool:
+        """Whether the path has come along it."""
+        return self.driven < 0.0 and not self.grown.any()
+
 
 @frozen(eq=False)
 class Way:
@@ -56,10 +61,13 @@ class Way:
         Of the m switches, those whose piece is another one.
     driver : int
         The switch whose pair drives from here on.
+    ray : Ray
+        Where it leads.
     """
 
     switched: tuple[int, ...]
     driver: int
+    ray: Ray
 
 
 def rays(S: Array, r: Array) -> list[Ray]:
@@ -141,10 +149,11 @@ def way(S: Array, r: Array) -> Way | None:
             entering = int(other[column])
             if entering == 2 * m:
                 return None
-            grown = {int(i) - m for i in basic if m <= i < 2 * m}
-            if entering >= m:
-                grown.add(entering - m)
-            return Way(tuple(sorted(grown)), entering % m)
+            rates = np.zeros(2 * m + 1)
+            rates[basic], rates[entering] = table[:, column], 1.0
+            rates[np.abs(rates) <= FEW * np.abs(rates).max()] = 0.0
+            switched = [*basic[(basic >= m) & (basic < 2 * m)].tolist(), *([entering] if entering >= m else [])]
+            return Way(tuple(i - m for i in switched), entering % m, Ray(rates[m : 2 * m], float(rates[2 * m])))
         row = int(falling[np.argmin(table[falling, -1] / slopes[falling])])
         pivot = table[row, column]
         moved = table[row] / -pivot

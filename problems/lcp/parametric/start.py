@@ -32,12 +32,17 @@ def walk_at(problem: MixedLCP, d: Array, level: Array, state: State, t: float, s
     SingularBasisError
         If the equations of these pieces are dependent, t's column included.
     """
-    matrix = np.asfortranarray(problem.A)
-    sizes = np.maximum(np.abs(matrix).max(axis=1, initial=0.0), np.abs(d))
-    basis = Basis(matrix, d.copy())
-    walk = Walk(problem, d, Stairs.of(problem, level), state.copy(), basis, problem.n, t, sign, matrix, sizes)
+    walk = _walk(problem, d, level, state, t, sign)
     walk.rebase(problem.n)
     return walk
+
+
+def _walk(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sign: float) -> Walk:
+    """The same without a basis."""
+    matrix = np.asfortranarray(problem.A)
+    sizes = np.maximum(np.abs(matrix).max(axis=1, initial=0.0), np.abs(d))
+    stairs, basis = Stairs.of(problem, level), Basis(matrix, d.copy())
+    return Walk(problem, d, stairs, state.copy(), basis, problem.n, t, sign, matrix, sizes)
 
 
 def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
@@ -60,7 +65,7 @@ def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
     ).astype(np.int8)
     walk = walk_at(problem, d, level, state, 0.0, -sign)
     walk.locate()
-    gaps, rates = walk.gaps()
+    gaps, rates = walk.gaps.ravel(), walk.rates.ravel()
     # As t grows out of sight no gap may shrink.
     wrong = ((rates < 0.0) | ((rates == 0.0) & (gaps < 0.0))) & np.isfinite(gaps)
     if wrong.any():
@@ -105,7 +110,7 @@ def from_solution(
     try:
         walk = walk_at(problem, d, level, state, t, sign)
     except SingularBasisError:
-        return _standing(walk_without_basis(problem, d, level, state, t, sign), x, t, ray, sign)
+        return _standing(_walk(problem, d, level, state, t, sign), x, t, ray, sign)
     walk.locate()
     walk.find_tied()
     if walk.tied.size:
@@ -124,20 +129,12 @@ def from_solution(
             best = int(np.argmax(wanted))
             switched, chosen = found[best].grown > 0.0, directions[best]
         walk.switch_tied(switched)
-        return _aimed(walk, chosen, walk.x, t)
+        walk.aim(chosen)
+        return walk
     if ray is not None and np.dot(np.append(walk.dx, walk.dt), ray) < 0.0:
         walk.sign = -walk.sign
     assert n == walk.driver
     return walk
-
-
-def walk_without_basis(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sign: float) -> Walk:
-    """The same with an empty basis, to be filled."""
-    matrix = np.asfortranarray(problem.A)
-    sizes = np.maximum(np.abs(matrix).max(axis=1, initial=0.0), np.abs(d))
-    return Walk(
-        problem, d, Stairs.of(problem, level), state.copy(), Basis(matrix, d.copy()), problem.n, t, sign, matrix, sizes
-    )
 
 
 def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
@@ -146,17 +143,6 @@ def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
     if ray is not None:
         return float(direction @ ray) / length
     return sign * float(direction[-1]) / length if abs(direction[-1]) > FEW * length else 0.0
-
-
-def _aimed(walk: Walk, direction: Array, x: Array, t: float) -> Walk:
-    """The walk along a direction from a point: driven by t, or by the x that moves most."""
-    n = walk.problem.n
-    moving = np.abs(np.where(np.append(walk.moves_x, True), direction, 0.0))
-    driver = n if moving[n] > FLAT**0.5 * moving.max() else int(np.argmax(moving))
-    walk.rebase(driver)
-    walk.driver, walk.sign = driver, float(np.sign(direction[driver]))
-    walk.value = t if driver == n else float(x[driver])
-    return walk
 
 
 def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:
@@ -172,4 +158,7 @@ def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) ->
     kernel[np.append(moving, walk.problem.n)] = q[:, -1]
     if _agreement(kernel, ray, sign) < 0.0:
         kernel = -kernel
-    return _aimed(walk, kernel, x, t)
+    walk.x, walk.t = x, t
+    walk.dx, walk.dt = kernel[:-1], float(kernel[-1])
+    walk.aim(kernel)
+    return walk

@@ -52,18 +52,19 @@ class Trail:
         budget : Budget
         """
         began = time.perf_counter()
+        walk.row_units = self.rows
         while True:
             if not _located(walk):
                 return (
                     Status.UNRESOLVED_KINK,
                     "Rounding has led off the path: its last piece does not hold its last point.",
                 )
-            if self._corner is not None:
+            if self._corner is not None and len(self._corner.switches) > 1:
                 walk.snap(self._corner.switches)
             direction = np.append(self.columns * walk.dx, 0.0 if walk.still else walk.dt)
-            length = float(np.linalg.norm(direction))
+            length = math.sqrt(float(direction @ direction))
             unit = direction / length
-            self._add(np.append(self.columns * walk.x, walk.t), unit, largest(self.rows * walk.left))
+            self._add(np.append(self.columns * walk.x, walk.t), unit, walk.off)
             left, step = walk.next_corner()
             moving = not walk.still
             to_last = (last - walk.t) / walk.dt if moving else math.nan
@@ -93,12 +94,17 @@ class Trail:
                     f"No way on was found from the corner at t = {walk.t + step * walk.dt:g}.",
                 )
             self._corner = corner
+            if corner.dead:
+                self._end(unit, step * length, walk.t + step * (0.0 if walk.still else walk.dt), Kind.KINK)
+                self._kink("dead end", corner, -unit[None])
+                return Status.DEAD_END, str(Status.DEAD_END)
 
     def _add(self, u: Array, unit: Array, residual: float) -> None:
         steps, corner = self.path.steps, self._corner
         kind = Kind.START if corner is None else Kind.KINK
         before = steps[-1] if steps else None
-        length = 0.0 if before is None else float(np.linalg.norm(u - before.u))
+        gap = 0.0 if before is None else u - before.u
+        length = math.sqrt(float(np.dot(gap, gap)))
         arclength = length if before is None else before.arclength + length
         # At a kink the tangent is that of the arrival, as the engine's is; the first ray leads back, the second on.
         arrival = unit if self._unit is None else self._unit
@@ -108,17 +114,21 @@ class Trail:
             others = [one for one in found if not (_same(one, -arrival) or _same(one, unit))]
             turned = unit[-1] * self._sign < 0.0
             name = "branching kink" if others else "turning kink" if turned else "kink"
-            self.path.events.append(
-                LocatedEvent(
-                    name, Kind.KINK, arclength, u, arrival, residual, 0.0, 0, len(steps) - 1, True,
-                    corner.switches, np.array([-arrival, unit, *others]),
-                )
-            )  # fmt: skip
+            self._kink(name, corner, np.array([-arrival, unit, *others]))
         self._unit = unit
         if unit[-1] != 0.0:
             self._sign = float(np.sign(unit[-1]))
 
-    def _end(self, unit: Array, length: float, t: float) -> None:
+    def _kink(self, name: str, corner: Corner, rays: Array) -> None:
+        at = self.path.endpoint
+        self.path.events.append(
+            LocatedEvent(
+                name, Kind.KINK, at.arclength, at.u, at.tangent, at.residual_norm, 0.0, 0, at.index, True,
+                corner.switches, rays,
+            )
+        )  # fmt: skip
+
+    def _end(self, unit: Array, length: float, t: float, kind: Kind = Kind.TARGET) -> None:
         last = self.path.steps[-1]
         u = last.u + length * unit
         u[-1] = t
@@ -130,13 +140,16 @@ class Trail:
                 last.arclength + length,
                 length,
                 residual_norm=last.residual_norm,
-                kind=Kind.TARGET,
+                kind=kind,
             )
         )
 
     def _closes(self, unit: Array, length: float) -> bool:
         """Whether the path comes back to its first point before the next corner; it ends there then."""
         first, last = self.path.steps[0], self.path.steps[-1]
+        # Mostly t alone tells that it is not there.
+        if unit[-1] != 0.0 and not 0.0 < (first.u[-1] - last.u[-1]) / unit[-1] <= 2.0 * length:
+            return False
         gap = first.u - last.u
         ahead = float(gap @ unit)
         size = 1.0 + largest(first.u)

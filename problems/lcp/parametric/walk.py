@@ -27,6 +27,12 @@ ROUND_OFF = 1e-14
 NOISE = 1e-15
 """A few units in the last place: a rate of t below what these make of it is zero, and t stands still."""
 
+AIMED = 1e-5
+"""Of a direction's largest component: t drives if it moves by more."""
+
+SLOW = 1e-6
+"""Whether a rate of t is rounding is looked at where it is this much smaller than the largest."""
+
 INSIDE = 1e-9
 """How far outside its limits, relative to its row, rounding may put a variable before the path counts as lost."""
 
@@ -47,14 +53,14 @@ class Corner:
     switches : tuple of int
         The indices of the pairs at a corner of their graphs.
     directions : list of Array of shape (n + 1,)
-        Of all rays that leave, but the one that was come on; of the one taken alone where there are too many pieces.
-    listed : bool
-        Whether all are.
+        Of all rays, where several switches vanish, and not too many.
+    dead : bool
+        Whether none leaves but the one that was come on.
     """
 
     switches: tuple[int, ...]
     directions: list[Array]
-    listed: bool
+    dead: bool = False
 
 
 @define(eq=False)
@@ -77,6 +83,22 @@ class Walk:
         Of x_driver, or t, at the last corner; of w_driver the distance from its corner.
     sign : float
         Whether the driver grows or falls.
+    matrix : Array of shape (n, n)
+        A, in Fortran's order.
+    sizes : Array of shape (n,)
+        The largest entry of each row of [A, d].
+    row_units : Array of shape (n,)
+        By which what is left of a row's equation is multiplied, in `off`: ones, if nobody says otherwise.
+    x, dx : Array of shape (n,)
+        At the last corner, and how it moves; likewise `t`, `dt`.
+    still : bool
+        Whether t stands still.
+    off : float
+        The largest part of the equations that is left at the corner.
+    gaps, rates : Array of shape (2, n)
+        How far all that moves is from its lower limits, and from its upper ones, and how fast that grows.
+    tied : ndarray of int
+        The pairs at the next corner.
     """
 
     problem: MixedLCP
@@ -89,6 +111,7 @@ class Walk:
     sign: float
     matrix: Array
     sizes: Array
+    row_units: Array = field(init=False)
     fixed_part: Array = field(init=False)
     moves_x: NDArray[np.bool_] = field(init=False)
     x: Array = field(init=False)
@@ -96,73 +119,83 @@ class Walk:
     t: float = field(init=False, default=0.0)
     dt: float = field(init=False, default=0.0)
     still: bool = field(init=False, default=False)
-    left: Array = field(init=False)
-    _limits: Array = field(init=False)
-    _y: Array = field(init=False)
-    _dy: Array = field(init=False)
-    _fixed: Array = field(init=False)
+    off: float = field(init=False, default=0.0)
+    gaps: Array = field(init=False)
+    rates: Array = field(init=False)
     tied: NDArray[np.intp] = field(init=False)
     _low: NDArray[np.bool_] = field(init=False)
-    _scale: Array = field(init=False)
+    _limits: Array = field(init=False)
+    _slopes: Array | None = field(init=False)
+    _fixed: Array = field(init=False)
+    _row: Array = field(init=False)
+    _constant: Array = field(init=False)
+    _dy: Array = field(init=False)
+    _scale: list[float] = field(init=False)
+    _step: float = field(init=False, default=0.0)
 
     def __attrs_post_init__(self) -> None:
         every = np.arange(self.problem.n)
+        self.row_units = np.ones(self.problem.n)
         row = self.state.astype(np.intp) + 1
-        self.moves_x = self.stairs.moves_x[row, every]
-        self._fixed = self.stairs.fixed[row, every]
-        tables = self.stairs.least, self.stairs.most, self.stairs.least_slope, self.stairs.most_slope
-        self._limits = np.array([table[row, every] for table in tables])
+        stairs = self.stairs
+        self.moves_x = stairs.moves_x[row, every]
+        self._fixed = stairs.fixed[row, every]
+        self._limits = np.array([stairs.least[row, every], stairs.most[row, every]])
+        slopes = np.array([stairs.least_slope[row, every], stairs.most_slope[row, every]])
+        self._slopes = slopes if stairs.levels.any() else None
         self.fixed_part = self.problem.q + self.matrix @ self._fixed
+        # What a gap is a difference of: entries of its row times the largest number, and q; of x that number itself.
+        self._row = np.where(self.moves_x, 1.0, self.sizes)
+        self._constant = np.where(self.moves_x, 0.0, np.abs(self.problem.q))
 
     # -- where it is, and where the next corner is ----------------------------------------------------------------
 
     def locate(self) -> None:
         """Solve for the corner, and for the direction in which the path leaves it."""
         n, basis, j = self.problem.n, self.basis, self.driver
-        right = np.empty((n, 2), order="F")
+        by_x = j == n or bool(self.moves_x[j])
+        right = np.zeros((n, 2), order="F")
         right[:, 0] = self.fixed_part
-        if j == n or self.moves_x[j]:
+        if by_x:
             driven = basis.column(j)
             right[:, 0] += self.value * driven
             right[:, 1] = self.sign * driven
         else:
-            right[:, 1] = 0.0
             right[j] -= self.value, self.sign
         z, left = basis.solve(right)
-        self.left = np.zeros(n)
-        self.left[basis.rows] = left[basis.rows, 0]
-        whole = np.zeros((n + 1, 2))
-        whole[basis.columns] = z[: basis.order]
-        if j == n or self.moves_x[j]:
-            whole[j] = self.value, self.sign
-        self.t, self.dt = whole[n]
-        moving = self.moves_x
-        self.x = np.where(moving, whole[:n, 0], self._fixed)
-        self.dx = np.where(moving, whole[:n, 1], 0.0)
-        y = np.where(moving[:, None], whole[:n], left)
-        if j < n and not moving[j]:
+        self.off = float(np.abs(self.row_units[basis.rows] * left[basis.rows, 0]).max(initial=0.0))
+        whole = np.zeros((2, n + 1))
+        whole[:, basis.columns] = z[: basis.order].T
+        if by_x:
+            whole[:, j] = self.value, self.sign
+        self.t, self.dt = whole[:, n].tolist()
+        # Of what does not move by x nothing is in z: there x is what is fixed.
+        self.dx = whole[1, :n]
+        self.x = whole[0, :n] + self._fixed
+        y = np.where(self.moves_x, whole[:, :n], left.T)
+        if not by_x:
             slope = self.d[j] - basis.shares[j]
-            y[j] = self.value + slope * self.t, self.sign + slope * self.dt
-        self._y, self._dy = y.T
-        self._scale = np.abs(whole).max(axis=0)
-        self.still = False
-        if j != n:
-            of_t = np.abs(basis.inverse[basis.column_place[n], : basis.order])
-            self.still = bool(abs(self.dt) <= NOISE * (of_t @ self.sizes[basis.rows]) * self._scale[1])
+            y[:, j] = self.value + slope * self.t, self.sign + slope * self.dt
+        self._dy = y[1]
+        self.gaps, self.rates = y[0] - self._limits, np.array([y[1], -y[1]])
+        if self._slopes is not None:
+            self.gaps -= self.t * self._slopes
+            moved = self.dt * self._slopes
+            self.rates[0] -= moved[0]
+            self.rates[1] += moved[1]
+        np.negative(self.gaps[1], out=self.gaps[1])
+        self._scale = np.abs(whole).max(axis=1).tolist()
+        self.still = j != n and abs(self.dt) <= SLOW * self._scale[1] and self._stands()
 
-    def gaps(self) -> tuple[Array, Array]:
-        """How far all that moves is from its lower limits, and then from its upper ones, and how fast that grows."""
-        least, most, least_slope, most_slope = self._limits
-        y, dy, t, dt = self._y, self._dy, self.t, self.dt
-        return (
-            np.concatenate([y - least - t * least_slope, most + t * most_slope - y]),
-            np.concatenate([dy - dt * least_slope, dt * most_slope - dy]),
-        )
+    def _stands(self) -> bool:
+        """Whether the rate of t is no more than rounding."""
+        basis = self.basis
+        of_t = np.abs(basis.inverse[basis.column_place[self.problem.n], : basis.order])
+        return bool(abs(self.dt) <= NOISE * (of_t @ self.sizes[basis.rows]) * self._scale[1])
 
     def find_tied(self) -> None:
         """Which switches vanish where it is."""
-        gaps, _ = self.gaps()
-        self._tie(self._vanishing(gaps, 0.0))
+        self._tie(self.gaps <= ROUND_OFF * self._terms(0.0))
 
     def snap(self, pairs: tuple[int, ...]) -> None:
         """Put the x of pairs that are at a corner of their graphs there exactly: some are basic, and rounded."""
@@ -172,45 +205,34 @@ class Walk:
 
     def next_corner(self) -> tuple[Left, float]:
         """How far the driver goes until a switch vanishes, and which do then."""
-        n, t, dt = self.problem.n, self.t, self.dt
-        gaps, rates = self.gaps()
-        row = np.where(self.moves_x, 1.0, self.sizes)
-        flat = FLAT * row * self._scale[1]
-        falling = np.flatnonzero((rates < -np.concatenate([flat, flat])) & np.isfinite(gaps))
+        gaps, rates = self.gaps.ravel(), self.rates.ravel()
+        falling = np.flatnonzero(self.rates < -FLAT * self._scale[1] * self._row)
         if falling.size == 0:
             return Left.RAY, np.inf
         steps = np.maximum(gaps[falling], 0.0) / -rates[falling]
         step = float(steps.min())
-        reach = max(step, 0.0 if self.still else abs(t + step * dt) / abs(dt))
-        near = falling[steps <= step + TIE * reach]
-        still = self._vanishing(gaps + step * rates, step)
+        if step == np.inf:
+            return Left.RAY, step
+        reach = max(step, 0.0 if self.still else abs(self.t + step * self.dt) / abs(self.dt))
+        self._step = step
+        vanishing = self.gaps + step * self.rates <= ROUND_OFF * self._terms(step)
         # The driver has left its corner, however short the step was.
-        both = np.union1d(near, still[still % n != self.driver])
-        self._tie(both)
+        if self.driver < self.problem.n:
+            vanishing[:, self.driver] = False
+        vanishing.ravel()[falling[steps <= step + TIE * reach]] = True
+        self._tie(vanishing)
         return Left.CORNER, step
 
     def _terms(self, step: float) -> Array:
-        """What a gap is a difference of, for all that moves."""
-        row = np.where(self.moves_x, 1.0, self.sizes)
-        size: Array = row * (self._scale[0] + step * self._scale[1])
-        return size + np.where(self.moves_x, 0.0, np.abs(self.problem.q))
+        return (self._scale[0] + step * self._scale[1]) * self._row + self._constant
 
-    def _vanishing(self, gaps: Array, step: float) -> NDArray[np.intp]:
-        terms = self._terms(step)
-        with np.errstate(invalid="ignore"):
-            return np.flatnonzero(gaps <= ROUND_OFF * np.concatenate([terms, terms]))
-
-    def _tie(self, gaps: NDArray[np.intp]) -> None:
-        n = self.problem.n
-        _, first = np.unique(gaps % n, return_index=True)
-        gaps = gaps[first]
-        self.tied, self._low = gaps % n, gaps < n
+    def _tie(self, vanishing: NDArray[np.bool_]) -> None:
+        self.tied = np.flatnonzero(vanishing[0] | vanishing[1])
+        self._low = vanishing[0, self.tied]
 
     def inside(self) -> bool:
         """Whether all that moves is within its limits, but for rounding."""
-        gaps, _ = self.gaps()
-        terms = self._terms(0.0)
-        return bool((gaps >= -INSIDE * np.concatenate([terms, terms])).all())
+        return bool((self.gaps >= -INSIDE * self._terms(0.0)).all())
 
     # -- round the corner -----------------------------------------------------------------------------------------
 
@@ -225,7 +247,7 @@ class Walk:
         if self.tied.size == 1:
             i = int(self.tied[0])
             self._pivot(i)
-            return Corner((i,), [], True)
+            return Corner((i,), [])
         return self._turn_tied()
 
     def _pivot(self, i: int) -> None:
@@ -256,7 +278,7 @@ class Walk:
     def _drive(self, i: int, low: bool) -> None:
         """Pair i drives, away from the corner to which it came from above its limit, or from below."""
         self.driver, self.sign = i, 1.0 if low else -1.0
-        self.value = float(self._limits[0 if low else 1][i]) if self.moves_x[i] else 0.0
+        self.value = float(self._limits[0 if low else 1, i]) if self.moves_x[i] else 0.0
 
     def _slope(self, i: int) -> float:
         return float(self.stairs.fixed_slope[self.state[i] + 1, i])
@@ -267,9 +289,13 @@ class Walk:
         self.state[i] += 1 if up else -1
         row = int(self.state[i]) + 1
         self.moves_x[i] = self.stairs.moves_x[row, i]
-        tables = self.stairs.least, self.stairs.most, self.stairs.least_slope, self.stairs.most_slope
-        for limit, table in zip(self._limits, tables):
-            limit[i] = table[row, i]
+        stairs = self.stairs
+        self._limits[:, i] = stairs.least[row, i], stairs.most[row, i]
+        if self._slopes is not None:
+            self._slopes[:, i] = stairs.least_slope[row, i], stairs.most_slope[row, i]
+        self._row[i], self._constant[i] = (
+            (1.0, 0.0) if self.moves_x[i] else (self.sizes[i], abs(float(self.problem.q[i])))
+        )
         before, self._fixed[i] = self._fixed[i], self.stairs.fixed[row, i]
         if before != self._fixed[i]:
             self.fixed_part = self.problem.q + self.matrix @ self._fixed
@@ -279,14 +305,35 @@ class Walk:
         S, r, along = self.small()
         on = way(S, r)
         every = tied.size <= LARGEST_LISTED
-        found = [self._direction(ray, along) for ray in rays(S, r)] if every else []
-        if on is None:
-            return Corner(tuple(tied.tolist()), found, every) if every else None
+        edges = rays(S, r) if every else []
+        found = [self._direction(ray, along) for ray in edges]
+        onward = [ray for ray in edges if not ray.back]
+        if on is None or (on.ray.back and every):
+            if not onward:
+                return Corner(tuple(tied.tolist()), found, dead=True) if every else None
+            self.switch_tied(onward[0].grown > 0.0)
+            self.aim(along @ np.append(onward[0].grown, onward[0].driven), self._step)
+            return Corner(tuple(tied.tolist()), found)
         self.switch_tied(np.isin(np.arange(tied.size), on.switched))
         i = int(tied[on.driver])
         self.rebase(i, bool(low[on.driver]))
         self._drive(i, bool(low[on.driver]))
-        return Corner(tuple(tied.tolist()), found, every)
+        return Corner(tuple(tied.tolist()), found)
+
+    def aim(self, direction: Array, step: float = 0.0) -> None:
+        """Go on along a direction from where so long a step leads: driven by t, or by the x that moves most.
+
+        Raises
+        ------
+        SingularBasisError
+            If the direction is not the only one on its piece.
+        """
+        n = self.problem.n
+        moving = np.abs(np.where(np.append(self.moves_x, True), direction, 0.0))
+        driver = n if moving[n] > AIMED * moving.max() else int(np.argmax(moving))
+        self.rebase(driver)
+        self.driver, self.sign = driver, float(np.sign(direction[driver]))
+        self.value = self.t + step * self.dt if driver == n else float(self.x[driver] + step * self.dx[driver])
 
     def switch_tied(self, which: NDArray[np.bool_]) -> None:
         """Of the switches that vanish some are passed."""
@@ -306,11 +353,11 @@ class Walk:
         shares = self.basis.shares
         shares[:] = self.d
         shares[moving] -= self.stairs.fixed_slope[self.state[moving] + 1, moving]
-        rows = moving.tolist()
-        columns = [i for i in rows if i != driver] + ([n] if driver != n else [])
+        columns = np.append(moving[moving != driver], np.full(int(driver != n), n))
+        rows = moving
         if driver < n and not self.moves_x[driver]:
-            rows.append(driver)
-            shares[driver] -= self._limits[2 if low else 3][driver]
+            rows = np.append(rows, driver)
+            shares[driver] -= 0.0 if self._slopes is None else self._slopes[0 if low else 1, driver]
         self.basis.reset(rows, columns)
 
     def small(self) -> tuple[Array, Array, Array]:
@@ -331,8 +378,11 @@ class Walk:
         moving = self.moves_x[tied]
         rates = np.where(moving[:, None], along[tied, :m], left[tied])
         rates = np.column_stack([rates, self._dy[tied]])
-        slopes = np.where(self._low, self._limits[2][tied], self._limits[3][tied])
-        rates = sign[:, None] * (rates - slopes[:, None] * along[n])
+        if self._slopes is not None:
+            rates -= self._slopes[np.where(self._low, 0, 1), tied][:, None] * along[n]
+        rates *= sign[:, None]
+        size = np.append(np.abs(along[:, :m]).max(axis=0, initial=0.0), self._scale[1])
+        rates[np.abs(rates) <= FLAT * size * self._row[tied][:, None]] = 0.0
         fixed = np.flatnonzero(~moving)
         along[tied[fixed], fixed] = sign[fixed]
         rates[:, m] = np.minimum(rates[:, m], 0.0)

@@ -148,6 +148,10 @@ def rays_at(pieces: Pieces, u: Array, tolerance: float = 1e-9) -> list[Array]:
     return [v for k, v in enumerate(found) if not any(np.abs(v - other).max() < 1e-9 for other in found[:k])]
 
 
+ENDS = (Status.REACHED_TARGET, Status.DIVERGED, Status.CLOSED, Status.DEAD_END)
+"""What a path may end as; that no other ray leaves a dead end is among what is compared."""
+
+
 @frozen
 class Comparison:
     """A path held against all pieces: what is wrong, if anything, and what was met."""
@@ -172,7 +176,7 @@ def compared(problem: LCP, d: Array) -> Comparison:
 
     kinks = [kink for kink in path.kinks if not on_wide(kink.u)]
     off, branching = 0.0, 0
-    wrong = "" if path.status in (Status.REACHED_TARGET, Status.DIVERGED, Status.CLOSED) else path.message
+    wrong = "" if path.status in ENDS else path.message
     for kink in kinks:
         size = 1.0 + float(np.abs(kink.u).max())
         off = max(off, min(float(np.abs(end - kink.u).max()) for end in ends) / size)
