@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
-from scipy.linalg.blas import dger
+from scipy.linalg.blas import dgemm, dger
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 
 ROOM = 32
 """Rows by which the inverse grows: it is stored with room, whose zeros cost a little in every product."""
@@ -119,21 +119,19 @@ class Basis:
         z : Array of shape (room, m)
         left : Array of shape (n, m)
         """
-        k, rows = self.order, self.rows
+        k, rows, m = self.order, self.rows, right.shape[1]
         if k == 0:
-            return np.zeros((0, right.shape[1])), right
-        padded = np.zeros((self.inverse.shape[0], right.shape[1]), order="F")
+            return np.zeros((0, m)), right
+        padded = np.zeros((self.inverse.shape[0], m), order="F")
         padded[:k] = right[rows]
-        z = self.inverse @ padded
-        np.negative(z, out=z)
-        left = self.block @ z
-        left += right
+        z = dgemm(-1.0, self.inverse, padded)
+        left = dgemm(1.0, self.block, z, 1.0, right)
         for attempt in range(3):
             padded[:k] = left[rows]
-            correction = self.inverse @ padded
+            correction = dgemm(1.0, self.inverse, padded)
             z -= correction
-            left -= self.block @ correction
-            if (np.abs(correction).max(axis=0) <= INEXACT * np.abs(z).max(axis=0)).all():
+            left = dgemm(-1.0, self.block, correction, 1.0, left, overwrite_c=1)
+            if all(largest(correction[:, i]) <= INEXACT * largest(z[:, i]) for i in range(m)):
                 break
             if attempt == 1:
                 self.invert()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from attrs import field, frozen
 
@@ -41,10 +43,24 @@ class NaturalMap:
         y : ndarray, shape (n,)
         lam : float
         """
-        w = self.problem.w(y) + lam * self.d
+        return self._off(y, self.problem.w(y) + lam * self.d, lam)
+
+    def _off(self, y: Array, w: Array, lam: Any) -> Array:
         moved, width = y - w, lam * self.level
         kept = np.minimum(np.maximum(moved, -width), width)
         return np.where(self.level > 0.0, w + kept, self.problem.natural_map(y, w))
+
+    def largest(self, u: Array) -> Array:
+        """The largest component of the residual at many points, shape (m,).
+
+        Parameters
+        ----------
+        u : ndarray, shape (m, n + 1)
+        """
+        y, lam = u[:, :-1], u[:, -1:]
+        w = y @ self.problem.A.T + (self.problem.q + lam * self.d)
+        found: Array = np.abs(self._off(y, w, lam)).max(axis=1, initial=0.0)
+        return found
 
     def switches(self, y: Array, lam: float) -> Array:
         """X - w less its lower, and then its upper limits, those that there are.

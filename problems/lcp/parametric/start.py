@@ -71,7 +71,7 @@ def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
     if wrong.any():
         i = int(np.argmax(wrong)) % problem.n
         raise ValueError(
-            f"t: no ray begins at t = {-sign * math.inf}, where x = {walk.x[i]:g} would have to solve row {i}: "
+            f"t: no ray begins at t = {-sign * math.inf}, where x = {walk.u[0, i]:g} would have to solve row {i}: "
             "expected a covering vector d, or a finite t to begin at"
         )
     far = (rates > 0.0) & np.isfinite(gaps)
@@ -131,7 +131,7 @@ def from_solution(
         walk.switch_tied(switched)
         walk.aim(chosen)
         return walk
-    if ray is not None and np.dot(np.append(walk.dx, walk.dt), ray) < 0.0:
+    if ray is not None and walk.u[1] @ ray < 0.0:
         walk.sign = -walk.sign
     assert n == walk.driver
     return walk
@@ -158,7 +158,6 @@ def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) ->
     kernel[np.append(moving, walk.problem.n)] = q[:, -1]
     if _agreement(kernel, ray, sign) < 0.0:
         kernel = -kernel
-    walk.x, walk.t = x, t
-    walk.dx, walk.dt = kernel[:-1], float(kernel[-1])
+    walk.u = np.array([np.append(x, t), kernel])
     walk.aim(kernel)
     return walk

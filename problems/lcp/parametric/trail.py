@@ -10,7 +10,8 @@ from attrs import define, field
 
 from continuation.arrays import Array, largest
 from continuation.budget import Budget
-from continuation.path import LocatedEvent, Path, Step
+from continuation.counts import Counts
+from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import State
 from problems.lcp.parametric.basis import SingularBasisError
@@ -29,15 +30,18 @@ class Trail:
 
     Attributes
     ----------
-    path : Path
-    rows, columns : Array of shape (n,)
-        The units of a row's residual, and of x.
+    units : Array of shape (n + 1,)
+        Of x and t.
+    points, tangents : list of Array of shape (n + 1,)
+        The points so far, and the directions in which they were come on.
+    kinks : dict of int to tuple
+        By the number of the point: name, pairs that switch, rays.
     """
 
-    path: Path
-    rows: Array
-    columns: Array
-    _corner: Corner | None = field(default=None, init=False)
+    units: Array
+    points: list[Array] = field(factory=list)
+    tangents: list[Array] = field(factory=list)
+    kinks: dict[int, tuple[str, tuple[int, ...], Array]] = field(factory=dict)
     _unit: Array | None = field(default=None, init=False)
     _sign: float = field(default=0.0, init=False)
 
@@ -52,114 +56,113 @@ class Trail:
         budget : Budget
         """
         began = time.perf_counter()
-        walk.row_units = self.rows
+        corner: Corner | None = None
         while True:
             if not _located(walk):
-                return (
-                    Status.UNRESOLVED_KINK,
-                    "Rounding has led off the path: its last piece does not hold its last point.",
-                )
-            if self._corner is not None and len(self._corner.switches) > 1:
-                walk.snap(self._corner.switches)
-            direction = np.append(self.columns * walk.dx, 0.0 if walk.still else walk.dt)
+                return Status.UNRESOLVED_KINK, "Rounding has led off the path: its last piece does not hold its end."
+            if corner is not None and len(corner.switches) > 1:
+                walk.snap(corner.switches)
+            u, direction = walk.u * self.units
+            if walk.still:
+                direction[-1] = 0.0
             length = math.sqrt(float(direction @ direction))
             unit = direction / length
-            self._add(np.append(self.columns * walk.x, walk.t), unit, walk.off)
+            self._add(u, unit, corner)
             left, step = walk.next_corner()
-            moving = not walk.still
-            to_last = (last - walk.t) / walk.dt if moving else math.nan
-            if moving and _arrives(walk, last, to_last, step):
+            to_last = math.nan if walk.still else (last - walk.t) / walk.dt
+            if not walk.still and _arrives(walk, last, to_last, step):
                 self._end(unit, to_last * length, last)
                 return Status.REACHED_TARGET, str(Status.REACHED_TARGET)
-            if len(self.path) > 1 and self._closes(unit, step * length):
+            if len(self.points) > 1 and self._closes(unit, step * length):
                 return Status.CLOSED, str(Status.CLOSED)
             if left is Left.RAY:
-                far = 2.0 * (abs(walk.t) + 1.0) / abs(walk.dt) if moving else 1.0 + largest(walk.x)
-                self._end(unit, far * length, walk.t + (far * walk.dt if moving else 0.0))
-                if math.isinf(last) and moving and walk.dt * last > 0.0:
-                    return Status.REACHED_TARGET, "The path goes along a ray to its end at infinity."
-                where = "stands still" if not moving else f"goes to {math.copysign(math.inf, walk.dt)}"
-                return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
-            self.path.counts.accepted = len(self.path)
-            spent = budget.spent(self.path.counts, time.perf_counter() - began)
+                return self._leave(walk, unit, length, last)
+            spent = budget.spent(Counts(accepted=len(self.points)), time.perf_counter() - began)
             if spent:
                 return Status.BUDGET_EXHAUSTED, f"The budget is used up ({spent}) at t = {walk.t:g}."
+            t = walk.t if walk.still else walk.t + step * walk.dt
             try:
                 corner = walk.turn()
             except SingularBasisError:
                 corner = None
             if corner is None:
-                return (
-                    Status.UNRESOLVED_KINK,
-                    f"No way on was found from the corner at t = {walk.t + step * walk.dt:g}.",
-                )
-            self._corner = corner
+                return Status.UNRESOLVED_KINK, f"No way on was found from the corner at t = {t:g}."
             if corner.dead:
-                self._end(unit, step * length, walk.t + step * (0.0 if walk.still else walk.dt), Kind.KINK)
-                self._kink("dead end", corner, -unit[None])
+                self._end(unit, step * length, t)
+                self.kinks[len(self.points) - 1] = "dead end", corner.switches, -unit[None]
                 return Status.DEAD_END, str(Status.DEAD_END)
 
-    def _add(self, u: Array, unit: Array, residual: float) -> None:
-        steps, corner = self.path.steps, self._corner
-        kind = Kind.START if corner is None else Kind.KINK
-        before = steps[-1] if steps else None
-        gap = 0.0 if before is None else u - before.u
-        length = math.sqrt(float(np.dot(gap, gap)))
-        arclength = length if before is None else before.arclength + length
+    def steps(self, residuals: Array) -> tuple[list[Step], list[LocatedEvent]]:
+        """The points as steps, and the kinks.
+
+        Parameters
+        ----------
+        residuals : ndarray, shape (m,)
+            Of the points.
+        """
+        gaps = [0.0, *(math.sqrt(float(gap @ gap)) for gap in np.diff(self.points, axis=0))]
+        arcs, last = np.cumsum(gaps).tolist(), len(self.points) - 1
+        kinds = [Kind.KINK if k in self.kinks else Kind.TARGET if k == last else Kind.REGULAR for k in range(last + 1)]
+        kinds[0] = Kind.START
+        steps = [
+            Step(k, u, tangent, arcs[k], gaps[k], residual_norm=residual, kind=kinds[k])
+            for k, (u, tangent, residual) in enumerate(zip(self.points, self.tangents, residuals.tolist()))
+        ]
+        events = [
+            LocatedEvent(
+                name, Kind.KINK, arcs[k], steps[k].u, steps[k].tangent, steps[k].residual_norm, 0.0, 0, k, True,
+                switches, rays,
+            )
+            for k, (name, switches, rays) in self.kinks.items()
+        ]  # fmt: skip
+        return steps, events
+
+    def _add(self, u: Array, unit: Array, corner: Corner | None) -> None:
         # At a kink the tangent is that of the arrival, as the engine's is; the first ray leads back, the second on.
         arrival = unit if self._unit is None else self._unit
-        steps.append(Step(len(steps), u, arrival, arclength, length, residual_norm=residual, kind=kind))
         if corner is not None:
-            found = [_unit(np.append(self.columns * one[:-1], one[-1])) for one in corner.directions]
-            others = [one for one in found if not (_same(one, -arrival) or _same(one, unit))]
+            back = -arrival
+            found = [_unit(one * self.units) for one in corner.directions]
+            others = [one for one in found if not (_same(one, back) or _same(one, unit))]
             turned = unit[-1] * self._sign < 0.0
             name = "branching kink" if others else "turning kink" if turned else "kink"
-            self._kink(name, corner, np.array([-arrival, unit, *others]))
+            self.kinks[len(self.points)] = name, corner.switches, np.array([back, unit, *others])
+        self.points.append(u)
+        self.tangents.append(arrival)
         self._unit = unit
         if unit[-1] != 0.0:
-            self._sign = float(np.sign(unit[-1]))
+            self._sign = math.copysign(1.0, unit[-1])
 
-    def _kink(self, name: str, corner: Corner, rays: Array) -> None:
-        at = self.path.endpoint
-        self.path.events.append(
-            LocatedEvent(
-                name, Kind.KINK, at.arclength, at.u, at.tangent, at.residual_norm, 0.0, 0, at.index, True,
-                corner.switches, rays,
-            )
-        )  # fmt: skip
-
-    def _end(self, unit: Array, length: float, t: float, kind: Kind = Kind.TARGET) -> None:
-        last = self.path.steps[-1]
-        u = last.u + length * unit
+    def _end(self, unit: Array, length: float, t: float) -> None:
+        u = self.points[-1] + length * unit
         u[-1] = t
-        self.path.steps.append(
-            Step(
-                len(self.path),
-                u,
-                unit,
-                last.arclength + length,
-                length,
-                residual_norm=last.residual_norm,
-                kind=kind,
-            )
-        )
+        self.points.append(u)
+        self.tangents.append(unit)
+
+    def _leave(self, walk: Walk, unit: Array, length: float, last: float) -> tuple[Status, str]:
+        """Along a ray, to a point of it."""
+        far = 1.0 + largest(walk.u[0]) if walk.still else 2.0 * (abs(walk.t) + 1.0) / abs(walk.dt)
+        self._end(unit, far * length, walk.t if walk.still else walk.t + far * walk.dt)
+        if math.isinf(last) and not walk.still and walk.dt * last > 0.0:
+            return Status.REACHED_TARGET, "The path goes along a ray to its end at infinity."
+        where = "stands still" if walk.still else f"goes to {math.copysign(math.inf, walk.dt)}"
+        return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
 
     def _closes(self, unit: Array, length: float) -> bool:
         """Whether the path comes back to its first point before the next corner; it ends there then."""
-        first, last = self.path.steps[0], self.path.steps[-1]
+        first, last = self.points[0], self.points[-1]
         # Mostly t alone tells that it is not there.
-        if unit[-1] != 0.0 and not 0.0 < (first.u[-1] - last.u[-1]) / unit[-1] <= 2.0 * length:
+        if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
             return False
-        gap = first.u - last.u
+        gap = first - last
         ahead = float(gap @ unit)
-        size = 1.0 + largest(first.u)
+        size = 1.0 + largest(first)
         if not 0.0 < ahead <= length * (1.0 + SAME) or largest(gap - ahead * unit) > SAME * size:
             return False
-        if not _same(unit, first.tangent):
+        if not _same(unit, self.tangents[0]):
             return False
-        self.path.steps.append(
-            Step(len(self.path), first.u, unit, last.arclength + ahead, ahead, residual_norm=first.residual_norm)
-        )
+        self.points.append(first)
+        self.tangents.append(unit)
         return True
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import Basis
 from problems.lcp.parametric.corner import LARGEST_LISTED, Ray, rays, way
@@ -87,14 +87,12 @@ class Walk:
         A, in Fortran's order.
     sizes : Array of shape (n,)
         The largest entry of each row of [A, d].
-    row_units : Array of shape (n,)
-        By which what is left of a row's equation is multiplied, in `off`: ones, if nobody says otherwise.
-    x, dx : Array of shape (n,)
-        At the last corner, and how it moves; likewise `t`, `dt`.
+    u : Array of shape (2, n + 1)
+        (x, t) at the last corner, and how it moves.
+    t, dt : float
+        Its last numbers.
     still : bool
         Whether t stands still.
-    off : float
-        The largest part of the equations that is left at the corner.
     gaps, rates : Array of shape (2, n)
         How far all that moves is from its lower limits, and from its upper ones, and how fast that grows.
     tied : ndarray of int
@@ -111,15 +109,12 @@ class Walk:
     sign: float
     matrix: Array
     sizes: Array
-    row_units: Array = field(init=False)
     fixed_part: Array = field(init=False)
     moves_x: NDArray[np.bool_] = field(init=False)
-    x: Array = field(init=False)
-    dx: Array = field(init=False)
+    u: Array = field(init=False)
     t: float = field(init=False, default=0.0)
     dt: float = field(init=False, default=0.0)
     still: bool = field(init=False, default=False)
-    off: float = field(init=False, default=0.0)
     gaps: Array = field(init=False)
     rates: Array = field(init=False)
     tied: NDArray[np.intp] = field(init=False)
@@ -135,7 +130,6 @@ class Walk:
 
     def __attrs_post_init__(self) -> None:
         every = np.arange(self.problem.n)
-        self.row_units = np.ones(self.problem.n)
         row = self.state.astype(np.intp) + 1
         stairs = self.stairs
         self.moves_x = stairs.moves_x[row, every]
@@ -163,29 +157,29 @@ class Walk:
         else:
             right[j] -= self.value, self.sign
         z, left = basis.solve(right)
-        self.off = float(np.abs(self.row_units[basis.rows] * left[basis.rows, 0]).max(initial=0.0))
-        whole = np.zeros((2, n + 1))
-        whole[:, basis.columns] = z[: basis.order].T
+        self.u = whole = np.zeros((2, n + 1))
+        if basis.order:
+            whole[0, basis.columns], whole[1, basis.columns] = z[: basis.order, 0], z[: basis.order, 1]
         if by_x:
             whole[:, j] = self.value, self.sign
         self.t, self.dt = whole[:, n].tolist()
-        # Of what does not move by x nothing is in z: there x is what is fixed.
-        self.dx = whole[1, :n]
-        self.x = whole[0, :n] + self._fixed
         y = np.where(self.moves_x, whole[:, :n], left.T)
         if not by_x:
             slope = self.d[j] - basis.shares[j]
             y[:, j] = self.value + slope * self.t, self.sign + slope * self.dt
-        self._dy = y[1]
-        self.gaps, self.rates = y[0] - self._limits, np.array([y[1], -y[1]])
+        self._dy = dy = y[1]
+        self._scale = [largest(whole[0]), largest(whole[1])]
+        self.still = j != n and abs(self.dt) <= SLOW * self._scale[1] and self._stands()
+        # Of what does not move by x nothing is in z: there x is what is fixed.
+        whole[0, :n] += self._fixed
+        self.gaps, self.rates = y[0] - self._limits, np.empty((2, n))
+        self.rates[0], self.rates[1] = dy, -dy
         if self._slopes is not None:
             self.gaps -= self.t * self._slopes
             moved = self.dt * self._slopes
             self.rates[0] -= moved[0]
             self.rates[1] += moved[1]
         np.negative(self.gaps[1], out=self.gaps[1])
-        self._scale = np.abs(whole).max(axis=1).tolist()
-        self.still = j != n and abs(self.dt) <= SLOW * self._scale[1] and self._stands()
 
     def _stands(self) -> bool:
         """Whether the rate of t is no more than rounding."""
@@ -201,7 +195,7 @@ class Walk:
         """Put the x of pairs that are at a corner of their graphs there exactly: some are basic, and rounded."""
         at = list(pairs)
         corners = self.stairs.corner_x[:, at]
-        self.x[at] = corners[np.abs(self.x[at] - corners).argmin(axis=0), np.arange(len(at))]
+        self.u[0, at] = corners[np.abs(self.u[0, at] - corners).argmin(axis=0), np.arange(len(at))]
 
     def next_corner(self) -> tuple[Left, float]:
         """How far the driver goes until a switch vanishes, and which do then."""
@@ -333,7 +327,7 @@ class Walk:
         driver = n if moving[n] > AIMED * moving.max() else int(np.argmax(moving))
         self.rebase(driver)
         self.driver, self.sign = driver, float(np.sign(direction[driver]))
-        self.value = self.t + step * self.dt if driver == n else float(self.x[driver] + step * self.dx[driver])
+        self.value = float(self.u[0, driver] + step * self.u[1, driver])
 
     def switch_tied(self, which: NDArray[np.bool_]) -> None:
         """Of the switches that vanish some are passed."""
@@ -374,7 +368,7 @@ class Walk:
         z, left = basis.solve(right)
         along = np.zeros((n + 1, m + 1))
         along[basis.columns, :m] = z[: basis.order]
-        along[:n, m], along[n, m] = self.dx, self.dt
+        along[:, m] = self.u[1]
         moving = self.moves_x[tied]
         rates = np.where(moving[:, None], along[tied, :m], left[tied])
         rates = np.column_stack([rates, self._dy[tied]])
