@@ -20,7 +20,7 @@ from problems.lcp.parametric.walk import Corner, Left, Walk
 SAME = 1e-9
 """Two unit directions, or two points relative to their size, that differ by less are the same."""
 
-ARRIVED = 1e-13
+ARRIVED = 1e-11
 """A corner as near as this to the t where the path ends, relative to both and to the step, is on it."""
 
 

@@ -127,6 +127,7 @@ class Walk:
     _dy: Array = field(init=False)
     _scale: list[float] = field(init=False)
     _step: float = field(init=False, default=0.0)
+    _degenerate: bool = field(init=False, default=False)
 
     def __attrs_post_init__(self) -> None:
         every = np.arange(self.problem.n)
@@ -172,6 +173,8 @@ class Walk:
         self.still = j != n and abs(self.dt) <= SLOW * self._scale[1] and self._stands()
         # Of what does not move by x nothing is in z: there x is what is fixed.
         whole[0, :n] += self._fixed
+        if self._degenerate:
+            self._settle(y)
         self.gaps, self.rates = y[0] - self._limits, np.empty((2, n))
         self.rates[0], self.rates[1] = dy, -dy
         if self._slopes is not None:
@@ -180,6 +183,14 @@ class Walk:
             self.rates[0] -= moved[0]
             self.rates[1] += moved[1]
         np.negative(self.gaps[1], out=self.gaps[1])
+
+    def _settle(self, y: Array) -> None:
+        """What is basic and stays at its limit, as x of columns that are alike, is there exactly."""
+        for limit in self._limits:
+            near = self.moves_x & (np.abs(y[0] - limit) <= ROUND_OFF * self._scale[0])
+            y[0, near] = self.u[0, :-1][near] = limit[near]
+            near &= np.abs(y[1]) <= FLAT * self._scale[1]
+            y[1, near] = self.u[1, :-1][near] = 0.0
 
     def _stands(self) -> bool:
         """Whether the rate of t is no more than rounding."""
@@ -296,6 +307,7 @@ class Walk:
 
     def _turn_tied(self) -> Corner | None:
         tied, low = self.tied, self._low
+        self._degenerate = True
         S, r, along = self.small()
         on = way(S, r)
         every = tied.size <= LARGEST_LISTED
@@ -370,6 +382,10 @@ class Walk:
         along[basis.columns, :m] = z[: basis.order]
         along[:, m] = self.u[1]
         moving = self.moves_x[tied]
+        j = self.driver
+        if j < n and not self.moves_x[j]:
+            # Its w moves with the corner that it left.
+            left[j] = (self.d[j] - basis.shares[j]) * along[n, :m]
         rates = np.where(moving[:, None], along[tied, :m], left[tied])
         rates = np.column_stack([rates, self._dy[tied]])
         if self._slopes is not None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -10,8 +13,10 @@ from continuation.budget import Budget
 from continuation.status import Kind, Status
 from problems.lcp import LCP, MixedLCP, along, solve
 from problems.lcp.parametric.natural import NaturalMap
-from tests.problems.lcp.parametric.families import integer_problem, lasso, mairal_yu, murty
-from tests.problems.lcp.parametric.pieces import compared
+
+sys.path.insert(0, str(Path(__file__).parents[4] / "examples" / "benchmarks" / "kinks"))
+from all_pieces import compared
+from known_paths import integer_design, integer_problem, lasso, mairal_yu, murty
 
 
 @pytest.mark.parametrize("n", [2, 5, 8])
@@ -82,12 +87,23 @@ def test_t_stands_still_where_a_block_is_singular():
     assert path.u[1:] == pytest.approx(np.array([[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 0.0]]), abs=1e-15)
 
 
-def test_the_least_squares_end_where_two_columns_tie():
-    # Users of scikit-learn know this one: two correlations stay equal all the way.
-    X = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
-    path = lasso(X, np.array([2.498, 2.498, 1.0]))
-    assert path.endpoint.y == pytest.approx([2.498, 2.498], rel=1e-14)
-    assert [kink.switches for kink in path.kinks] == [(0, 1)]
+def test_two_correlations_that_tie_all_the_way():
+    # Issue 2746 of scikit-learn, whose 1.9.1 gives 4.998 for the first.
+    X = np.array([[0.0, 0.0, 0.0, -1.0, 0.0], [0.0, -1.0, 0.0, 0.0, 0.0]])
+    path = lasso(X, np.array([-2.5, -2.5]))
+    assert path(t=0.002) == pytest.approx([0.0, 2.498, 0.0, 2.498, 0.0, 0.002], rel=1e-15)
+    assert [kink.switches for kink in path.kinks] == [(1, 3)]
+
+
+def test_integer_designs_with_ties_and_columns_that_are_alike():
+    for seed in (*range(40), 152, 244, 472, 823):
+        X, y = integer_design(seed)
+        path = lasso(X, y)
+        assert path.success, seed
+        for u in (*path.u, *(0.5 * (path.u[1:] + path.u[:-1]))):
+            slope, b, t = X.T @ (X @ u[:-1] - y), u[:-1], u[-1]
+            off = np.where(b != 0.0, np.abs(slope + t * np.sign(b)), np.maximum(np.abs(slope) - t, 0.0))
+            assert off.max() <= 1e-12 * (1.0 + np.abs(X.T @ y).max()), seed
 
 
 def test_columns_that_are_alike():

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
 from attrs import evolve
 
 from problems.lcp import LCP, MixedLCP, UnprovenError, along, prove_path
-from tests.problems.lcp.parametric.families import integer_problem, mairal_yu, murty
+
+sys.path.insert(0, str(Path(__file__).parents[4] / "examples" / "benchmarks" / "kinks"))
+from known_paths import integer_problem, mairal_yu, murty
 
 
 def test_murtys_path_is_proved_and_is_the_only_one():

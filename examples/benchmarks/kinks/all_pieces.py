@@ -1,4 +1,7 @@
-"""All pieces of the solutions of LCP(q + t d, A), by brute force in rational numbers: what `along` is held against."""
+"""All pieces of the solutions of LCP(q + t d, A), by brute force in rational numbers: what `along` is held against.
+
+Needs no rival.
+"""
 
 from __future__ import annotations
 
