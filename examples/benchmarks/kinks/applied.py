@@ -1,4 +1,4 @@
-"""LCPs of applications, whose paths are short and whose solutions are sparse or nearly so: contact, prices, regression."""
+"""LCPs of applications: contact, prices, production, traffic, regression, classification."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def piles(seed: int) -> Iterator[Data]:
 
 
 def prices(seed: int) -> Iterator[Data]:
-    """Spatial price equilibria (Samuelson, Takayama and Judge): x_ij goes from i to j if the price there pays for it."""
+    """Spatial price equilibria (Samuelson, Takayama and Judge): goods go where the price pays for it."""
     r = np.random.default_rng(seed)
     for m in (5, 10, 15, 20):
         supply, demand = np.kron(np.eye(m), np.ones((1, m))), np.kron(np.ones((1, m)), np.eye(m))

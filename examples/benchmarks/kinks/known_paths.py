@@ -59,9 +59,8 @@ def frontier(n: int, seed: int = 0) -> tuple[Array, Array]:
     """Means and covariances of n assets: a few factors, and noise."""
     random = np.random.default_rng([300, seed])
     factors = random.normal(size=(n, max(3, n // 20)))
-    return random.normal(0.1, 0.05, n), factors @ factors.T / factors.shape[1] * 0.04 + np.diag(
-        random.uniform(0.01, 0.1, n)
-    )
+    mean = random.normal(0.1, 0.05, n)
+    return mean, factors @ factors.T / factors.shape[1] * 0.04 + np.diag(random.uniform(0.01, 0.1, n))
 
 
 def critical_line(mean: Array, covariance: Array) -> Path:

@@ -35,12 +35,12 @@ from problems import lcp
 from problems.lcp import LCP, along
 
 
-def timed(call: Callable[[], Any], repeats: int = 1) -> tuple[Any, float]:
+def timed(call: Callable[..., Any], *given: Any, repeats: int = 1, **options: Any) -> tuple[Any, float]:
     """What a call returns, and the least of its times."""
     least, found = np.inf, None
     for _ in range(repeats):
         began = time.process_time()
-        found = call()
+        found = call(*given, **options)
         least = min(least, time.process_time() - began)
     return found, least
 
@@ -123,6 +123,11 @@ def pieces(seeds: int) -> None:
         f"kinks off by {off:.1e} at most; not compared, on pieces wider than a line: {wide}")  # fmt: skip
 
 
+def gram_path(linear: Any, G: Array, c: Array, n: int) -> Any:
+    """The path of scikit-learn, to its end."""
+    return linear.lars_path_gram(Xy=c.copy(), Gram=G.copy(), n_samples=n, method="lasso", max_iter=5000)
+
+
 def regression(seeds: int) -> None:
     """LASSO paths to the end, from the Gram matrix, beside lars_path_gram."""
     linear = rival("sklearn.linear_model")
@@ -131,13 +136,11 @@ def regression(seeds: int) -> None:
         X = r.normal(size=(n, p))
         y = X[:, :10] @ r.normal(size=10) * 3.0 + r.normal(size=n)
         G, c = X.T @ X, X.T @ y
-        path, ours = timed(lambda: penalised(G, c), 3)
+        path, ours = timed(penalised, G, c, repeats=3)
         off = max(step.residual_norm for step in path.steps) / np.abs(c).max()
         line = f"n = {n}, p = {p}: {len(path.kinks)} kinks, {1e3 * ours:.0f} ms, residual {off:.0e}"
         if linear is not None:
-            found, theirs = timed(
-                lambda: linear.lars_path_gram(Xy=c.copy(), Gram=G.copy(), n_samples=n, method="lasso", max_iter=5000), 3
-            )
+            found, theirs = timed(gram_path, linear, G, c, n, repeats=3)
             line += f"; sklearn {len(found[0]) - 1} kinks, {1e3 * theirs:.0f} ms, ratio {ours / theirs:.2f}"
         say(line)
     r = np.random.default_rng(4)
@@ -156,11 +159,11 @@ def assets(seeds: int) -> None:
     module = rival("cvxcla")
     for n in (50, 100, 300):
         mean, covariance = frontier(n)
-        path, ours = timed(lambda: critical_line(mean, covariance), 3)
+        path, ours = timed(critical_line, mean, covariance, repeats=3)
         line = f"n = {n}: {len(path.kinks)} kinks, {1e3 * ours:.0f} ms"
         if module is not None:
             zero, one = np.zeros(n), np.ones(n)
-            found, theirs = timed(lambda: module.CLA(mean, covariance, zero, one, one[None], np.ones(1)), 3)
+            found, theirs = timed(module.CLA, mean, covariance, zero, one, one[None], np.ones(1), repeats=3)
             off = np.abs(found.turning_points[-1].weights - path.endpoint.y[:n]).max()
             line += f"; cvxcla {1e3 * theirs:.0f} ms, ratio {ours / theirs:.2f}, end weights differ by {off:.0e}"
         say(line)
@@ -179,11 +182,11 @@ def contact(seeds: int) -> None:
             for A, q in family(seed):
                 number += 1
                 problem = LCP(A, q)
-                found, ours = timed(lambda: lcp.solve(LCP(A, q)), 2)
+                found, ours = timed(lcp.solve, LCP(A, q), repeats=2)
                 own.append(ours)
                 solved += found.solved
                 if optimize is not None:
-                    other, other_time = timed(lambda: optimize.lcp_lemke(A, q, max_iter=20 * len(q)), 2)
+                    other, other_time = timed(optimize.lcp_lemke, A, q, max_iter=20 * len(q), repeats=2)
                     right = other.success and problem.relative_residual(np.maximum(other.z, 0.0)) <= 1e-8
                     theirs += right
                     ratios += [ours / max(other_time, 1e-7)] if right else []
@@ -204,13 +207,13 @@ def games(seeds: int) -> None:
         n, m = len(q), len(q) // 2
         if n > 10 * seeds + 40:
             continue
-        found, ours = timed(lambda: lcp.solve(LCP(A, q)))
+        found, ours = timed(lcp.solve, LCP(A, q))
         row = table.setdefault((names[k % 7], n), [])
         entry = [found.solved, ours, False, np.nan]
         if theory is not None:
             game = theory.NormalFormGame([theory.Player(-A[:m, m:]), theory.Player(-A[m:, :m])])
             theory.lemke_howson(game, max_iter=2)
-            (_, status), theirs = timed(lambda: theory.lemke_howson(game, max_iter=100_000, full_output=True))
+            (_, status), theirs = timed(theory.lemke_howson, game, max_iter=100_000, full_output=True)
             entry[2:] = status.converged, theirs
         row.append(entry)
     for (name, n), row in sorted(table.items(), key=lambda item: item[0][1]):
@@ -225,7 +228,7 @@ def several(seeds: int) -> None:
         C = 2.0 - np.eye(m) + 1e-3 * np.random.default_rng(m).random((m, m))
         zero = np.zeros((m, m))
         problem = LCP(np.block([[zero, C], [C, zero]]), -np.ones(2 * m))
-        found, seconds = timed(lambda: lcp.solutions(problem, enumerate_faces=False))
+        found, seconds = timed(lcp.solutions, problem, enumerate_faces=False)
         say(f"coordination m = {m}: {len(found)} of {2**m - 1} on {found.paths} paths, {seconds:.1f} s")
     for n in (8, 10):
         there = met = problems = 0
@@ -262,14 +265,16 @@ def stepping(seeds: int) -> None:
         free = v + 0.01 * inverse * force
         u = J @ free
         q = np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(c)])
-        cold, seconds = timed(lambda: lcp.solve(LCP(A, q)))
+        cold, seconds = timed(lcp.solve, LCP(A, q))
         times["solve"].append(seconds)
-        warm, seconds = timed(lambda: lcp.solve(LCP(A, q), guess=before))
+        warm, seconds = timed(lcp.solve, LCP(A, q), guess=before)
         times["solve with guess"].append(seconds)
-        assert cold.solved and warm.solved
-        times["Solver"].append(timed(lambda: solver.solve(q))[1])
+        assert cold.solved
+        assert warm.solved
+
+        times["Solver"].append(timed(solver.solve, q)[1])
         if optimize is not None:
-            times["quantecon's Lemke"].append(timed(lambda: optimize.lcp_lemke(A, q))[1])
+            times["quantecon's Lemke"].append(timed(optimize.lcp_lemke, A, q)[1])
         before, x = warm, warm.x
         impulse = np.empty(2 * c)
         impulse[::2], impulse[1::2] = x[:c], x[c : 2 * c] - x[2 * c : 3 * c]
@@ -282,10 +287,10 @@ def stepping(seeds: int) -> None:
     found, taken, cold_times, gauss = None, [], [], []
     for k in range(seeds):
         problem = LCP(option.A, option.q * (1.0 + 0.002 * k))
-        found, seconds = timed(lambda: lcp.solve(problem, guess=found))
+        found, seconds = timed(lcp.solve, problem, guess=found)
         taken.append(seconds)
-        cold_times.append(timed(lambda: lcp.solve(problem))[1])
-    x, seconds = timed(lambda: gauss_seidel(dense, problem.q, found.x * 0.998, max(found.residual, 1e-10)))
+        cold_times.append(timed(lcp.solve, problem)[1])
+    x, seconds = timed(gauss_seidel, dense, problem.q, found.x * 0.998, max(found.residual, 1e-10))
     gauss.append(seconds)
     say(f"American option, n = {option.n}, {seeds} steps: cold median {1e3 * np.median(cold_times):.2f} ms, with guess "
         f"{1e3 * np.median(taken):.2f} ms; the last step by projected Gauss-Seidel {1e3 * gauss[-1]:.0f} ms, residual "
