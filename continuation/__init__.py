@@ -13,7 +13,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.functions import from_functions
 from continuation.evaluation.jacobian_check import check_jacobian
-from continuation.events import Event, Monitor, TargetValue, TurningPoint
+from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.events.branch_point import BranchPoint
 from continuation.homotopy import Homotopy
 from continuation.metric import Automatic, Euclidean, Metric
@@ -44,6 +44,7 @@ __all__ = [
     "Event",
     "Homotopy",
     "Kind",
+    "KinkPoint",
     "LocatedEvent",
     "Metric",
     "Monitor",

@@ -15,7 +15,7 @@ from continuation.counts import Counts
 from continuation.ends.closed_curve import SAME_POINT, passes_start
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic, Euclidean, Metric, Weighted, inner, norm
-from continuation.path import Path, Step
+from continuation.path import LocatedEvent, Path, Step
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -216,7 +216,7 @@ def audit(
     sign = 1.0
     if backwards:
         indices, sign = indices[::-1], -1.0
-    knots = _knots([path.steps[k] for k in indices], sign, rule)
+    knots = _knots([path.steps[k] for k in indices], path.kinks, sign, rule)
     tracer = Tracer(
         homotopy,
         preset=CONSERVATIVE,
@@ -241,13 +241,19 @@ def _require_step(path: Path) -> None:
         raise ValueError(f"path: expected at least two points, found {len(path)}")
 
 
-def _knots(steps: list[Step], sign: float, metric: Metric) -> list[Knot]:
+def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Metric) -> list[Knot]:
     """The points to be met, with accumulated chords for arclengths."""
-    knots = [Knot(0.0, steps[0].u, sign * steps[0].tangent)]
+    onward = {event.step: event.rays[1] for event in kinks if event.rays is not None and len(event.rays) > 1}
+
+    def tangent(step: Step) -> Array:
+        # A path has two tangents in a kink: a retrace meets it with the one that it comes with.
+        return -onward[step.index] if sign < 0.0 and step.index in onward else sign * step.tangent
+
+    knots = [Knot(0.0, steps[0].u, tangent(steps[0]))]
     weights: Array | None = None
     for before, after in pairwise(steps):
         weights = metric.weights(before.u, before.tangent, weights)
-        knots.append(Knot(knots[-1].arclength + norm(weights, after.u - before.u), after.u, sign * after.tangent))
+        knots.append(Knot(knots[-1].arclength + norm(weights, after.u - before.u), after.u, tangent(after)))
     return knots
 
 

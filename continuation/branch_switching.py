@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -68,24 +69,29 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]
     return directions[0], directions[1]
 
 
-def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tuple[tuple[Array, Array], ...]:
-    """Starts on the crossing branch, one on either side of the branch point.
+def switch_branch(
+    homotopy: Any, event: LocatedEvent, step: float = 1e-2, *, ray: int | None = None
+) -> tuple[tuple[Array, Array], ...]:
+    """Starts on the crossing branch, one on either side of the branch point; at a kink, starts along its other rays.
 
     Each is a pair (u, v), a corrected point at distance about `step` and the direction away from the branch point;
-    pass it to ``trace(homotopy, start=...)``.
+    pass it to ``trace(homotopy, start=...)``. At a kink the point is the kink itself.
 
     Parameters
     ----------
     homotopy : Homotopy
         The one that was traced.
     event : LocatedEvent
-        A branch point of its path.
+        A branch point or a kink of its path.
     step : float, default 1e-2
         How far from the branch point the starts are.
+    ray : int, optional
+        At a kink: which of its `rays` to turn to, in place of all on which the path neither came nor went on.
 
     Returns
     -------
     two pairs (u, v) of ndarray, shape (N + 1,)
+        At a kink as many pairs as rays are asked for.
 
     Raises
     ------
@@ -96,6 +102,10 @@ def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tup
     """
     if not is_number(step) or not 0.0 < step < np.inf:
         raise complain(ValueError, "step", "a positive finite number", step)
+    if isinstance(event, LocatedEvent) and event.kind == Kind.KINK:
+        return _out_of_kink(event, ray)
+    if ray is not None:
+        raise ValueError(f"ray: expected None, since the event is no kink, found {ray!r}")
     _, other = branch_directions(homotopy, event)
     evaluator = Evaluator(homotopy, Counts())
     tolerance = Tolerance()
@@ -112,3 +122,12 @@ def switch_branch(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> tup
             raise ArithmeticError(f"the other branch could not be reached: {correction.rejected(step)}")
         starts.append((correction.u, linearize(evaluator, correction.u, weights, v).tangent))
     return tuple(starts)
+
+
+def _out_of_kink(kink: LocatedEvent, ray: int | None) -> tuple[tuple[Array, Array], ...]:
+    rays = kink.rays if kink.rays is not None else np.empty((0, kink.u.size))
+    if ray is None:
+        return tuple((kink.u.copy(), v.copy()) for v in rays[2:])
+    if not isinstance(ray, Integral) or not 0 <= ray < len(rays):
+        raise complain(ValueError, "ray", f"the number of one of its {len(rays)} rays", ray)
+    return ((kink.u.copy(), rays[ray].copy()),)

@@ -20,6 +20,9 @@ STYLES = ("-", "--", "-.", ":")
 TURN = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
 """How a turning point is marked, above every line."""
 
+KINK = {**TURN, "marker": "D", "markersize": 5.5}
+"""How a kink is marked."""
+
 SMOOTHNESS = 12
 """Points of the curve for every step, ..."""
 
@@ -108,7 +111,7 @@ def plot_components(
     components: Iterable[int] | None = None,
     legend: bool = True,
 ) -> Axes:
-    """Draw components of y against the parameter or the arclength, turning points marked.
+    """Draw components of y against the parameter or the arclength, turning points and kinks marked.
 
     Parameters
     ----------
@@ -146,9 +149,9 @@ def plot_components(
     across = _across(against, drawing)
     for k, (i, label) in enumerate(zip(chosen, labels)):
         axes.plot(across, drawing.u[:, i], label=label, marker="." if len(across) == 1 else "", **_line(k))
-    for event in path.turning_points:
+    for event, mark in _marked(path):
         where = event.lam if against == "lam" else event.arclength
-        axes.plot([where] * len(chosen), event.y[chosen], zorder=3, **TURN)
+        axes.plot([where] * len(chosen), event.y[chosen], zorder=3, **mark)
     axes.set_xlabel(_LABELS[against])
     if len(chosen) == 1:
         axes.set_ylabel(labels[0])
@@ -181,17 +184,18 @@ def plot_bifurcation(path: Path, axes: Axes | None = None, component: int | None
     """
     _check(path)
     drawing = Drawing.of(path)
-    if component is None:
-        height, at_turns = _height(drawing.u[:, :-1]), [float(_height(event.y)) for event in path.turning_points]
+    i = None if component is None else _components([component], drawing.u[:, :-1])[0]
+    if i is None:
+        height = _height(drawing.u[:, :-1])
         label = r"$\max_i |y_i|$"
     else:
-        i = _components([component], drawing.u[:, :-1])[0]
-        height, at_turns = drawing.u[:, i], [float(event.y[i]) for event in path.turning_points]
+        height = drawing.u[:, i]
         label = f"$y_{{{i}}}$"
     axes = _axes(axes)
     axes.plot(drawing.u[:, -1], height, **_line(0))
-    for event, value in zip(path.turning_points, at_turns):
-        axes.plot([event.lam], [value], zorder=3, **TURN)
+    for event, mark in _marked(path):
+        value = float(_height(event.y) if i is None else event.y[i])
+        axes.plot([event.lam], [value], zorder=3, **mark)
     axes.set_xlabel(_LABELS["lam"])
     axes.set_ylabel(label)
     return _tidy(axes)
@@ -223,7 +227,7 @@ def plot_steps(path: Path, axes: Axes | None = None) -> Axes:
     # An event stored with the points may lie on one of them; a length of zero has no logarithm.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
     _label_decades(axes, lengths[lengths > 0])
-    for event in path.turning_points:
+    for event, _ in _marked(path):
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)
     axes.set_xlabel(_LABELS["arclength"])
     axes.set_ylabel("step in $s$")
@@ -239,6 +243,11 @@ def require_matplotlib() -> None:
 
 
 _LABELS = {"lam": r"$\lambda$", "arclength": "arclength $s$"}
+
+
+def _marked(path: Path) -> list[tuple[LocatedEvent, dict[str, Any]]]:
+    """The turning points and kinks, with their marks."""
+    return [*((event, TURN) for event in path.turning_points), *((event, KINK) for event in path.kinks)]
 
 
 def _check(path: Path) -> None:

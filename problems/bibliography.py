@@ -77,6 +77,16 @@ RHEINBOLDT_BURKARDT = """@article{RheinboldtBurkardt1983,
   year = {1983},
 }"""
 
+ROBINSON = """@article{Robinson1992,
+  author  = {Robinson, Stephen M.},
+  title   = {Normal maps induced by linear transformations},
+  journal = {Mathematics of Operations Research},
+  volume  = {17},
+  number  = {3},
+  pages   = {691--714},
+  year    = {1992},
+}"""
+
 WATSON = """@article{Watson1979,
   author = {Watson, Layne T.},
   title = {A Globally Convergent Algorithm for Computing Fixed Points of {$C^2$} Maps},

@@ -42,6 +42,7 @@ class EndsAt(Enum):
     TARGET = "the target"
     EVENT = "a terminal event"
     START = "its own start, in the same direction"
+    KINK = "a kink, and goes on behind it if a branch leaves there"
     START_PARAMETER = "the start's parameter value, at another point"
 
 

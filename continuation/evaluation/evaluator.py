@@ -13,7 +13,8 @@ from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
-from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian
+from continuation.evaluation.pieces import WholeMap
+from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
 
@@ -104,6 +105,20 @@ class Evaluator:
         if isinstance(homotopy, type):
             name = homotopy.__name__
             raise TypeError(f"homotopy: expected an object, found the class {name}; make one, {name}(...)")
+        self.counts = counts
+        self.methods: set[str] = set()
+        self.bind(homotopy)
+        if isinstance(homotopy, SupportsPieces):
+            self.bind(WholeMap(homotopy, self.start()))
+
+    def bind(self, homotopy: Any) -> None:
+        """Evaluate this one from now on: the next piece of a piecewise smooth map.
+
+        Raises
+        ------
+        TypeError
+            If it lacks a method, or has something else in the place of one.
+        """
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
@@ -111,11 +126,9 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
-        self.counts = counts
         self._checked = False
         self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
-        self.methods: set[str] = set()
         self._derivative: Derivative | None = None
         if isinstance(homotopy, SupportsJacobian):
             self._derivative = Derivative(homotopy.jacobian, source="jacobian")

@@ -125,6 +125,23 @@ class TargetValue:
 
 
 @frozen
+class KinkPoint:
+    """Where a switching function of a piecewise smooth homotopy vanishes, and the path goes on on another piece.
+
+    The tracer always watches for it; name it among the events to stop at it.
+    """
+
+    terminal: int = field(default=1, validator=integer(0))
+    direction: int = field(default=0, init=False)
+    kind: Kind = field(default=Kind.KINK, init=False)
+    name: str = field(default="kink", init=False)
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """A constant: the tracer watches the switches itself."""
+        return 1.0
+
+
+@frozen
 class Monitor:
     """Where a function of the caller's, of the point u and the unit tangent v, vanishes."""
 

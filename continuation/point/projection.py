@@ -57,11 +57,14 @@ class PathSolver:
     tolerance : Tolerance
     max_step : callable or None
         How far an interior path may go from a point in a direction (`continuation.homotopy.SupportsMaxStep`).
+    straight : callable or None
+        How far a path of straight pieces goes before it bends, about; of use where nothing else gives it a scale.
     """
 
     evaluator: Evaluator
     tolerance: Tolerance
     max_step: MaxStep | None = None
+    straight: MaxStep | None = None
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
         """Bring a guess onto the path, to round-off, along the hyperplane orthogonal to `border`.

@@ -6,12 +6,16 @@ a `Rejection`.
 
 from __future__ import annotations
 
-from attrs import frozen
+import numpy as np
+from attrs import evolve, frozen
 
 from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.pieces import Pieces
 from continuation.events.branch_point import locate_branch_point
 from continuation.events.scan import first_terminal, scan_events
+from continuation.kinks.crossing import Crossing, cross
+from continuation.kinks.first import first_zero
 from continuation.path import LocatedEvent
 from continuation.point.arc import angle_between, arc_between, cut, length_between, position
 from continuation.point.linearization import Linearization
@@ -34,6 +38,7 @@ class Accepted:
     orientation: int
     monitors: tuple[float, ...]
     occurrences: tuple[int, ...]
+    crossing: Crossing | None = None
 
 
 @frozen(eq=False)
@@ -43,6 +48,7 @@ class Examiner:
     solver: PathSolver
     settings: Settings
     target: Target
+    pieces: Pieces | None = None
 
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
@@ -63,7 +69,14 @@ class Examiner:
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
         crossed: list[tuple[int, Linearization]] = []
+        kink: tuple[Linearization, tuple[int, ...]] | None = None
         try:
+            if self.pieces is not None:
+                # What lies behind a kink is no path: the arc ends there before anything else is looked at.
+                kink = first_zero(self.solver, self.pieces, state.signs, arc)
+            if kink is not None:
+                arrival, landed = kink[0], False
+                arc = cut(arc, arrival)
             if arrival.orientation not in (0, orientation):
                 index = self.settings.branch_index
                 branch = None if index is None else locate_branch_point(self.solver, point, arrival)
@@ -74,19 +87,38 @@ class Examiner:
             if not arc_on_path(self.solver, arc, attempt.correction.distance):
                 return _rejected(attempt, Rejection.MIDPOINT)
             ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
+            if kink is not None:
+                ending = self._ending_in_kink(ending, kink[0])
             found, monitors = scan_events(self.solver, events, state.monitors, ending.arc)
         except EvaluationError as error:
             return _rejected(attempt, Rejection.ARC, str(error))
         if crossed and position(arc, crossed[0][1].u) <= position(arc, ending.arc.b.u):
             found = sorted((*found, *crossed), key=lambda pair: position(arc, pair[1].u))
+        crossing = None
+        if kink is not None and ending.at is EndsAt.KINK and self.pieces is not None:
+            crossing = cross(self.solver, self.pieces, state.signs, arrival, orientation, kink[1])
+            found = [*found, (self.settings.kink_index or 0, arrival)]
         last, occurred = first_terminal(events, state.occurrences, found)
         if last is not None:
             i, stopping = found[last]
             whole = ending.whole and (stopping.u == arrival.u).all()
+            crossing = crossing if last == len(found) - 1 else None
             ending = ArcEnd(cut(ending.arc, stopping), EndsAt.EVENT, events[i].kind, bool(whole))
             found = found[: last + 1]
         located = [self._located(i, event, point, state, ending.arc.b) for i, event in found]
-        return Accepted(ending, attempt, located, orientation, monitors, occurred)
+        if crossing is not None:
+            located[-1] = evolve(located[-1], name=crossing.name, switches=crossing.switches, rays=crossing.rays)
+        return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
+
+    def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
+        """That of an arc which was cut at a kink: the target, if that is the same point, else the kink."""
+        if ending.at is not EndsAt.NOTHING:
+            return ending
+        target = self.settings.target
+        if target is None or abs(kink.lam - target) > self.solver.noise_by_component(kink)[-1]:
+            return ArcEnd(ending.arc, EndsAt.KINK, Kind.KINK, False)
+        end = evolve(kink, u=np.append(kink.y, target))
+        return ArcEnd(cut(ending.arc, end), EndsAt.TARGET, Kind.TARGET, False)
 
     def _located(
         self, i: int, at: Linearization, begin: Linearization, state: State, end: Linearization

@@ -41,11 +41,17 @@ FARTHEST = 1e30
 STANDSTILL = 1e-60
 """A component that moves by no more than this part of the one that moves most, whatever their units, stands still."""
 
+ROUND_OFF = 1e-13
+"""The same on a piece of a piecewise smooth map, where components do stand still but for the last digits of others;
+units thirteen orders apart are no longer told from that."""
+
 NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
 
 
-def initial_extent(evaluator: Evaluator, point: Linearization, target: float | None, residual: Array) -> Array:
+def initial_extent(
+    evaluator: Evaluator, point: Linearization, target: float | None, residual: Array, farthest: float = np.inf
+) -> Array:
     """How far each component goes while the path turns by about TURN, or to the target if that is nearer.
 
     Parameters
@@ -56,6 +62,9 @@ def initial_extent(evaluator: Evaluator, point: Linearization, target: float | N
     target : float or None
     residual : ndarray, shape (N,)
         H at the point: a start need not lie on the path to the last digit.
+    farthest : float
+        How far along the tangent is far where there is no target: a path of straight pieces has no other scale. Finite
+        for these alone.
 
     Returns
     -------
@@ -67,6 +76,10 @@ def initial_extent(evaluator: Evaluator, point: Linearization, target: float | N
     if np.isfinite(gap) and v[-1] != 0.0:
         whole = abs(gap / v[-1])
         v = v * np.sign(gap / v[-1])
+    whole = whole if np.isfinite(whole) else farthest
+    standstill = ROUND_OFF if np.isfinite(farthest) else STANDSTILL
+    if np.isfinite(farthest):
+        v = np.where(np.abs(v) > standstill * float(np.abs(v).max()), v, 0.0)
     size = np.abs(v)
     moving = size > 0.0
     h = NEAR * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
@@ -99,7 +112,7 @@ def initial_extent(evaluator: Evaluator, point: Linearization, target: float | N
         if high < AROUND * low:
             break
     extent = np.maximum(found * size, np.abs(off))
-    still = extent <= STANDSTILL * float(extent.max())
+    still = extent <= standstill * float(extent.max())
     extent[still] = float(np.median(extent[~still]))
     return extent
 

@@ -10,9 +10,9 @@ from continuation.budget import Budget
 from continuation.checks import instance_with
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
-from continuation.events import Event, TurningPoint
+from continuation.events import Event, KinkPoint, TurningPoint
 from continuation.events.branch_point import BranchPoint
-from continuation.homotopy import SupportsEvents, SupportsMetric
+from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces
 from continuation.metric import Automatic, Metric
 from continuation.predictors import Predictor
 from continuation.step.options import EVENT, PARTS, Options, checked_target, each, names_homotopy
@@ -52,7 +52,15 @@ class Settings:
     @property
     def branch_index(self) -> int | None:
         """Which of the events stands for branch points; None where they are not watched for."""
-        return next((i for i, event in enumerate(self.events) if isinstance(event, BranchPoint)), None)
+        return self._index_of(BranchPoint)
+
+    @property
+    def kink_index(self) -> int | None:
+        """Which of the events stands for kinks; None for smooth homotopies."""
+        return self._index_of(KinkPoint)
+
+    def _index_of(self, kind: type) -> int | None:
+        return next((i for i, event in enumerate(self.events) if isinstance(event, kind)), None)
 
 
 def complete_settings(homotopy: Any, asked: Options) -> Settings:
@@ -90,6 +98,8 @@ def _events(homotopy: Any, asked: Options) -> tuple[Event, ...]:
     own = tuple(homotopy.events) if isinstance(homotopy, SupportsEvents) else ()
     each("events", own, EVENT)
     watched: tuple[Event, ...] = (*own, *asked["events"])
+    if isinstance(homotopy, SupportsPieces) and not any(isinstance(event, KinkPoint) for event in watched):
+        watched = (*watched, KinkPoint(terminal=0))
     if not asked["examine"]:
         return watched
     if not any(isinstance(event, TurningPoint) and event.component == -1 for event in watched):

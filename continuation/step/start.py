@@ -88,7 +88,8 @@ def measured(
     What goes less far than the tolerance can see in numbers of its size is measured by that.
     """
     seen = RESOLVED * np.spacing(np.abs(point.u)) / solver.tolerance.relative
-    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual), seen)
+    farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
+    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual, farthest), seen)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent
     return point.with_weights(metric.weights(point.u, point.tangent, None)), extent

@@ -40,6 +40,8 @@ class State:
         The parameter value at which the endgame was last tried in vain; inf if never.
     index : int
         Of the step that led here.
+    signs : tuple of int
+        The piece on which the path goes on, where the homotopy has pieces.
     """
 
     history: tuple[Knot, ...]
@@ -56,6 +58,7 @@ class State:
     last_failed_landing: float = float("inf")
     last_failed_endgame: float = float("inf")
     index: int = 0
+    signs: tuple[int, ...] = ()
 
     @property
     def here(self) -> Knot:

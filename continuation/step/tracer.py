@@ -12,8 +12,10 @@ from continuation.citation import references_of, unique
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
+from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
-from continuation.homotopy import SupportsObserve
+from continuation.homotopy import SupportsObserve, SupportsPieces
+from continuation.kinks.start import begin
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.linearization import Anchor, Linearization
 from continuation.point.projection import PathSolver
@@ -113,10 +115,12 @@ class Tracer:
         self.observers = tuple(observers)
         self.state: State | None = state
         self._finish = finish_of(homotopy, asked["finish"])
-        self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy))
+        self._pieces = Pieces(homotopy) if isinstance(homotopy, SupportsPieces) else None
+        straight = None if self._pieces is None else self._pieces.distance
+        self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy), straight)
         observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._recorder = StepRecorder(self._evaluator, observe)
-        self._advance = Advance(self._solver, self.settings, self._recorder, self._spent)
+        self._advance = Advance(self._solver, self.settings, self._recorder, self._spent, self._pieces)
         self._start = asked["start"]
         self._check = asked["check_jacobian"]
         self._clock: float | None = None
@@ -189,10 +193,15 @@ class Tracer:
         settings = self.settings
         u0 = self._evaluator.start()
         if self._check:
-            report = check_jacobian(self.homotopy)
+            report = check_jacobian(self._evaluator.homotopy)
             if not report.correct:
                 raise ValueError(f"jacobian: {report}")
-        if self._start is None:
+        signs: Signs = ()
+        if self._pieces is not None:
+            point, h, signs = begin(
+                self._solver, self._pieces, u0, self._start, settings.metric, settings.direction, settings.target
+            )
+        elif self._start is None:
             point, h = first_point(self._solver, u0, settings.metric, settings.direction, settings.target)
         else:
             point, h = point_from_tangent(self._solver, self._start, u0.size, settings.metric, settings.target)
@@ -208,6 +217,7 @@ class Tracer:
             occurrences=(0,) * len(settings.events),
             origin=here,
             origin_weights=point.weights,
+            signs=signs,
         )
         # The state last: whatever interrupts before it, a resumed trace begins again and lacks nothing.
         self._record(self._recorder.record(point, 0, 0.0, Kind.START), state)
@@ -219,6 +229,10 @@ class Tracer:
     def _restored(self, state: State) -> Linearization:
         """The point of a stored state: its factorisation is made anew from the same numbers, its tangent is kept."""
         at, border = state.anchor
+        if self._pieces is not None:
+            if len(state.signs) != self._pieces.values(at).size:
+                raise ValueError(f"state: expected the signs of all switches, found {len(state.signs)}")
+            self._evaluator.bind(self._pieces.piece(state.signs))
         anchor = Anchor(at, border, self._evaluator.factor(at, border))
         return Linearization(state.here.u, state.weights, anchor, state.here.tangent, state.orientation)
 

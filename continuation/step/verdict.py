@@ -11,6 +11,7 @@ from attrs import frozen
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import ArcEnd, EndsAt
 from continuation.evaluation.evaluator import EvaluationError
+from continuation.kinks.crossing import Crossing
 from continuation.rejection import Rejected
 from continuation.status import Status
 from continuation.step.start import SingularStartError, StartError
@@ -111,3 +112,11 @@ def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
     if end.at is EndsAt.START_PARAMETER:
         return Verdict(Status.TURNED_BACK)
     return Verdict(Status.DIVERGED, infinity) if infinity else None
+
+
+def no_way_on(kink: Crossing) -> Verdict | None:
+    """The path ends in a kink: no branch leaves it, or which one does could not be told."""
+    if kink.onward is not None:
+        return None
+    where = f"Switches that vanish there: {', '.join(map(str, kink.switches))}."
+    return Verdict(Status.UNRESOLVED_KINK if kink.reason else Status.DEAD_END, f"{where} {kink.reason}".rstrip())

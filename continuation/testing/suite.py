@@ -7,7 +7,7 @@ from typing import Any
 
 from attrs import field, frozen
 
-from continuation.testing import derivatives, paths, protocol
+from continuation.testing import derivatives, paths, pieces, protocol
 from continuation.testing.subject import CheckFailure, Examination, Subject
 
 PASSED, FAILED, EXPECTED, NOT_RUN = "passed", "failed", "failed as expected", "not run"
@@ -43,6 +43,9 @@ RULES = (
     Rule("events", protocol.events, "events"),
     Rule("references", protocol.references, "references"),
     Rule("picklable", protocol.picklable),
+    Rule("switches", pieces.switches, "switches"),
+    Rule("pieces", pieces.pieces, "piece", "switches"),
+    Rule("derivatives_of_pieces", pieces.derivatives_of_pieces, "piece", "pieces"),
     Rule("taylor", derivatives.taylor, "taylor", "start_on_path"),
     Rule("trace", paths.trace, after="start_on_path"),
     Rule("refinement", paths.refinement, after="trace"),

@@ -1,4 +1,4 @@
-"""Homotopies for F(x) = 0, with and without bounds, for any F: R^n -> R^n, and Brown's function as the example."""
+"""Homotopies for F(x) = 0, with and without bounds, for any F: R^n -> R^n, and examples of them."""
 
 from problems.nonlinear.brown import BrownAlmostLinear, brown
 from problems.nonlinear.complementarity import (
@@ -10,8 +10,11 @@ from problems.nonlinear.complementarity import (
 from problems.nonlinear.differentiable import Differentiable
 from problems.nonlinear.fixed_point import FixedPointHomotopy, fixed_point
 from problems.nonlinear.newton import NewtonHomotopy, newton
+from problems.nonlinear.normal_map import NormalMap
+from problems.nonlinear.obstacle import bratu_under_obstacle
 
 __all__ = [
     "BrownAlmostLinear", "ComplementaritySolution", "Differentiable", "FixedPointHomotopy", "InteriorHomotopy",
-    "MixedComplementarity", "NewtonHomotopy", "brown", "fixed_point", "newton", "solve_complementarity",
+    "MixedComplementarity", "NewtonHomotopy", "NormalMap", "bratu_under_obstacle", "brown",
+    "fixed_point", "newton", "solve_complementarity",
 ]  # fmt: skip

@@ -1,0 +1,141 @@
+"""A piecewise smooth map as the engine sees it: its switches, its pieces, and the map itself as one homotopy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array
+from continuation.checks import complain
+
+Signs = tuple[int, ...]
+"""Of all switches, each -1 or +1: the name of a piece."""
+
+REMEMBERED = 64
+"""Pieces that are kept: a kink with several switches asks for the same few again."""
+
+STEP = 6e-6
+"""Of a central difference, relative to the point: the cube root of round-off."""
+
+AGREE = 1e-4
+"""Jets are believed where they agree with a difference so well, relative to the largest."""
+
+PARALLEL = 1e-9
+"""The derivative of a switch along a path, relative to the largest, that is round-off or next to it."""
+
+NAMES = ("jacobian", "bordered", "differential", "taylor")
+"""Capabilities of pieces that the map has where they have them."""
+
+
+class SwitchError(ArithmeticError):
+    """The switches have no finite value at a point."""
+
+
+@frozen(eq=False)
+class Pieces:
+    """The switches and pieces of one homotopy."""
+
+    homotopy: Any
+    _made: dict[Signs, Any] = field(factory=dict, init=False)
+    _jets: list[bool] = field(factory=list, init=False)
+
+    def values(self, u: Array) -> Array:
+        """The switches at u, shape (m,).
+
+        Raises
+        ------
+        SwitchError
+            Where they are not finite, or cannot be evaluated.
+        ValueError
+            If they are no vector of real numbers.
+        """
+        try:
+            with np.errstate(all="ignore"):
+                found = np.asarray(self.homotopy.switches(u[:-1].copy(), float(u[-1])))
+        except ArithmeticError as error:
+            raise SwitchError(f"the switches could not be evaluated: {error}") from error
+        if found.ndim != 1 or found.dtype.kind not in "fiu":
+            raise complain(ValueError, "switches", "a vector of real numbers", found)
+        if not np.isfinite(found).all():
+            raise SwitchError("a switch is not finite")
+        return np.array(found, dtype=float)
+
+    def signs(self, u: Array) -> Signs:
+        """The piece of a point; where a switch vanishes, that in which it is positive."""
+        return tuple(np.where(self.values(u) >= 0.0, 1, -1).tolist())
+
+    def piece(self, signs: Signs) -> Any:
+        """The smooth homotopy of these signs."""
+        if signs not in self._made:
+            if len(self._made) >= REMEMBERED:
+                self._made.clear()
+            self._made[signs] = self.homotopy.piece(np.array(signs))
+        return self._made[signs]
+
+    def along(self, u: Array, v: Array) -> Array:
+        """Derivatives of the switches at u along v, shape (m,): by jets, or by differences where jets will not do.
+
+        Which of them is decided at the first call.
+        """
+        if not self._jets:
+            try:
+                with np.errstate(all="ignore"):
+                    one, other = self._by_jets(u, v), self._by_differences(u, v)
+                known = one.shape == other.shape
+                self._jets.append(known and bool((np.abs(one - other) <= AGREE * np.abs(other).max(initial=0.0)).all()))
+            except (TypeError, ArithmeticError, ValueError, AttributeError):
+                self._jets.append(False)
+        return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
+
+    def distance(self, u: Array, v: Array) -> float:
+        """How far borders are from u along v, to first order: half of the switches are no nearer.
+
+        Where no border is ahead it is the size of the point, or 1 at zero: there is no other length then.
+        """
+        s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
+        ahead = (s > 0.0) & (slope > PARALLEL * slope.max(initial=0.0))
+        if ahead.any():
+            return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2])
+        return (float(np.abs(u).max()) or 1.0) / (float(np.abs(v).max()) or 1.0)
+
+    def _by_jets(self, u: Array, v: Array) -> Array:
+        from continuation import jets
+
+        switches = self.homotopy.switches
+        found: Array = jets.directional_derivatives(lambda at: switches(at[:-1], at[-1]), u, v, 1)[1]
+        return found
+
+    def _by_differences(self, u: Array, v: Array) -> Array:
+        size = float(np.abs(v).max())
+        h = STEP * (float(np.abs(u).max()) or 1.0) / size if size > 0.0 else 1.0
+        change: Array = (self.values(u + h * v) - self.values(u - h * v)) / (2.0 * h)
+        return change
+
+
+class WholeMap:
+    """All pieces together, each where it belongs: a homotopy with the capabilities that the piece of the start has.
+
+    What looks at single points of a path, and does not follow it, needs no more.
+
+    Parameters
+    ----------
+    homotopy : SupportsPieces
+    u : ndarray, shape (N + 1,)
+        Its start.
+    """
+
+    def __init__(self, homotopy: Any, u: Array) -> None:
+        self._pieces = Pieces(homotopy)
+        self.start, self.residual = homotopy.start, homotopy.residual
+        first = self._pieces.piece(self._pieces.signs(u))
+        for name in NAMES[:-1]:
+            if hasattr(first, name):
+                setattr(self, name, self._local(name))
+
+    def _local(self, name: str) -> Any:
+        def at(y: Array, lam: float, *more: Any) -> Any:
+            return getattr(self._pieces.piece(self._pieces.signs(np.append(y, lam))), name)(y, lam, *more)
+
+        return at

@@ -1,0 +1,117 @@
+"""How a path goes on behind a kink: its rays, and the one of them that continues it."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.pieces import Pieces, Signs
+from continuation.kinks.rays import SAME_RAY, Corner, Ray, UnresolvedError, rays_at
+from continuation.metric import inner, norm, share
+from continuation.point.linearization import Linearization, linearize
+from continuation.point.projection import PathSolver
+
+AGREES = 1e-6
+"""How far, in the metric, the next piece may have its path beside the kink: pieces agree there to round-off."""
+
+STILL = 1e-12
+"""The parameter's share of a tangent that is round-off: it stands still there, and turns neither way."""
+
+
+@frozen(eq=False)
+class Crossing:
+    """A kink, resolved as far as it can be.
+
+    Attributes
+    ----------
+    at : Linearization
+        On the piece on which the path came, with the tangent that it came with.
+    switches : tuple of int
+        Those that vanish there.
+    rays : ndarray, shape (k, N + 1)
+        All that leave: first the one back, then the one on which the path goes on.
+    onward : Linearization or None
+        The point on the next piece, None where the path ends.
+    signs : tuple of int
+        Of that piece.
+    reason : str
+        Why the path ends, if it is not for want of a ray.
+    """
+
+    at: Linearization
+    switches: tuple[int, ...]
+    rays: Array
+    onward: Linearization | None = None
+    signs: Signs = ()
+    reason: str = ""
+
+    @property
+    def name(self) -> str:
+        """What kind of a kink it is."""
+        if self.onward is None:
+            return "unresolved kink" if self.reason else "dead end"
+        if len(self.rays) > 2:
+            return "branching kink"
+        if min(share(p.weights, p.tangent) for p in (self.at, self.onward)) <= STILL:
+            return "kink"
+        turns = self.onward.tangent[-1] * self.at.tangent[-1] < 0.0
+        return "turning kink" if turns else "kink"
+
+
+def cross(
+    solver: PathSolver, pieces: Pieces, signs: Signs, point: Linearization, orientation: int, beta: tuple[int, ...]
+) -> Crossing:
+    """Resolve a kink.
+
+    Where several branches leave, the path goes on along one with the determinant's sign of the path, as it would if
+    the map were moved a little (Allgower and Georg, Section 2.1): the straightest of them.
+
+    Parameters
+    ----------
+    solver : PathSolver
+        Of the piece on which the path came.
+    pieces : Pieces
+    signs : tuple of int
+        Of that piece.
+    point : Linearization
+        The kink, with the tangent of the path that comes.
+    orientation : int
+        The determinant's sign along the path.
+    beta : tuple of int
+        The switches that vanish there.
+    """
+    back = -point.tangent[None]
+    try:
+        here = linearize(solver.evaluator, point.u, point.weights, point.border)
+        corner = Corner(pieces, solver.evaluator, here, signs, beta)
+        back = -here.tangent[None]
+        found = [ray for ray in rays_at(corner) if norm(here.weights, ray.v - back[0]) > SAME_RAY]
+        leaving = [_linearized(corner, ray) for ray in found]
+    except UnresolvedError as error:
+        return Crossing(point, beta, back, reason=str(error))
+    except EvaluationError as error:
+        return Crossing(point, beta, back, reason=f"A derivative there cannot be used: {error}.")
+    rays = np.vstack([back, *(p.tangent for p in leaving)])
+    if not leaving:
+        return Crossing(point, beta, rays)
+    wanted = [k for k, p in enumerate(leaving) if orientation == 0 or p.orientation in (0, orientation)]
+    if not wanted:
+        reason = "The determinant has another sign on every branch that leaves: one of them is not found."
+        return Crossing(point, beta, rays, reason=reason)
+    first = max(wanted, key=lambda k: inner(here.weights, here.tangent, leaving[k].tangent))
+    order = [0, first + 1, *(k + 1 for k in range(len(leaving)) if k != first)]
+    return Crossing(point, beta, rays[order], leaving[first], found[first].signs)
+
+
+def _linearized(corner: Corner, ray: Ray) -> Linearization:
+    """The kink on the piece of a ray: its tangent is the ray, to more digits."""
+    point, evaluator = corner.point, corner.on(ray.signs)
+    there = linearize(evaluator, point.u, point.weights, point.weights * ray.v)
+    off = norm(point.weights, there.solve(-evaluator.residual(point.u)))
+    if off > AGREES:
+        raise UnresolvedError(f"The pieces do not agree there: the next one is off by {off:.1g}.")
+    if norm(point.weights, there.tangent - ray.v) > np.sqrt(SAME_RAY):
+        raise UnresolvedError("A ray of the pieces' low-rank changes is not one of the piece itself.")
+    return there

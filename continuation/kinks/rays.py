@@ -1,0 +1,250 @@
+"""All branches that meet in a kink: rays in the kernels of the pieces that meet there.
+
+Near a kink at which the switches of `beta` vanish, a piecewise smooth map is to first order piecewise linear, one piece
+for each of the 2^|beta| choices of their signs (Scholtes, Introduction to Piecewise Differentiable Equations, 2012,
+Chapter 4). A branch that leaves is a ray v in the kernel of a piece, on which every switch of beta takes its sign.
+Where one switch vanishes two pieces agree, so that their derivatives differ by rank one: H'_tau = H'_sigma + C_tau G,
+G the gradients of beta. With M = [H'_sigma; border] factored once, M v = e_{N+1} and Z = M^{-1} [C; 0], the kernel is
+
+    v_tau = alpha v - Z w,   w = G v_tau,   (I + G Z) w = alpha G v,
+
+a system of order |beta|.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.pieces import Pieces, Signs
+from continuation.metric import inner, norm
+from continuation.point.linearization import Linearization, linearize
+
+MOST = 10
+"""Switches whose 2^10 pieces are gone through; twice as many for each one more."""
+
+RANK_ONE = 1e-5
+"""How well the derivatives of two pieces with one common border differ by rank one. Derivatives by differences have
+eight digits; pieces that do not agree on their border differ by one."""
+
+TILT = 1e-7
+"""The derivative of a switch along a ray, relative to what it is in a general direction, below which first order does
+not tell its sign: derivatives by differences have eight digits."""
+
+KERNEL = 1e-9
+"""The least singular value, relative to the largest, of a piece whose kernel is a line."""
+
+SAME_RAY = 1e-6
+"""Rays whose unit vectors differ by less are one."""
+
+
+class UnresolvedError(ArithmeticError):
+    """The branches that meet in a kink cannot be told; the sentence says why."""
+
+
+@frozen(eq=False)
+class Ray:
+    """A branch that leaves a kink: its unit direction and the signs of its piece."""
+
+    v: Array
+    signs: Signs
+
+
+@frozen(eq=False)
+class Corner:
+    """A kink from the side of one piece: the point linearized there, the piece's signs, the switches that vanish."""
+
+    pieces: Pieces
+    evaluator: Evaluator
+    point: Linearization
+    signs: Signs
+    beta: tuple[int, ...]
+
+    def signs_with(self, of_beta: Sequence[int]) -> Signs:
+        """The signs with others for the switches that vanish."""
+        changed = list(self.signs)
+        for j, sign in zip(self.beta, of_beta):
+            changed[j] = sign
+        return tuple(changed)
+
+    def on(self, signs: Signs) -> Evaluator:
+        """Counted access to one piece."""
+        return Evaluator(self.pieces.piece(signs), self.evaluator.counts)
+
+    def tilts(self, v: Array) -> Array:
+        """Derivatives of the switches that vanish, along v."""
+        return self.pieces.along(self.point.u, v)[list(self.beta)]
+
+
+def rays_at(corner: Corner) -> list[Ray]:
+    """All branches that leave the corner, in no particular order, each once.
+
+    Raises
+    ------
+    UnresolvedError
+        If too many switches vanish, the pieces do not agree on their borders, or one has a kernel of more dimensions.
+    EvaluationError
+        If a derivative cannot be evaluated.
+    """
+    if len(corner.beta) > MOST:
+        raise UnresolvedError(f"Their number is {len(corner.beta)}; pieces of up to {MOST} switches are gone through.")
+    found: list[Ray] = []
+    for ray in _candidates(corner):
+        if not any(norm(corner.point.weights, ray.v - other.v) <= SAME_RAY for other in found):
+            found.append(ray)
+    return found
+
+
+def _candidates(corner: Corner) -> Iterator[Ray]:
+    family = _Family.of(corner)
+    weights = corner.point.weights
+    for taus in product((1, -1), repeat=len(corner.beta)):
+        signs = corner.signs_with(taus)
+        for v, tilts in family.kernel(signs, taus):
+            along = np.array(taus) * tilts / family.sizes
+            unit = v / norm(weights, v)
+            along = along / norm(weights, v)
+            if (along < -TILT).any():
+                continue
+            unsure = np.flatnonzero(along <= TILT).tolist()
+            if not unsure or _stays(corner, signs, unit, unsure, family.sizes[unsure]):
+                yield Ray(unit, signs)
+
+
+@frozen(eq=False)
+class _Family:
+    """The derivatives of the pieces that meet, as changes of low rank of the one of the corner's own piece.
+
+    `sizes` are the switches' derivatives in a general direction, `R` general directions, `GR` the switches' derivatives
+    along them, `columns` the c_j of H'_{j changed} - H'_sigma = c_j grad s_j, `Z` what M^{-1} makes of them and `GZ`
+    the switches' derivatives of that. Without `columns` each piece is factored by itself.
+    """
+
+    corner: Corner
+    sizes: Array
+    R: Array
+    GR: Array
+    tilts: Array
+    columns: Array | None = None
+    Z: Array | None = None
+    GZ: Array | None = None
+
+    @classmethod
+    def of(cls, corner: Corner) -> _Family:
+        """With one factorisation where pieces can be applied to a direction."""
+        point, b = corner.point, len(corner.beta)
+        R = np.random.default_rng(4).standard_normal((b, point.u.size)) / np.sqrt(point.weights)
+        GR = np.array([corner.tilts(r) for r in R]).T
+        sizes = np.sqrt((GR**2).mean(axis=1))
+        if not sizes.all():
+            raise UnresolvedError(f"The derivative of switch {corner.beta[int(np.argmin(sizes))]} vanishes there.")
+        family = cls(corner, sizes, R, GR, corner.tilts(point.tangent))
+        own = [family.applied(corner.signs, r) for r in R]
+        if any(image is None for image in own):
+            return family
+        columns = [family.column(k, np.array(own)) for k in range(b)]
+        Z = np.array([point.solve(c) for c in columns])
+        return cls(
+            corner, sizes, R, GR, family.tilts, np.array(columns), Z, np.array([corner.tilts(z) for z in Z]).T
+        )
+
+    def applied(self, signs: Signs, r: Array) -> Array | None:
+        """The derivative of a piece along r; None where it has no matrix to be applied."""
+        apply = self.corner.on(signs).differential(self.corner.point.u)
+        return None if apply is None else apply(r)
+
+    def column(self, k: int, own: Array) -> Array:
+        """The c of the piece that differs in the k-th switch alone: the derivatives differ by c grad s_k."""
+        corner = self.corner
+        flips = [-corner.signs[j] if i == k else corner.signs[j] for i, j in enumerate(corner.beta)]
+        change = np.array([self.applied(corner.signs_with(flips), r) for r in self.R]) - own
+        c: Array = self.GR[k] @ change / float(self.GR[k] @ self.GR[k])
+        left = float(np.abs(change - np.outer(self.GR[k], c)).max())
+        if left > RANK_ONE * max(float(np.abs(change).max()), float(np.abs(own).max())):
+            raise UnresolvedError(f"The pieces beside switch {corner.beta[k]} do not agree where it vanishes.")
+        return c
+
+    def kernel(self, signs: Signs, taus: tuple[int, ...]) -> Iterator[tuple[Array, Array]]:
+        """Both directions of the kernel of a piece, and the switches' derivatives along them."""
+        flipped = np.array(taus) != np.array(self.corner.signs)[list(self.corner.beta)]
+        if self.columns is None or self.Z is None or self.GZ is None or not self._adds_up(signs, flipped):
+            v = self._factored(signs)
+            w = self.corner.tilts(v)
+        else:
+            # In units of the switches, so that the singular values can be compared.
+            small = np.eye(len(taus)) + self.GZ * (flipped * self.sizes)[None, :] / self.sizes[:, None]
+            small = np.column_stack([small, -self.tilts / self.sizes])
+            _, values, rows = np.linalg.svd(small)
+            if not values[-1] > KERNEL * values[0]:
+                self._refuse_cone(signs, taus, rows[int((values > KERNEL * values[0]).sum()) :])
+                return
+            w, alpha = rows[-1][:-1] * self.sizes, float(rows[-1][-1])
+            v = alpha * self.corner.point.tangent - (flipped * w) @ self.Z
+        yield v, w
+        yield -v, -w
+
+    def _adds_up(self, signs: Signs, flipped: Array) -> bool:
+        """Whether the change of several switches is the sum of the changes of each, as in complementarity problems."""
+        if int(flipped.sum()) < 2 or self.columns is None:
+            return True
+        own, there = (self.applied(s, self.R[0]) for s in (self.corner.signs, signs))
+        assert own is not None
+        assert there is not None
+        left = there - own - (flipped * self.GR[:, 0]) @ self.columns
+        return float(np.abs(left).max()) <= RANK_ONE * float(np.abs(there).max() + np.abs(own).max())
+
+    def _factored(self, signs: Signs) -> Array:
+        """The kernel of one piece from factors of its own, with two borders: one that depends on them is no line."""
+        corner, found = self.corner, []
+        for seed in (5, 6):
+            border = np.random.default_rng(seed).standard_normal(corner.point.u.size) * np.sqrt(corner.point.weights)
+            found.append(linearize(corner.on(signs), corner.point.u, corner.point.weights, border).tangent)
+        cosine = abs(inner(corner.point.weights, *found))
+        if cosine < 1.0 - SAME_RAY:
+            raise UnresolvedError("The kernel of a piece that meets there has more than one dimension.")
+        return found[0]
+
+    def _refuse_cone(self, signs: Signs, taus: tuple[int, ...], kernel: Array) -> None:
+        """A piece whose kernel is a plane is of no account only if no direction in that plane stays in the piece."""
+        a, b = np.array(taus), kernel[:, :-1]
+        if len(kernel) == 2:
+            # The cone of a plane that some half-planes leave has edges on theirs, or is all of it.
+            edges = [sign * np.array([-row[1], row[0]]) for row in b.T for sign in (1.0, -1.0)]
+            if b.any() and not any((a * (x @ b) >= -KERNEL * norm(np.ones(2), x)).all() for x in edges if x.any()):
+                return
+        raise UnresolvedError(f"The kernel of the piece with the signs {list(taus)} there has more than one dimension.")
+
+
+AHEAD = 1e-3, 1e-4, 1e-5
+"""How far ahead, in the metric, a ray is followed where first order does not tell whether it stays in its piece."""
+
+SETTLED, OFF = 1e-3, 1e-9
+"""The last correction there, relative to the square of the length, by which a curved branch leaves a border; and the
+part of a switch's first order over that length which is round-off, far below that square."""
+
+
+def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:
+    """Whether the branch along v stays in the piece: its point a little ahead, corrected, has the piece's signs."""
+    point, evaluator = corner.point, corner.on(signs)
+    which = [corner.beta[k] for k in unsure]
+    try:
+        near = linearize(evaluator, point.u, point.weights, point.weights * v)
+        for length in AHEAD:
+            u = point.u + length * v
+            moves = []
+            for _ in range(4):
+                move = near.solve(-evaluator.residual(u), 0.0, near.weights * v)
+                u = u + move
+                moves.append(norm(near.weights, move))
+            if not moves[-1] <= SETTLED * length**2:
+                continue
+            s = np.array(signs)[which] * corner.pieces.values(u)[which]
+            return bool((s >= -OFF * length * sizes).all())
+    except EvaluationError:
+        pass
+    return False

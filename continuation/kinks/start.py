@@ -1,0 +1,137 @@
+"""Which piece a path begins on, also where it begins in a kink."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.pieces import Pieces, Signs, SwitchError
+from continuation.kinks.first import switch_noise
+from continuation.kinks.rays import Corner, UnresolvedError, rays_at
+from continuation.metric import Metric
+from continuation.point.linearization import Linearization, linearize
+from continuation.point.projection import PathSolver
+from continuation.step.start import SingularStartError, StartError, first_point, point_from_tangent
+from continuation.tolerance import Tolerance
+
+BESIDE = 1e-9
+"""How far ahead of a given start, relative to it, a given direction says on which side of a switch the path lies: a
+kink is known to a thousandth of that or better."""
+
+PIECES = 10
+"""Corrections of a start, each of which may lead it to another piece."""
+
+
+def begin(
+    solver: PathSolver,
+    pieces: Pieces,
+    u: Array,
+    start: tuple[Array, Array] | None,
+    metric: Metric,
+    direction: int,
+    target: float | None,
+) -> tuple[Linearization, float, Signs]:
+    """The first point on its piece, a first step length, and the signs of the piece; the solver's evaluator is on it.
+
+    Parameters
+    ----------
+    solver : PathSolver
+    pieces : Pieces
+    u : ndarray, shape (N + 1,)
+        The homotopy's start.
+    start : tuple of ndarray, or None
+        That of the call, with its direction.
+    metric, direction, target
+        Of the trace.
+
+    Raises
+    ------
+    StartError
+        If there is no point of a path, or no branch in the direction asked for.
+    """
+    try:
+        if start is not None and start[0].size == u.size:
+            signs = _signs_beside(pieces, *start)
+            solver.evaluator.bind(pieces.piece(signs))
+            point, h = point_from_tangent(solver, start, u.size, metric, target)
+            return point, h, signs
+        if start is not None:
+            point_from_tangent(solver, start, u.size, metric, target)
+        signs = pieces.signs(u)
+        for _ in range(PIECES):
+            solver.evaluator.bind(pieces.piece(signs))
+            point, h = first_point(solver, u, metric, direction, target)
+            s = pieces.values(point.u)
+            zero = np.abs(s) <= switch_noise(solver, pieces, point)
+            if (zero | (s * signs > 0.0)).all():
+                break
+            # Correcting it has led it across a border.
+            signs = pieces.signs(point.u)
+        else:
+            raise StartError("It is on one piece before it is corrected, and on another one afterwards.")
+    except SwitchError as error:
+        raise StartError(f"At the start {error}.") from error
+    if not zero.any():
+        return point, h, signs
+    wanted = direction or (1 if target is None or target >= u[-1] else -1)
+    point, signs = _out_of_kink(solver, pieces, point, signs, tuple(np.flatnonzero(zero).tolist()), wanted)
+    return point, h, signs
+
+
+def _out_of_kink(
+    solver: PathSolver, pieces: Pieces, point: Linearization, signs: Signs, beta: tuple[int, ...], wanted: int
+) -> tuple[Linearization, Signs]:
+    """The branch that leaves a kink in the direction wanted; of several, that in which the parameter moves fastest."""
+    evaluator = solver.evaluator
+    try:
+        here = linearize(evaluator, point.u, point.weights, point.border)
+        leaving = [ray for ray in rays_at(Corner(pieces, evaluator, here, signs, beta)) if ray.v[-1] * wanted > 0.0]
+        if not leaving:
+            raise SingularStartError("It is a kink, from which no branch leaves in the direction asked for.")
+        ray = max(leaving, key=lambda ray: abs(float(ray.v[-1])))
+        evaluator.bind(pieces.piece(ray.signs))
+        return linearize(evaluator, point.u, point.weights, point.weights * ray.v), ray.signs
+    except UnresolvedError as error:
+        raise SingularStartError(f"It is a kink. {error}") from error
+    except EvaluationError as error:
+        raise SingularStartError(f"It is a kink, and {error}.") from error
+
+
+def _signs_beside(pieces: Pieces, u: Array, v: Array) -> Signs:
+    return pieces.signs(u + v * (BESIDE * (float(np.abs(u).max()) or 1.0) / float(np.abs(v).max())))
+
+
+def rays(homotopy: object, u: Array) -> Array:
+    """All branches of a piecewise smooth map that leave a point of its path, as unit directions.
+
+    Parameters
+    ----------
+    homotopy : SupportsPieces
+    u : ndarray, shape (N + 1,)
+        A point (y, lam) of the path: two rays leave from inside of an arc, as from an ordinary kink.
+
+    Returns
+    -------
+    ndarray, shape (k, N + 1)
+
+    Raises
+    ------
+    ArithmeticError
+        If the branches cannot be told there.
+    """
+    pieces, counts = Pieces(homotopy), Counts()
+    evaluator = Evaluator(homotopy, counts)
+    signs = pieces.signs(u)
+    evaluator.bind(pieces.piece(signs))
+    ones = np.ones_like(u)
+    border = np.random.default_rng(7).standard_normal(u.size)
+    here = linearize(evaluator, u, ones, border)
+    solver = PathSolver(evaluator, Tolerance())
+    zero = np.flatnonzero(np.abs(pieces.values(u)) <= switch_noise(solver, pieces, here))
+    if not zero.size:
+        return np.array([here.tangent, -here.tangent])
+    here = linearize(evaluator, u, ones, here.border)
+    found = rays_at(Corner(pieces, evaluator, here, signs, tuple(zero.tolist())))
+    return np.array([ray.v for ray in found]).reshape(-1, u.size)

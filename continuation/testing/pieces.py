@@ -1,0 +1,125 @@
+"""Checks of piecewise smooth maps: their switches, their pieces, and that these agree on their borders."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
+from continuation.evaluation.pieces import Pieces, Signs
+from continuation.testing import derivatives
+from continuation.testing.protocol import difference
+from continuation.testing.subject import Place, Subject, called, directions, fail
+
+SAME = 1e4
+"""Values of one map from two formulas, in units of their round-off: a mistake is larger."""
+
+LOOK = 64.0
+"""Last places by which a point is moved to see what they make of the map."""
+
+SMOOTH = 1e-4
+"""The derivative of a switch from two sides of a point, relative to its size: differences have eight digits."""
+
+
+def switches(subject: Subject) -> None:
+    """`switches` gives as many finite real numbers everywhere, is smooth, and depends on its arguments alone."""
+    count: int | None = None
+    for place in subject.places:
+        y = place.y
+        with called("switches", place.where):
+            found = np.asarray(subject.homotopy.switches(y, place.lam))
+            again = np.asarray(subject.homotopy.switches(place.y, place.lam))
+        if not np.array_equal(y, place.y):
+            fail(f"switches: {place.where} it changes its argument")
+        if found.ndim != 1 or found.dtype.kind not in "fiu" or not np.isfinite(found).all():
+            fail(f"switches: {place.where} expected a vector of finite real numbers, found {found!r:.80}")
+        if not np.array_equal(found, again):
+            fail(f"switches: {place.where} a second call differs from the first by {difference(found, again):.3g}")
+        if count is not None and found.size != count:
+            fail(f"switches: {place.where} expected {count}, as at the start, found {found.size}")
+        count = found.size
+        _smooth(subject, place)
+
+
+def _smooth(subject: Subject, place: Place) -> None:
+    """One-sided differences agree but for their curvature, which ten times shorter ones show."""
+    v = directions(place.u.size, 1, 23)[0]
+    values = Pieces(subject.homotopy).values
+
+    def kink(h: float) -> Array:
+        bend: Array = np.abs(values(place.u + h * v) - 2.0 * values(place.u) + values(place.u - h * v)) / h
+        return bend
+
+    with called("switches", f"beside the point {place.where}"):
+        far, near = kink(1e-4), kink(1e-5)
+        slope = np.abs(Pieces(subject.homotopy).along(place.u, v))
+    bad = (near > SMOOTH * (1.0 + slope)) & (near > 0.5 * far)
+    if bad.any():
+        fail(f"switches: {place.where} number {int(np.argmax(bad))} is not differentiable")
+
+
+def pieces(subject: Subject) -> None:
+    """Each piece is a homotopy, and is the map where its signs hold; at a kink all that meet there are."""
+    for place, signs in _met(subject):
+        piece = _piece(subject, place, signs)
+        for name in ("start", "residual"):
+            if not callable(getattr(piece, name, None)):
+                fail(f"piece: {place.where} expected a method `{name}` of the piece, found none")
+        with called("residual of the piece", place.where):
+            found = np.asarray(piece.residual(place.y, place.lam), dtype=float)
+            wanted = np.asarray(subject.homotopy.residual(place.y, place.lam), dtype=float)
+            round_off = _round_off(subject, place, wanted)
+        if found.shape != wanted.shape:
+            fail(f"piece: {place.where} expected a residual of shape {wanted.shape}, found {found.shape}")
+        if not (np.abs(found - wanted) <= SAME * round_off + np.finfo(float).tiny).all():
+            signed = _shown(signs)
+            fail(f"piece: {place.where} the piece {signed} differs from the map by {difference(found, wanted):.3g}")
+
+
+def _round_off(subject: Subject, place: Place, value: Array) -> Array:
+    """What a last place of the largest values along the path makes of the map at a place."""
+    move = np.spacing(np.abs(subject.path.u).max(axis=0)) * np.sign(directions(place.u.size, 1, 29)[0])
+    moves = [LOOK * move, -LOOK * move, LOOK * np.where(np.arange(move.size) % 2, move, -move)]
+    looks = [np.asarray(subject.homotopy.residual((place.u + m)[:-1], float((place.u + m)[-1]))) for m in moves]
+    rounded: Array = np.max([np.abs(look - value) for look in looks], axis=0) / LOOK
+    return rounded
+
+
+def derivatives_of_pieces(subject: Subject) -> None:
+    """What a piece says of its derivatives is right."""
+    for place, signs in _met(subject):
+        piece = Subject(_piece(subject, place, signs))
+        # The piece is asked at this point alone: its own path, and its start, may lie beyond its border.
+        vars(piece)["places"] = (place,)
+        for name in ("jacobian", "differential", "bordered"):
+            if piece.has(name):
+                getattr(derivatives, name)(piece)
+
+
+def _met(subject: Subject) -> list[tuple[Place, Signs]]:
+    """The places with their pieces; and up to three kinks, with the pieces on both sides of each switch."""
+    each = Pieces(subject.homotopy)
+    found = []
+    for place in subject.places:
+        with called("switches", place.where):
+            found.append((place, each.signs(place.u)))
+    for event in subject.path.kinks[:3]:
+        signs = each.signs(event.u)
+        place = Place(f"at the kink at lam = {event.lam:.6g}", event.u)
+        found.append((place, signs))
+        found += [(place, tuple(-s if i == j else s for i, s in enumerate(signs))) for j in event.switches]
+    return found
+
+
+def _piece(subject: Subject, place: Place, signs: Signs) -> Any:
+    with called("piece", place.where):
+        piece = subject.homotopy.piece(np.array(signs))
+        Evaluator(piece, Counts())
+    return piece
+
+
+def _shown(signs: Signs) -> str:
+    return "".join("+" if sign > 0 else "-" for sign in signs[:40]) + ("..." if len(signs) > 40 else "")

@@ -1,0 +1,331 @@
+"""Mixed complementarity with a parameter as a piecewise smooth homotopy: Robinson's normal map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import field, frozen
+
+from continuation import jets
+from continuation.arrays import Array, Matrix
+from continuation.evaluation.derivatives import (
+    by_complex_step,
+    by_differences,
+    by_jets,
+    check_derivative,
+    from_residual,
+)
+from continuation.homotopy import TangentPoint
+from continuation.linear import Banded, BorderedSystem, SingularError, factor_bordered
+from problems.bibliography import ROBINSON
+from problems.lcp.data.bounds import bound_vector, ordered_bounds
+from problems.nonlinear.start_checks import require_callable
+from problems.options import finite, finite_or_none, finite_vector, quiet, real_array
+
+Force = Callable[[Any, Any], Any]
+"""``F(x, lam) -> (n,)``; with plain numpy inside, jets pass through it."""
+
+Slope = Callable[[Array, float], tuple[Matrix, Array]]
+"""``(F_x, F_lam)``: dense, scipy sparse or `Banded`, and a vector."""
+
+
+def _start(x: Any) -> Array:
+    return finite_vector("x0", x)
+
+
+@frozen(eq=False)
+class AffineForce:
+    """F(x, lam) = A x + q + lam d.
+
+    Parameters
+    ----------
+    A : ndarray, scipy sparse array or Banded, shape (n, n)
+    q, d : ndarray, shape (n,)
+    """
+
+    A: Matrix
+    q: Array
+    d: Array
+
+    def __call__(self, x: Any, lam: Any) -> Any:
+        """The value."""
+        return self.A @ x + self.q + lam * self.d
+
+    def slope(self, x: Array, lam: float) -> tuple[Matrix, Array]:
+        """(A, d), wherever."""
+        return self.A, self.d
+
+
+@frozen(eq=False)
+class DerivedSlope:
+    """(F_x, F_lam) from F itself, by the way that was found to suit it at a point; kept by name, to be pickled."""
+
+    F: Force
+    source: str
+    u: Array
+
+    def __call__(self, x: Array, lam: float) -> tuple[Matrix, Array]:
+        """The derivatives at (x, lam)."""
+        if self.source == "differences":
+            return by_differences(self.F, self.u)(x, lam)
+        return (by_jets if self.source == "jets" else by_complex_step)(self.F)(x, lam)
+
+
+@frozen(eq=False, slots=False)
+class NormalMap:
+    """The path lam -> x of: x in [lower, upper], F_i(x, lam) >= 0 at a lower bound, <= 0 at an upper one, else 0.
+
+    The unknown is z, of which x is the projection onto the bounds: H(z, lam) = F(x, lam) + z - x. It is smooth where no
+    z_i is on a bound; the switches are the distances from those. On a piece the bordered systems reduce to the
+    unknowns between their bounds: one factorisation of order |alpha| + 1, of the type that F_x has.
+
+    Parameters
+    ----------
+    F : callable
+        ``F(x, lam) -> (n,)``.
+    jacobian : callable or None
+        ``jacobian(x, lam) -> (F_x, F_lam)``, F_x dense, sparse or `Banded`. None: by truncated Taylor arithmetic for an
+        F in plain numpy, else by differences.
+    x0 : array_like, shape (n,)
+        A solution at `lam0`, or near one.
+    lam0 : float
+    lower, upper : array_like, shape (n,), or float
+        -inf and inf are none; 0 and none where nothing is said.
+    target : float or None, default 0
+        Where the path ends.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If F or its derivative cannot be used at x0, or the bounds do not fit; naming the argument.
+
+    References
+    ----------
+    Robinson, Normal maps induced by linear transformations, Mathematics of Operations Research 17 (1992) 691-714.
+    """
+
+    F: Force
+    jacobian_of_F: Slope | None = field(default=None, alias="jacobian")
+    x0: Array = field(kw_only=True, converter=_start)
+    lam0: float = field(kw_only=True, validator=finite)
+    lower: Any = field(default=0.0, kw_only=True)
+    upper: Any = field(default=None, kw_only=True)
+    target: float | None = field(default=0.0, kw_only=True, validator=finite_or_none)
+    references: ClassVar[tuple[str, ...]] = (ROBINSON,)
+
+    def __attrs_post_init__(self) -> None:
+        n = self.x0.size
+        for name, default in (("lower", -np.inf), ("upper", np.inf)):
+            object.__setattr__(self, name, bound_vector(name, getattr(self, name), n, default))
+        ordered_bounds(self.lower, self.upper)
+        if (self.lower == self.upper).any():
+            i = int(np.argmax(self.lower == self.upper))
+            raise ValueError(f"lower: expected less than upper, found both {self.lower[i]} at index {i}; leave it out")
+        require_callable("F", self.F)
+        x = np.clip(self.x0, self.lower, self.upper)
+        finite_vector("F(x0, lam0)", quiet(self.F)(x, self.lam0))
+        if self.jacobian_of_F is None:
+            source = from_residual(self.F, (x, self.lam0)).source
+            object.__setattr__(self, "jacobian_of_F", DerivedSlope(self.F, source, np.append(x, self.lam0)))
+        assert self.jacobian_of_F is not None
+        require_callable("jacobian", self.jacobian_of_F)
+        check_derivative(quiet(self.jacobian_of_F)(x.copy(), self.lam0), n)
+
+    @classmethod
+    def affine(cls, A: Matrix, q: Any, d: Any, **more: Any) -> NormalMap:
+        """With F(x, lam) = A x + q + lam d, the LCP(q + lam d, A) with any bounds.
+
+        Parameters
+        ----------
+        A : array_like, scipy sparse array or Banded, shape (n, n)
+        q, d : array_like, shape (n,)
+        **more
+            `x0`, `lam0` and the rest.
+        """
+        if not isinstance(A, Banded):
+            A = sp.csc_array(A) if sp.issparse(A) else real_array("A", A)
+        force = AffineForce(A, finite_vector("q", q), finite_vector("d", d))
+        if A.shape != (force.q.size,) * 2 or force.d.shape != force.q.shape:
+            found = f"{A.shape}, {force.q.shape} and {force.d.shape}"
+            raise ValueError(f"A: expected a square matrix, and q and d of its size, found shapes {found}")
+        return cls(force, force.slope, **more)
+
+    @property
+    def problem_class(self) -> str:
+        """What it is for, in words."""
+        return "complementarity problems with a parameter"
+
+    def x(self, z: Array) -> Array:
+        """The solution that z stands for: its projection onto the bounds.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,) or (k, n)
+        """
+        projected: Array = np.clip(z, self.lower, self.upper)
+        return projected
+
+    def start(self) -> tuple[Array, float]:
+        """The z of the start: x - F(x, lam), which is x where that is between its bounds."""
+        x = self.x(self.x0)
+        z = x - np.asarray(self.F(x, self.lam0), dtype=float)
+        return z, self.lam0
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """F(x, lam) + z - x."""
+        x = self.x(y)
+        value: Array = np.asarray(self.F(x, lam), dtype=float) + y - x
+        return value
+
+    def switches(self, y: Any, lam: float) -> Any:
+        """Distances from the lower bounds that there are, then from the upper ones; negative beyond."""
+        below, above = np.isfinite(self.lower), np.isfinite(self.upper)
+        return np.concatenate([y[below] - self.lower[below], self.upper[above] - y[above]])
+
+    def piece(self, signs: Array) -> NormalPiece:
+        """The unknowns whose switch is negative stay on that bound.
+
+        Raises
+        ------
+        ValueError
+            If one is beyond both of its bounds.
+        """
+        below, above = np.isfinite(self.lower), np.isfinite(self.upper)
+        m = int(below.sum())
+        low, high = np.zeros(self.lower.shape, dtype=bool), np.zeros(self.lower.shape, dtype=bool)
+        low[below], high[above] = signs[:m] < 0, signs[m:] < 0
+        if (low & high).any():
+            i = int(np.argmax(low & high))
+            raise ValueError(f"signs: expected an unknown to be beyond one bound at most, found z[{i}] beyond both")
+        clamped = np.where(low, self.lower, np.where(high, self.upper, 0.0))
+        return NormalPiece(self, ~(low | high), clamped)
+
+
+@frozen(eq=False)
+class NormalPiece:
+    """The normal map with some unknowns on their bounds, whose z then is as smooth as the others'."""
+
+    whole: NormalMap
+    free: Any
+    clamped: Array
+
+    def start(self) -> tuple[Array, float]:
+        """That of the map."""
+        return self.whole.start()
+
+    @quiet
+    def residual(self, y: Any, lam: Any) -> Any:
+        """F(x, lam) + z - x, x with some components on bounds."""
+        on = 1.0 * self.free
+        return self.whole.F(y * on + self.clamped, lam) + y * (1.0 - on) - self.clamped
+
+    @quiet
+    def slope(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(F_x, F_lam) at x."""
+        assert self.whole.jacobian_of_F is not None
+        F_x, F_lam = self.whole.jacobian_of_F(np.where(self.free, y, self.clamped), lam)
+        return F_x, np.asarray(F_lam, dtype=float)
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """Columns of F_x for the unknowns between their bounds, of the identity for the others."""
+        F_x, F_lam = self.slope(y, lam)
+        on = 1.0 * self.free
+        if isinstance(F_x, np.ndarray):
+            return F_x * on + np.diag(1.0 - on), F_lam
+        columns = F_x.tosparse() if isinstance(F_x, Banded) else F_x
+        return sp.csc_array(columns @ sp.diags_array(on) + sp.diags_array(1.0 - on)), F_lam
+
+    def differential(self, y: Array, lam: float, v: Array) -> Array:
+        """F_x v_x + F_lam v_lam + v_z - v_x."""
+        F_x, F_lam = self.slope(y, lam)
+        moved = np.where(self.free, v[:-1], 0.0)
+        change: Array = F_x @ moved + F_lam * v[-1] + v[:-1] - moved
+        return change
+
+    def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
+        """Factor the equations of the unknowns between their bounds; the others follow by substitution."""
+        return NormalSystem.of(*self.slope(y, lam), np.asarray(self.free), border)
+
+    def taylor(self, point: TangentPoint, order: int) -> Array:
+        """A straight line for an affine F, else by jets."""
+        if isinstance(self.whole.F, AffineForce):
+            c = np.zeros((order + 1, point.u.size))
+            c[0], c[1] = point.u, point.tangent
+            return c
+        return jets.path_series(self.residual, point.u, point.tangent, point.solve, order)
+
+
+@frozen(eq=False)
+class NormalSystem:
+    """[[F_aa, 0, F_a,lam], [F_ba, I, F_b,lam], [border]], with the rows of b eliminated.
+
+    Rows and columns change their places alike, so that the determinant's sign is that of what is left.
+    """
+
+    inner: BorderedSystem | None
+    corner: float
+    F_x: Matrix
+    F_lam: Array
+    free: Any
+    on_bounds: Array
+
+    @classmethod
+    def of(cls, F_x: Matrix, F_lam: Array, free: Any, border: Array) -> NormalSystem:
+        """Factor; SingularError where that cannot be done."""
+        on_bounds = np.where(free, 0.0, border[:-1])
+        row = border[:-1] - _transposed(F_x, on_bounds)
+        corner = float(border[-1] - on_bounds @ F_lam)
+        if not np.isfinite(F_lam).all():
+            raise SingularError("the derivative is not finite")
+        alpha = np.flatnonzero(free)
+        if not alpha.size:
+            if not abs(corner) > 0.0:
+                raise SingularError("the bordered matrix is singular")
+            return cls(None, corner, F_x, F_lam, free, on_bounds)
+        inner = factor_bordered(_principal(F_x, alpha), F_lam[alpha], np.append(row[alpha], corner))
+        return cls(inner, corner, F_x, F_lam, free, on_bounds)
+
+    @property
+    def sign(self) -> int:
+        """Of the determinant."""
+        return self.inner.sign if self.inner is not None else int(np.sign(self.corner))
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The unknowns between their bounds and the parameter first, then the others."""
+        rest = rho - float(self.on_bounds @ r)
+        z = np.zeros(r.size + 1)
+        if self.inner is None:
+            z[-1] = rest / self.corner
+        else:
+            found = self.inner.solve(r[self.free], rest)
+            z[:-1][self.free], z[-1] = found[:-1], found[-1]
+        others = r - self.F_x @ z[:-1] - self.F_lam * z[-1]
+        z[:-1][~self.free] = others[~self.free]
+        return z
+
+
+def _transposed(F_x: Matrix, c: Array) -> Array:
+    """F_x' c."""
+    row: Array = (F_x.tosparse() if isinstance(F_x, Banded) else F_x).T @ c
+    return row
+
+
+def _principal(F_x: Matrix, alpha: Any) -> Matrix:
+    """F_aa, of the same type."""
+    if alpha.size == F_x.shape[0]:
+        return F_x
+    if isinstance(F_x, np.ndarray):
+        return F_x[np.ix_(alpha, alpha)]
+    if not isinstance(F_x, Banded):
+        return sp.csc_array(sp.csr_array(F_x)[alpha][:, alpha])
+    # What is left between two rows brings them nearer: the band is no wider.
+    kept = sp.coo_array(F_x.tosparse().tocsr()[alpha][:, alpha])
+    rows, columns = kept.coords
+    ab = np.zeros((F_x.lower + F_x.upper + 1, alpha.size))
+    ab[F_x.upper + rows - columns, columns] = kept.data
+    return Banded(ab, F_x.lower, F_x.upper)
+

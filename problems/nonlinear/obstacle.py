@@ -1,0 +1,62 @@
+"""Bratu's problem under an obstacle: a fold that turns into a kink."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.linear import Banded
+from problems.bifurcation import Bratu1D
+from problems.nonlinear.normal_map import NormalMap
+
+
+@frozen
+class BratuForce:
+    """-(u'' + lam e^u), times h^2: what an obstacle that holds u has to bear, if it is negative."""
+
+    bratu: Bratu1D
+
+    def __call__(self, x: Any, lam: Any) -> Any:
+        """The value at all interior points."""
+        return -self.bratu.residual(x, lam)
+
+    def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
+        """Tridiagonal, and shape (n,)."""
+        H_y, H_lam = self.bratu.jacobian(x, lam)
+        return Banded(-H_y.ab, 1, 1), -H_lam
+
+
+def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0.0) -> NormalMap:
+    """Bratu's u'' + lam e^u = 0 on (0, 1) with u <= psi, by second-order differences, from u = 0 at lam = 0.
+
+    Where psi is more than 1.1868421686, the maximum of u in the fold, the path comes to the obstacle behind the fold,
+    on its way back, at lam_c = 8 exp(-psi) arccosh(exp(psi/2))^2. It turns there a second time, in a kink, and lam
+    grows from then on, while u rests on the obstacle between a(lam) and 1 - a(lam),
+    a = sqrt(2/lam) exp(-psi/2) arccosh(exp(psi/2)). For a smaller psi there is no fold.
+
+    Parameters
+    ----------
+    n : int
+        Number of interior points, and of unknowns.
+    psi : float
+        Positive.
+    target : float or None
+        Where the path ends, if it comes there.
+
+    Returns
+    -------
+    NormalMap
+        Its unknown is z; ``x(z)`` gives u.
+
+    Raises
+    ------
+    ValueError
+        If psi is not positive.
+    """
+    if not psi > 0.0:
+        raise ValueError(f"psi: expected a positive number, found {psi!r}")
+    force = BratuForce(Bratu1D(n))
+    return NormalMap(force, force.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=psi, target=target)

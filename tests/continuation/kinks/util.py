@@ -1,0 +1,130 @@
+"""Piecewise linear maps with exact answers: A u + b + sum_j c_j |g_j u + d_j|, with integer data."""
+
+from fractions import Fraction
+from itertools import product
+
+import attrs
+import numpy as np
+
+
+def whole(rows):
+    """A matrix of integers."""
+    return tuple(tuple(int(x) for x in row) for row in rows)
+
+
+@attrs.frozen
+class Piece:
+    """The map on a piece, (A + C S G) u + b + C S d."""
+
+    H: np.ndarray
+    b: np.ndarray
+    at: tuple
+
+    def start(self):
+        return np.array(self.at[:-1], dtype=float), float(self.at[-1])
+
+    def residual(self, y, lam):
+        return self.H[:, :-1] @ y + self.H[:, -1] * lam + self.b
+
+    def jacobian(self, y, lam):
+        return self.H[:, :-1], self.H[:, -1]
+
+
+@attrs.frozen
+class Folded:
+    """The map: `A`, `C` (N rows), `G` (m rows) and `b`, `d` of integers; `at` is a point on its path."""
+
+    A: tuple
+    C: tuple
+    G: tuple
+    b: tuple
+    d: tuple
+    at: tuple
+    target: float | None = None
+
+    @classmethod
+    def random(cls, generator, n, m, cone=False):
+        """With a path through the origin's neighbour `at`; or a cone, every switch of which vanishes at 0."""
+        draw = lambda *shape: generator.integers(-3, 4, shape)  # noqa: E731
+        A, C, G, d, at = draw(n, n + 1), draw(n, m), draw(m, n + 1), draw(m), draw(n + 1)
+        if cone:
+            d, at = 0 * d, 0 * at
+        b = -(A @ at + C @ np.abs(G @ at + d))
+        return cls(whole(A), whole(C), whole(G), *(tuple(map(int, x)) for x in (b, d, at)))
+
+    def start(self):
+        return np.array(self.at[:-1], dtype=float), float(self.at[-1])
+
+    def residual(self, y, lam):
+        u = np.append(y, lam)
+        return np.array(self.A) @ u + np.array(self.b) + np.array(self.C) @ np.abs(np.array(self.G) @ u + self.d)
+
+    def switches(self, y, lam):
+        G = np.array(self.G, dtype=float)
+        return G[:, :-1] @ y + G[:, -1] * lam + np.array(self.d)
+
+    def piece(self, signs):
+        CS = np.array(self.C) * signs
+        return Piece(np.array(self.A) + CS @ np.array(self.G) + 0.0, np.array(self.b) + CS @ np.array(self.d), self.at)
+
+    # -- exactly ----------------------------------------------------------------------------------------------
+
+    def kernel(self, signs):
+        """The kernel of a piece as integers, by minors; all zero where it has more dimensions than one."""
+        A, C, G = (np.array(x, dtype=object) for x in (self.A, self.C, self.G))
+        H = A + (C * np.array(signs, dtype=object)) @ G
+        n = len(H)
+        return [(-1) ** k * determinant([[row[j] for j in range(n + 1) if j != k] for row in H]) for k in range(n + 1)]
+
+    def values(self, u):
+        """The switches at a point of fractions."""
+        return [sum(g * x for g, x in zip(row, u)) + d for row, d in zip(self.G, self.d)]
+
+    def slopes(self, v):
+        """Their derivatives."""
+        return [sum(g * x for g, x in zip(row, v)) for row in self.G]
+
+    def rays(self, u):
+        """All rays that leave a point, each with the signs of a piece that it lies in; None where they are no lines."""
+        values, found = self.values(u), {}
+        for signs in product((1, -1), repeat=len(values)):
+            if any(value * sign < 0 for value, sign in zip(values, signs)):
+                continue
+            v = self.kernel(signs)
+            if not any(v):
+                return None
+            for w in (v, [-x for x in v]):
+                if all(value or slope * sign >= 0 for value, slope, sign in zip(values, self.slopes(w), signs)):
+                    size = sum(abs(x) for x in w)
+                    found.setdefault(tuple(Fraction(x, size) for x in w), signs)
+        return found
+
+    def kinks(self, u, v, most):
+        """The path from u along v, kink by kink, up to where it is no simple one any more, or comes again."""
+        met = []
+        while len(met) < most:
+            at = [Fraction(-value) / slope for value, slope in zip(self.values(u), self.slopes(v)) if slope]
+            t = min((t for t in at if t > 0), default=None)
+            if t is None:
+                break
+            u = [x + t * w for x, w in zip(u, v)]
+            if u in met:
+                break
+            met.append(u)
+            rays = self.rays(u)
+            if rays is None or len(rays) != 2 or sum(value == 0 for value in self.values(u)) > 1:
+                break
+            size = sum(abs(x) for x in v)
+            v = next(list(ray) for ray in rays if list(ray) != [Fraction(-x) / size for x in v])
+        return met
+
+
+def determinant(rows):
+    """By the first row; matrices here have three rows at most."""
+    if not rows:
+        return 1
+    return sum(
+        (-1) ** k * entry * determinant([row[:k] + row[k + 1 :] for row in rows[1:]])
+        for k, entry in enumerate(rows[0])
+        if entry
+    )
