@@ -37,8 +37,9 @@ LABELS = (0, -1)
 """One of each player: where a path from one is long those from the others are (covariant games of order 300)."""
 
 GAME_WORK = 1_000_000_000
-"""Entries of its table that a path of a game goes through, with twice the pivots of the path before each time. Covariant
-games (rho = -.9) of order 300 take 5,000 to 17,000 pivots, 0.15 to 0.6 s; by other paths 2 s, and one in three fails."""
+"""Entries of its table that a path of a game goes through at most; its pivots are doubled, label by label, up to there.
+Covariant games (rho = -.9) of order 300 take 5,000 to 17,000 pivots, 0.15 to 0.6 s; by other paths 2 s, where these
+arrive, which is in two of three."""
 
 AT_END = Policy(steps=2)
 """Corrections of the active set of the last basis, which is right but for rounding."""
