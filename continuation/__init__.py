@@ -16,6 +16,7 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.events.branch_point import BranchPoint
 from continuation.homotopy import Homotopy
+from continuation.kinks.start import kink_rays
 from continuation.metric import Automatic, Euclidean, Metric
 from continuation.path import LocatedEvent, Path, Step
 from continuation.predictors import Predictor
@@ -67,6 +68,7 @@ __all__ = [
     "check_jacobian",
     "cite",
     "from_functions",
+    "kink_rays",
     "refine",
     "switch_branch",
     "trace",

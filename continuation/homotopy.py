@@ -249,6 +249,11 @@ class SupportsPieces(Protocol):
         ----------
         signs : ndarray of int, shape (m,)
             Each of them -1 or +1.
+
+        Raises
+        ------
+        ValueError
+            If such signs cannot hold together anywhere: then there is no such piece.
         """
         ...
 

@@ -6,6 +6,7 @@ from continuation.arrays import Array
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.metric import inner, norm
 from continuation.point.arc import Arc
+from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 
@@ -13,8 +14,19 @@ SAME_POINT = 1e3
 """How far apart two points of one path may be, in tolerances, that are one: both were corrected to the tolerance, in
 planes and metrics of their own, and a condition of a thousand is ordinary."""
 
+PARALLEL = 1e-3
+"""How far apart the unit tangents of one branch may be, for points that are as far apart as that."""
+
 NEAR = 0.5
 """How near an arc must pass to be looked at, in its lengths: half a step is far more than a segment errs."""
+
+
+def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
+    """Whether a path that began in a kink leaves it again by the branch on which it began."""
+    if solver.tolerance.measure(point.u - origin.u, point.weights) > SAME_POINT:
+        return False
+    v = origin.tangent / norm(point.weights, origin.tangent)
+    return norm(point.weights, point.tangent - v) <= PARALLEL
 
 
 def passes_start(solver: PathSolver, origin: Knot, weights: Array, arc: Arc) -> bool:

@@ -74,6 +74,14 @@ class Pieces:
             self._made[signs] = self.homotopy.piece(np.array(signs))
         return self._made[signs]
 
+    def exists(self, signs: Signs) -> bool:
+        """Whether there is a piece of these signs."""
+        try:
+            self.piece(signs)
+        except ValueError:
+            return False
+        return True
+
     def along(self, u: Array, v: Array) -> Array:
         """Derivatives of the switches at u along v, shape (m,): by jets, or by differences where jets will not do.
 

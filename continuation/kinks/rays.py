@@ -105,6 +105,8 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
     weights = corner.point.weights
     for taus in product((1, -1), repeat=len(corner.beta)):
         signs = corner.signs_with(taus)
+        if not corner.pieces.exists(signs):
+            continue
         for v, tilts in family.kernel(signs, taus):
             along = np.array(taus) * tilts / family.sizes
             unit = v / norm(weights, v)
@@ -147,7 +149,11 @@ class _Family:
         own = [family.applied(corner.signs, r) for r in R]
         if any(image is None for image in own):
             return family
-        columns = [family.column(k, np.array(own)) for k in range(b)]
+        flips = [corner.signs_with([-corner.signs[j] if j == k else corner.signs[j] for j in corner.beta])
+                 for k in corner.beta]
+        if not all(corner.pieces.exists(signs) for signs in flips):
+            return family
+        columns = [family.column(k, flips[k], np.array(own)) for k in range(b)]
         Z = np.array([point.solve(c) for c in columns])
         return cls(
             corner, sizes, R, GR, family.tilts, np.array(columns), Z, np.array([corner.tilts(z) for z in Z]).T
@@ -158,11 +164,10 @@ class _Family:
         apply = self.corner.on(signs).differential(self.corner.point.u)
         return None if apply is None else apply(r)
 
-    def column(self, k: int, own: Array) -> Array:
+    def column(self, k: int, signs: Signs, own: Array) -> Array:
         """The c of the piece that differs in the k-th switch alone: the derivatives differ by c grad s_k."""
         corner = self.corner
-        flips = [-corner.signs[j] if i == k else corner.signs[j] for i, j in enumerate(corner.beta)]
-        change = np.array([self.applied(corner.signs_with(flips), r) for r in self.R]) - own
+        change = np.array([self.applied(signs, r) for r in self.R]) - own
         c: Array = self.GR[k] @ change / float(self.GR[k] @ self.GR[k])
         left = float(np.abs(change - np.outer(self.GR[k], c)).max())
         if left > RANK_ONE * max(float(np.abs(change).max()), float(np.abs(own).max())):

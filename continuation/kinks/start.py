@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from continuation.arrays import Array
@@ -103,7 +105,7 @@ def _signs_beside(pieces: Pieces, u: Array, v: Array) -> Signs:
     return pieces.signs(u + v * (BESIDE * (float(np.abs(u).max()) or 1.0) / float(np.abs(v).max())))
 
 
-def rays(homotopy: object, u: Array) -> Array:
+def kink_rays(homotopy: Any, u: Array) -> Array:
     """All branches of a piecewise smooth map that leave a point of its path, as unit directions.
 
     Parameters

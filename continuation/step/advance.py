@@ -34,9 +34,9 @@ from continuation.step.stepper import Arrival, Attempt, Stepper
 from continuation.step.verdict import (
     Verdict,
     arc_ended,
+    behind_kink,
     budget_spent,
     no_step_left,
-    no_way_on,
     predictor_failed,
     singular_end,
 )
@@ -250,7 +250,7 @@ class Advance:
         event = accepted.events[-1].name if accepted.events else ""
         verdict = arc_ended(ending, infinity, event)
         if accepted.crossing is not None and verdict is None:
-            verdict = no_way_on(accepted.crossing)
+            verdict = behind_kink(accepted.crossing, self.solver, state.origin)
             if self.pieces is not None and accepted.crossing.onward is not None:
                 moved, state = self._behind(self.pieces, accepted.crossing, accepted.crossing.onward, moved, state)
         return Moved(moved, step, state, accepted.events, verdict)

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from attrs import frozen
 
+from continuation.ends.closed_curve import same_ray
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import ArcEnd, EndsAt
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.kinks.crossing import Crossing
+from continuation.point.projection import PathSolver
+from continuation.predictors import Knot
 from continuation.rejection import Rejected
 from continuation.status import Status
 from continuation.step.start import SingularStartError, StartError
@@ -114,9 +117,9 @@ def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
     return Verdict(Status.DIVERGED, infinity) if infinity else None
 
 
-def no_way_on(kink: Crossing) -> Verdict | None:
-    """The path ends in a kink: no branch leaves it, or which one does could not be told."""
+def behind_kink(kink: Crossing, solver: PathSolver, origin: Knot) -> Verdict | None:
+    """The path ends in a kink: it began there, no branch leaves it, or which one does could not be told."""
     if kink.onward is not None:
-        return None
+        return Verdict(Status.CLOSED) if same_ray(solver, origin, kink.onward) else None
     where = f"Switches that vanish there: {', '.join(map(str, kink.switches))}."
     return Verdict(Status.UNRESOLVED_KINK if kink.reason else Status.DEAD_END, f"{where} {kink.reason}".rstrip())

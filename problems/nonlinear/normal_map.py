@@ -94,6 +94,9 @@ class NormalMap:
     lam0 : float
     lower, upper : array_like, shape (n,), or float
         -inf and inf are none; 0 and none where nothing is said.
+    lower_rate, upper_rate : array_like, shape (n,), or float
+        How fast the bounds move: they are lower + lam * lower_rate and upper + lam * upper_rate, as the bounds on
+        friction under a load lam, or on the correlations of a lasso with the penalty lam. 0 where nothing is said.
     target : float or None, default 0
         Where the path ends.
 
@@ -113,6 +116,8 @@ class NormalMap:
     lam0: float = field(kw_only=True, validator=finite)
     lower: Any = field(default=0.0, kw_only=True)
     upper: Any = field(default=None, kw_only=True)
+    lower_rate: Any = field(default=0.0, kw_only=True)
+    upper_rate: Any = field(default=0.0, kw_only=True)
     target: float | None = field(default=0.0, kw_only=True, validator=finite_or_none)
     references: ClassVar[tuple[str, ...]] = (ROBINSON,)
 
@@ -120,12 +125,15 @@ class NormalMap:
         n = self.x0.size
         for name, default in (("lower", -np.inf), ("upper", np.inf)):
             object.__setattr__(self, name, bound_vector(name, getattr(self, name), n, default))
-        ordered_bounds(self.lower, self.upper)
-        if (self.lower == self.upper).any():
-            i = int(np.argmax(self.lower == self.upper))
-            raise ValueError(f"lower: expected less than upper, found both {self.lower[i]} at index {i}; leave it out")
+            rate = bound_vector(f"{name}_rate", getattr(self, f"{name}_rate"), n, np.inf)
+            object.__setattr__(self, f"{name}_rate", finite_vector(f"{name}_rate", rate))
+        lower, upper = self.bounds(self.lam0)
+        ordered_bounds(lower, upper)
+        if (lower == upper).any():
+            i = int(np.argmax(lower == upper))
+            raise ValueError(f"lower: expected less than upper, found both {lower[i]} at index {i}; leave it out")
         require_callable("F", self.F)
-        x = np.clip(self.x0, self.lower, self.upper)
+        x = np.clip(self.x0, lower, upper)
         finite_vector("F(x0, lam0)", quiet(self.F)(x, self.lam0))
         if self.jacobian_of_F is None:
             source = from_residual(self.F, (x, self.lam0)).source
@@ -158,33 +166,46 @@ class NormalMap:
         """What it is for, in words."""
         return "complementarity problems with a parameter"
 
-    def x(self, z: Array) -> Array:
+    def bounds(self, lam: float) -> tuple[Array, Array]:
+        """The lower and the upper bounds at a value of the parameter.
+
+        Parameters
+        ----------
+        lam : float
+        """
+        return self.lower + lam * self.lower_rate, self.upper + lam * self.upper_rate
+
+    def x(self, z: Array, lam: float = 0.0) -> Array:
         """The solution that z stands for: its projection onto the bounds.
 
         Parameters
         ----------
-        z : ndarray, shape (n,) or (k, n)
+        z : ndarray, shape (n,)
+        lam : float
+            Of no account where the bounds stand still.
         """
-        projected: Array = np.clip(z, self.lower, self.upper)
+        projected: Array = np.clip(z, *self.bounds(lam))
         return projected
 
     def start(self) -> tuple[Array, float]:
         """The z of the start: x - F(x, lam), which is x where that is between its bounds."""
-        x = self.x(self.x0)
+        x = self.x(self.x0, self.lam0)
         z = x - np.asarray(self.F(x, self.lam0), dtype=float)
         return z, self.lam0
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """F(x, lam) + z - x."""
-        x = self.x(y)
+        x = self.x(y, lam)
         value: Array = np.asarray(self.F(x, lam), dtype=float) + y - x
         return value
 
     def switches(self, y: Any, lam: float) -> Any:
         """Distances from the lower bounds that there are, then from the upper ones; negative beyond."""
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
-        return np.concatenate([y[below] - self.lower[below], self.upper[above] - y[above]])
+        lower = self.lower[below] + lam * self.lower_rate[below]
+        upper = self.upper[above] + lam * self.upper_rate[above]
+        return np.concatenate([y[below] - lower, upper - y[above]])
 
     def piece(self, signs: Array) -> NormalPiece:
         """The unknowns whose switch is negative stay on that bound.
@@ -202,16 +223,18 @@ class NormalMap:
             i = int(np.argmax(low & high))
             raise ValueError(f"signs: expected an unknown to be beyond one bound at most, found z[{i}] beyond both")
         clamped = np.where(low, self.lower, np.where(high, self.upper, 0.0))
-        return NormalPiece(self, ~(low | high), clamped)
+        moving = np.where(low, self.lower_rate, np.where(high, self.upper_rate, 0.0))
+        return NormalPiece(self, ~(low | high), clamped, moving)
 
 
 @frozen(eq=False)
 class NormalPiece:
-    """The normal map with some unknowns on their bounds, whose z then is as smooth as the others'."""
+    """The normal map with some unknowns on their bounds, clamped + lam * moving."""
 
     whole: NormalMap
     free: Any
     clamped: Array
+    moving: Array
 
     def start(self) -> tuple[Array, float]:
         """That of the map."""
@@ -220,15 +243,16 @@ class NormalPiece:
     @quiet
     def residual(self, y: Any, lam: Any) -> Any:
         """F(x, lam) + z - x, x with some components on bounds."""
-        on = 1.0 * self.free
-        return self.whole.F(y * on + self.clamped, lam) + y * (1.0 - on) - self.clamped
+        on, held = 1.0 * self.free, self.clamped + lam * self.moving
+        return self.whole.F(y * on + held, lam) + y * (1.0 - on) - held
 
     @quiet
     def slope(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(F_x, F_lam) at x."""
+        """F_x at x, and the derivative of the map by lam."""
         assert self.whole.jacobian_of_F is not None
-        F_x, F_lam = self.whole.jacobian_of_F(np.where(self.free, y, self.clamped), lam)
-        return F_x, np.asarray(F_lam, dtype=float)
+        F_x, F_lam = self.whole.jacobian_of_F(np.where(self.free, y, self.clamped + lam * self.moving), lam)
+        column = np.asarray(F_lam, dtype=float)
+        return F_x, column + F_x @ self.moving - self.moving if self.moving.any() else column
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """Columns of F_x for the unknowns between their bounds, of the identity for the others."""

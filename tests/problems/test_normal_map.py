@@ -234,3 +234,51 @@ def test_bad_affine_data_are_named():
         NormalMap.affine(np.eye(2), [1.0], [1.0], x0=[0.0], lam0=0.0)
     with pytest.raises(ValueError, match="psi: expected a positive number"):
         bratu_under_obstacle(9, -1.0)
+
+
+def mairal_and_yu(p):
+    """Their lasso with p variables, whose path has (3^p - 1) / 2 kinks, grown by one row and column at a time."""
+    X, y = np.ones((1, 1)), np.ones(1)
+    while X.shape[1] < p:
+        t = min(kink.lam for kink in lasso_path(X, y).kinks)
+        a = t / (2.0 * (2.0 * y @ y + 1.0))
+        X = np.block([[X, 2.0 * a * y[:, None]], [np.zeros((1, X.shape[1])), np.full((1, 1), a)]])
+        y = np.append(y, 1.0)
+    return X, y
+
+
+def lasso_path(X, y):
+    """min |X b - y|^2 / 2 + lam |b|_1 as a path of the correlations w = X'(y - X b), which are held at +-lam."""
+    inverse, Xy = np.linalg.inv(X.T @ X), X.T @ y
+    top = 1.1 * float(np.abs(Xy).max())
+    n = Xy.size
+    problem = NormalMap.affine(
+        inverse, -inverse @ Xy, np.zeros(n), x0=Xy, lam0=top,
+        lower=0.0, upper=0.0, lower_rate=-1.0, upper_rate=1.0, target=0.0,
+    )  # fmt: skip
+    return trace(problem)
+
+
+@pytest.mark.parametrize("p", [1, 2, 3, 4])
+def test_a_lasso_as_bounds_that_move(p):
+    X, y = mairal_and_yu(p)
+    path = lasso_path(X, y)
+    assert path.status is Status.REACHED_TARGET
+    assert len([kink for kink in path.kinks if kink.lam > 1e-12]) == (3**p - 1) // 2
+    for step in path.steps[1:-1]:
+        w = np.clip(step.y, -step.lam, step.lam)
+        b = np.linalg.solve(X.T @ X, X.T @ y - w)
+        assert np.abs(w).max() <= step.lam
+        # X'X has a condition of 1e6 for p = 4, and b is computed with it here.
+        assert abs(w @ b - step.lam * np.abs(b).sum()) < 1e-10
+
+
+def test_friction_slips_when_the_bound_is_reached():
+    # A block on a spring of stiffness 1, pulled by 2 lam, with friction at most 1 + lam: it slips from lam = 1 on.
+    block = NormalMap.affine(
+        [[1.0]], [0.0], [-2.0], x0=[0.0], lam0=0.0, lower=-1.0, upper=1.0, lower_rate=-1.0, upper_rate=1.0, target=3.0
+    )
+    path = trace(block)
+    (kink,) = path.kinks
+    assert kink.lam == pytest.approx(1.0, rel=1e-15)
+    assert block.x(path.endpoint.y, path.endpoint.lam)[0] == pytest.approx(4.0, rel=1e-15)

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from continuation import Monitor, Status, trace
+from continuation import kink_rays as rays
 from continuation.kinks.rays import UnresolvedError
-from continuation.kinks.start import rays
 
 from .util import Folded
 

@@ -19,9 +19,10 @@ from continuation import (
     switch_branch,
     trace,
 )
+from continuation import kink_rays as rays
 from continuation.archive import PathLog, open_archive, resume
 from continuation.evaluation.pieces import Pieces
-from continuation.kinks.start import rays
+from continuation.linear import factor_bordered
 from continuation.testing import CheckFailure, check_homotopy
 
 from ...util import every_preset
@@ -303,10 +304,18 @@ def test_ten_switches_that_vanish_together():
     assert abs(path.endpoint.y[0] - 1.0 / (10.0 + weights.sum())) < 1e-15
 
 
+SQUARE = Joined(lambda a, b: lambda y, lam: a * y + b * lam - 1.0, lambda y, lam: np.append(y, lam), (0.5, 0.5))
+
+
+def test_a_closed_curve_that_begins_in_a_kink():
+    path = trace(attrs.evolve(SQUARE, at=(1.0, 0.0)), direction=1)
+    assert path.status is Status.CLOSED
+    assert [kink.name for kink in path.kinks] == ["turning kink", "kink", "turning kink", "kink"]
+    assert np.abs(path.endpoint.u - [1.0, 0.0]).max() < 1e-14
+
+
 def test_a_closed_curve_of_four_lines():
-    square = Joined(
-        lambda a, b: lambda y, lam: a * y + b * lam - 1.0, lambda y, lam: np.append(y, lam), (0.5, 0.5), target=None
-    )
+    square = SQUARE
     path = trace(square)
     assert path.status is Status.CLOSED
     assert sorted(tuple(np.round(kink.u, 12)) for kink in path.kinks) == [(-1, 0), (0, -1), (0, 1), (1, 0)]
@@ -335,3 +344,63 @@ def test_jets_and_differences_give_the_derivatives_of_switches():
 
 def test_smooth_homotopies_have_no_event_for_kinks():
     assert continuation.Tracer(CubicPiece(1)).settings.kink_index is None
+
+
+@attrs.frozen
+class Largest:
+    """max(a, b, c) = 0 for three linear functions of (y, lam): pieces by order, some of which there are not."""
+
+    rows: tuple = ((1.0, 1.0), (-1.0, 1.0), (1.5, 0.5))
+    hidden: tuple = ()
+    target: float | None = None
+
+    def start(self):
+        return np.array([1.0]), -3.0
+
+    def parts(self, y, lam):
+        return [a * y[0] + b * lam for a, b in self.rows]
+
+    def residual(self, y, lam):
+        return np.array([max(self.parts(y, lam))])
+
+    def switches(self, y, lam):
+        p, q, r = self.parts(y, lam)
+        return np.stack([p - q, q - r, r - p])
+
+    def piece(self, signs):
+        if abs(signs.sum()) == 3:
+            raise ValueError("signs: expected an order, found a circle")
+        # The largest is the one that neither of its two switches puts below another.
+        k = next(k for k in range(3) if signs[k] > 0 > signs[k - 1])
+        return Row(self.rows[k], "differential" not in self.hidden)
+
+
+class Row:
+    """One of them, with factors of its own, and with a differential or without."""
+
+    def __init__(self, row, differential):
+        self.row = np.array(row)
+        if differential:
+            self.differential = lambda y, lam, v: np.array([self.row @ v])
+
+    def start(self):
+        return np.array([1.0]), -3.0
+
+    def residual(self, y, lam):
+        return np.array([self.row @ np.append(y, lam)])
+
+    def bordered(self, y, lam, border):
+        return factor_bordered(self.row[None, :1], self.row[1:], border)
+
+
+@pytest.mark.parametrize("hidden", [(), ("differential",)], ids=["applied", "factored only"])
+def test_pieces_that_are_not_there_are_left_out(hidden):
+    largest = Largest(hidden=hidden)
+    path = trace(largest, direction=1, events=[OFF])
+    (kink,) = path.kinks
+    assert kink.switches == (0, 1, 2)
+    assert len(kink.rays) == 2
+    for ray in kink.rays:
+        parts = largest.parts(ray[:1], ray[1])
+        assert abs(max(parts)) < 1e-14
+    assert path.status is Status.STOPPED_AT_EVENT

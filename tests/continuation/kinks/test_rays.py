@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from continuation import kink_rays as rays
 from continuation.kinks.rays import UnresolvedError
-from continuation.kinks.start import rays
 
 from .util import Folded
 
