@@ -12,6 +12,7 @@ from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import Basis, SingularBasisError
 from problems.lcp.parametric.corner import FEW, LARGEST_LISTED, a_solution, rays
 from problems.lcp.parametric.stairs import Stairs
+from problems.lcp.parametric.ties import aim, small
 from problems.lcp.parametric.walk import FLAT, Walk
 
 
@@ -114,7 +115,7 @@ def from_solution(
     walk.locate()
     walk.find_tied()
     if walk.tied.size:
-        S, r, along = walk.small()
+        S, r, along = small(walk)
         if walk.tied.size > LARGEST_LISTED:
             grown = a_solution(S, r)
             if grown is None:
@@ -129,7 +130,7 @@ def from_solution(
             best = int(np.argmax(wanted))
             switched, chosen = found[best].grown > 0.0, directions[best]
         walk.switch_tied(switched)
-        walk.aim(chosen)
+        aim(walk, chosen)
         return walk
     if ray is not None and walk.u[1] @ ray < 0.0:
         walk.sign = -walk.sign
@@ -159,5 +160,5 @@ def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) ->
     if _agreement(kernel, ray, sign) < 0.0:
         kernel = -kernel
     walk.u = np.array([np.append(x, t), kernel])
-    walk.aim(kernel)
+    aim(walk, kernel)
     return walk

@@ -15,7 +15,8 @@ from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import State
 from problems.lcp.parametric.basis import SingularBasisError
-from problems.lcp.parametric.walk import Corner, Left, Walk
+from problems.lcp.parametric.ties import Corner, snap, turn
+from problems.lcp.parametric.walk import Left, Walk
 
 SAME = 1e-9
 """Two unit directions, or two points relative to their size, that differ by less are the same."""
@@ -61,7 +62,7 @@ class Trail:
             if not _located(walk):
                 return Status.UNRESOLVED_KINK, "Rounding has led off the path: its last piece does not hold its end."
             if corner is not None and len(corner.switches) > 1:
-                walk.snap(corner.switches)
+                snap(walk, corner.switches)
             u, direction = walk.u * self.units
             if walk.still:
                 direction[-1] = 0.0
@@ -82,7 +83,7 @@ class Trail:
                 return Status.BUDGET_EXHAUSTED, f"The budget is used up ({spent}) at t = {walk.t:g}."
             t = walk.t if walk.still else walk.t + step * walk.dt
             try:
-                corner = walk.turn()
+                corner = turn(walk)
             except SingularBasisError:
                 corner = None
             if corner is None:
@@ -184,7 +185,7 @@ def state_at(walk: Walk, last: float, most: int) -> State | None:
         if left is Left.RAY:
             return None
         try:
-            if walk.turn() is None:
+            if turn(walk) is None:
                 return None
         except SingularBasisError:
             return None

@@ -5,13 +5,12 @@ from __future__ import annotations
 from enum import Enum
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import define, field
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, largest
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import Basis
-from problems.lcp.parametric.corner import LARGEST_LISTED, Ray, rays, way
 from problems.lcp.parametric.stairs import Stairs
 
 FLAT = 1e-11
@@ -27,9 +26,6 @@ ROUND_OFF = 1e-14
 NOISE = 1e-15
 """A few units in the last place: a rate of t below what these make of it is zero, and t stands still."""
 
-AIMED = 1e-5
-"""Of a direction's largest component: t drives if it moves by more."""
-
 SLOW = 1e-6
 """Whether a rate of t is rounding is looked at where it is this much smaller than the largest."""
 
@@ -42,25 +38,6 @@ class Left(Enum):
 
     CORNER = "a switch vanishes"
     RAY = "nothing stops it"
-
-
-@frozen(eq=False)
-class Corner:
-    """What happened at a corner.
-
-    Attributes
-    ----------
-    switches : tuple of int
-        The indices of the pairs at a corner of their graphs.
-    directions : list of Array of shape (n + 1,)
-        Of all rays, where several switches vanish, and not too many.
-    dead : bool
-        Whether none leaves but the one that was come on.
-    """
-
-    switches: tuple[int, ...]
-    directions: list[Array]
-    dead: bool = False
 
 
 @define(eq=False)
@@ -96,7 +73,15 @@ class Walk:
     gaps, rates : Array of shape (2, n)
         How far all that moves is from its lower limits, and from its upper ones, and how fast that grows.
     tied : ndarray of int
-        The pairs at the next corner.
+        The pairs at the next corner, and in `low` whether at their lower limit.
+    limits, slopes : Array of shape (2, n)
+        The limits of all that moves at t = 0, and how they move with t: None if none does.
+    dy, scale, terms : Array
+        How all that moves does so; the largest number of u and of its rate; the sizes of the entries of each row.
+    step : float
+        How far the driver goes to the next corner.
+    degenerate : bool
+        Whether several switches have vanished at once before.
     """
 
     problem: MixedLCP
@@ -118,16 +103,16 @@ class Walk:
     gaps: Array = field(init=False)
     rates: Array = field(init=False)
     tied: NDArray[np.intp] = field(init=False)
-    _low: NDArray[np.bool_] = field(init=False)
-    _limits: Array = field(init=False)
-    _slopes: Array | None = field(init=False)
+    low: NDArray[np.bool_] = field(init=False)
+    limits: Array = field(init=False)
+    slopes: Array | None = field(init=False)
     _fixed: Array = field(init=False)
-    _row: Array = field(init=False)
+    terms: Array = field(init=False)
     _constant: Array = field(init=False)
-    _dy: Array = field(init=False)
-    _scale: list[float] = field(init=False)
-    _step: float = field(init=False, default=0.0)
-    _degenerate: bool = field(init=False, default=False)
+    dy: Array = field(init=False)
+    scale: list[float] = field(init=False)
+    step: float = field(init=False, default=0.0)
+    degenerate: bool = field(init=False, default=False)
 
     def __attrs_post_init__(self) -> None:
         every = np.arange(self.problem.n)
@@ -135,12 +120,12 @@ class Walk:
         stairs = self.stairs
         self.moves_x = stairs.moves_x[row, every]
         self._fixed = stairs.fixed[row, every]
-        self._limits = np.array([stairs.least[row, every], stairs.most[row, every]])
+        self.limits = np.array([stairs.least[row, every], stairs.most[row, every]])
         slopes = np.array([stairs.least_slope[row, every], stairs.most_slope[row, every]])
-        self._slopes = slopes if stairs.levels.any() else None
+        self.slopes = slopes if stairs.levels.any() else None
         self.fixed_part = self.problem.q + self.matrix @ self._fixed
         # What a gap is a difference of: entries of its row times the largest number, and q; of x that number itself.
-        self._row = np.where(self.moves_x, 1.0, self.sizes)
+        self.terms = np.where(self.moves_x, 1.0, self.sizes)
         self._constant = np.where(self.moves_x, 0.0, np.abs(self.problem.q))
 
     # -- where it is, and where the next corner is ----------------------------------------------------------------
@@ -168,50 +153,44 @@ class Walk:
         if not by_x:
             slope = self.d[j] - basis.shares[j]
             y[:, j] = self.value + slope * self.t, self.sign + slope * self.dt
-        self._dy = dy = y[1]
-        self._scale = [largest(whole[0]), largest(whole[1])]
-        self.still = j != n and abs(self.dt) <= SLOW * self._scale[1] and self._stands()
+        self.dy = dy = y[1]
+        self.scale = [largest(whole[0]), largest(whole[1])]
+        self.still = j != n and abs(self.dt) <= SLOW * self.scale[1] and self._stands()
         # Of what does not move by x nothing is in z: there x is what is fixed.
         whole[0, :n] += self._fixed
-        if self._degenerate:
+        if self.degenerate:
             self._settle(y)
-        self.gaps, self.rates = y[0] - self._limits, np.empty((2, n))
+        self.gaps, self.rates = y[0] - self.limits, np.empty((2, n))
         self.rates[0], self.rates[1] = dy, -dy
-        if self._slopes is not None:
-            self.gaps -= self.t * self._slopes
-            moved = self.dt * self._slopes
+        if self.slopes is not None:
+            self.gaps -= self.t * self.slopes
+            moved = self.dt * self.slopes
             self.rates[0] -= moved[0]
             self.rates[1] += moved[1]
         np.negative(self.gaps[1], out=self.gaps[1])
 
     def _settle(self, y: Array) -> None:
         """What is basic and stays at its limit, as x of columns that are alike, is there exactly."""
-        for limit in self._limits:
-            near = self.moves_x & (np.abs(y[0] - limit) <= ROUND_OFF * self._scale[0])
+        for limit in self.limits:
+            near = self.moves_x & (np.abs(y[0] - limit) <= ROUND_OFF * self.scale[0])
             y[0, near] = self.u[0, :-1][near] = limit[near]
-            near &= np.abs(y[1]) <= FLAT * self._scale[1]
+            near &= np.abs(y[1]) <= FLAT * self.scale[1]
             y[1, near] = self.u[1, :-1][near] = 0.0
 
     def _stands(self) -> bool:
         """Whether the rate of t is no more than rounding."""
         basis = self.basis
         of_t = np.abs(basis.inverse[basis.column_place[self.problem.n], : basis.order])
-        return bool(abs(self.dt) <= NOISE * (of_t @ self.sizes[basis.rows]) * self._scale[1])
+        return bool(abs(self.dt) <= NOISE * (of_t @ self.sizes[basis.rows]) * self.scale[1])
 
     def find_tied(self) -> None:
         """Which switches vanish where it is."""
         self._tie(self.gaps <= ROUND_OFF * self._terms(0.0))
 
-    def snap(self, pairs: tuple[int, ...]) -> None:
-        """Put the x of pairs that are at a corner of their graphs there exactly: some are basic, and rounded."""
-        at = list(pairs)
-        corners = self.stairs.corner_x[:, at]
-        self.u[0, at] = corners[np.abs(self.u[0, at] - corners).argmin(axis=0), np.arange(len(at))]
-
     def next_corner(self) -> tuple[Left, float]:
         """How far the driver goes until a switch vanishes, and which do then."""
         gaps, rates = self.gaps.ravel(), self.rates.ravel()
-        falling = np.flatnonzero(self.rates < -FLAT * self._scale[1] * self._row)
+        falling = np.flatnonzero(self.rates < -FLAT * self.scale[1] * self.terms)
         if falling.size == 0:
             return Left.RAY, np.inf
         steps = np.maximum(gaps[falling], 0.0) / -rates[falling]
@@ -219,7 +198,7 @@ class Walk:
         if step == np.inf:
             return Left.RAY, step
         reach = max(step, 0.0 if self.still else abs(self.t + step * self.dt) / abs(self.dt))
-        self._step = step
+        self.step = step
         vanishing = self.gaps + step * self.rates <= ROUND_OFF * self._terms(step)
         # The driver has left its corner, however short the step was.
         if self.driver < self.problem.n:
@@ -229,11 +208,11 @@ class Walk:
         return Left.CORNER, step
 
     def _terms(self, step: float) -> Array:
-        return (self._scale[0] + step * self._scale[1]) * self._row + self._constant
+        return (self.scale[0] + step * self.scale[1]) * self.terms + self._constant
 
     def _tie(self, vanishing: NDArray[np.bool_]) -> None:
         self.tied = np.flatnonzero(vanishing[0] | vanishing[1])
-        self._low = vanishing[0, self.tied]
+        self.low = vanishing[0, self.tied]
 
     def inside(self) -> bool:
         """Whether all that moves is within its limits, but for rounding."""
@@ -241,24 +220,10 @@ class Walk:
 
     # -- round the corner -----------------------------------------------------------------------------------------
 
-    def turn(self) -> Corner | None:
-        """Take the corner found; what it was, or None where no way on was found.
-
-        Raises
-        ------
-        SingularBasisError
-            If the basis behind it is singular to working precision.
-        """
-        if self.tied.size == 1:
-            i = int(self.tied[0])
-            self._pivot(i)
-            return Corner((i,), [])
-        return self._turn_tied()
-
-    def _pivot(self, i: int) -> None:
+    def pivot(self, i: int) -> None:
         """What moves of pair i leaves the basis, the driver enters, and the complement drives."""
         basis, j, n = self.basis, self.driver, self.problem.n
-        low = bool(self._low[self.tied == i][0])
+        low = bool(self.low[self.tied == i][0])
         driver_x = j == n or bool(self.moves_x[j])
         leaving_x = bool(self.moves_x[i])
         self._switch(i, low)
@@ -278,12 +243,12 @@ class Walk:
             basis.share(i, self.d[i] - self._slope(i))
             basis.exchange_row(j, i)
             basis.share(j, self.d[j])
-        self._drive(i, low)
+        self.drive(i, low)
 
-    def _drive(self, i: int, low: bool) -> None:
+    def drive(self, i: int, low: bool) -> None:
         """Pair i drives, away from the corner to which it came from above its limit, or from below."""
         self.driver, self.sign = i, 1.0 if low else -1.0
-        self.value = float(self._limits[0 if low else 1, i]) if self.moves_x[i] else 0.0
+        self.value = float(self.limits[0 if low else 1, i]) if self.moves_x[i] else 0.0
 
     def _slope(self, i: int) -> float:
         return float(self.stairs.fixed_slope[self.state[i] + 1, i])
@@ -295,55 +260,19 @@ class Walk:
         row = int(self.state[i]) + 1
         self.moves_x[i] = self.stairs.moves_x[row, i]
         stairs = self.stairs
-        self._limits[:, i] = stairs.least[row, i], stairs.most[row, i]
-        if self._slopes is not None:
-            self._slopes[:, i] = stairs.least_slope[row, i], stairs.most_slope[row, i]
-        self._row[i], self._constant[i] = (
+        self.limits[:, i] = stairs.least[row, i], stairs.most[row, i]
+        if self.slopes is not None:
+            self.slopes[:, i] = stairs.least_slope[row, i], stairs.most_slope[row, i]
+        self.terms[i], self._constant[i] = (
             (1.0, 0.0) if self.moves_x[i] else (self.sizes[i], abs(float(self.problem.q[i])))
         )
         before, self._fixed[i] = self._fixed[i], self.stairs.fixed[row, i]
         if before != self._fixed[i]:
             self.fixed_part = self.problem.q + self.matrix @ self._fixed
 
-    def _turn_tied(self) -> Corner | None:
-        tied, low = self.tied, self._low
-        self._degenerate = True
-        S, r, along = self.small()
-        on = way(S, r)
-        every = tied.size <= LARGEST_LISTED
-        edges = rays(S, r) if every else []
-        found = [self._direction(ray, along) for ray in edges]
-        onward = [ray for ray in edges if not ray.back]
-        if on is None or (on.ray.back and every):
-            if not onward:
-                return Corner(tuple(tied.tolist()), found, dead=True) if every else None
-            self.switch_tied(onward[0].grown > 0.0)
-            self.aim(along @ np.append(onward[0].grown, onward[0].driven), self._step)
-            return Corner(tuple(tied.tolist()), found)
-        self.switch_tied(np.isin(np.arange(tied.size), on.switched))
-        i = int(tied[on.driver])
-        self.rebase(i, bool(low[on.driver]))
-        self._drive(i, bool(low[on.driver]))
-        return Corner(tuple(tied.tolist()), found)
-
-    def aim(self, direction: Array, step: float = 0.0) -> None:
-        """Go on along a direction from where so long a step leads: driven by t, or by the x that moves most.
-
-        Raises
-        ------
-        SingularBasisError
-            If the direction is not the only one on its piece.
-        """
-        n = self.problem.n
-        moving = np.abs(np.where(np.append(self.moves_x, True), direction, 0.0))
-        driver = n if moving[n] > AIMED * moving.max() else int(np.argmax(moving))
-        self.rebase(driver)
-        self.driver, self.sign = driver, float(np.sign(direction[driver]))
-        self.value = float(self.u[0, driver] + step * self.u[1, driver])
-
     def switch_tied(self, which: NDArray[np.bool_]) -> None:
         """Of the switches that vanish some are passed."""
-        for i, low in zip(self.tied[which], self._low[which]):
+        for i, low in zip(self.tied[which], self.low[which]):
             self._switch(int(i), bool(low))
 
     def rebase(self, driver: int, low: bool = True) -> None:
@@ -363,41 +292,5 @@ class Walk:
         rows = moving
         if driver < n and not self.moves_x[driver]:
             rows = np.append(rows, driver)
-            shares[driver] -= 0.0 if self._slopes is None else self._slopes[0 if low else 1, driver]
+            shares[driver] -= 0.0 if self.slopes is None else self.slopes[0 if low else 1, driver]
         self.basis.reset(rows, columns)
-
-    def small(self) -> tuple[Array, Array, Array]:
-        """S and r of the small LCP, and how (x, t) moves with each of its variables."""
-        n, basis, tied = self.problem.n, self.basis, self.tied
-        m = tied.size
-        sign = np.where(self._low, 1.0, -1.0)
-        right = np.zeros((n, m), order="F")
-        for k, i in enumerate(tied):
-            if self.moves_x[i]:
-                right[i, k] = -sign[k]
-            else:
-                right[:, k] = sign[k] * self.matrix[:, i]
-        z, left = basis.solve(right)
-        along = np.zeros((n + 1, m + 1))
-        along[basis.columns, :m] = z[: basis.order]
-        along[:, m] = self.u[1]
-        moving = self.moves_x[tied]
-        j = self.driver
-        if j < n and not self.moves_x[j]:
-            # Its w moves with the corner that it left.
-            left[j] = (self.d[j] - basis.shares[j]) * along[n, :m]
-        rates = np.where(moving[:, None], along[tied, :m], left[tied])
-        rates = np.column_stack([rates, self._dy[tied]])
-        if self._slopes is not None:
-            rates -= self._slopes[np.where(self._low, 0, 1), tied][:, None] * along[n]
-        rates *= sign[:, None]
-        size = np.append(np.abs(along[:, :m]).max(axis=0, initial=0.0), self._scale[1])
-        rates[np.abs(rates) <= FLAT * size * self._row[tied][:, None]] = 0.0
-        fixed = np.flatnonzero(~moving)
-        along[tied[fixed], fixed] = sign[fixed]
-        rates[:, m] = np.minimum(rates[:, m], 0.0)
-        return rates[:, :m], rates[:, m], along
-
-    def _direction(self, ray: Ray, along: Array) -> Array:
-        direction: Array = along @ np.append(ray.grown, ray.driven)
-        return direction / np.linalg.norm(direction)
