@@ -58,7 +58,8 @@ def _turn_tied(walk: Walk) -> Corner | None:
     onward = [ray for ray in edges if not ray.back]
     if on is None or (on.ray.back and every):
         if not onward:
-            return Corner(tuple(tied.tolist()), found, dead=True) if every else None
+            # That no other ray leaves may be said if the one come on is found.
+            return Corner(tuple(tied.tolist()), found, dead=True) if edges else None
         walk.switch_tied(onward[0].grown > 0.0)
         aim(walk, along @ np.append(onward[0].grown, onward[0].driven), walk.step)
         return Corner(tuple(tied.tolist()), found)
