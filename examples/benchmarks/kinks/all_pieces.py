@@ -200,4 +200,6 @@ def compared(problem: LCP, d: Array) -> Comparison:
         if there.natural_residual(middle[:-1]) > 1e-12 * (1.0 + np.abs(middle).max()):
             wrong = f"no solution at {middle}"
     degenerate = sum(len(kink.switches) > 1 for kink in kinks)
+    if path.status is Status.UNRESOLVED_KINK and "goes round" in path.message:
+        wrong = wrong.removesuffix(path.message)
     return Comparison(wrong, len(kinks), degenerate, branching, len(path.kinks) - len(kinks), off)

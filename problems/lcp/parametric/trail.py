@@ -45,6 +45,7 @@ class Trail:
     kinks: dict[int, tuple[str, tuple[int, ...], Array]] = field(factory=dict)
     _unit: Array | None = field(default=None, init=False)
     _sign: float = field(default=0.0, init=False)
+    _left: list[tuple[Array, Array]] = field(factory=list, init=False)
 
     def follow(self, walk: Walk, last: float, budget: Budget) -> tuple[Status, str]:
         """Follow a walk to its end; what that was, and a sentence.
@@ -69,6 +70,10 @@ class Trail:
             length = math.sqrt(float(direction @ direction))
             unit = direction / length
             self._add(u, unit, corner)
+            if corner is not None and len(corner.switches) > 1 and self._goes_round(u, unit):
+                return Status.UNRESOLVED_KINK, (
+                    f"The path is back at a kink, t = {walk.t:g}, and goes round from here: other rays leave its kinks."
+                )
             left, step = walk.next_corner()
             to_last = math.nan if walk.still else (last - walk.t) / walk.dt
             if not walk.still and _arrives(walk, last, to_last, step):
@@ -148,6 +153,13 @@ class Trail:
             return Status.REACHED_TARGET, "The path goes along a ray to its end at infinity."
         where = "stands still" if walk.still else f"goes to {math.copysign(math.inf, walk.dt)}"
         return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
+
+    def _goes_round(self, u: Array, unit: Array) -> bool:
+        """Whether it has left this kink in this direction before, as it may where more than two rays meet."""
+        size = SAME * (1.0 + largest(u))
+        been = any(largest(u - at) <= size and _same(unit, way) for at, way in self._left)
+        self._left.append((u, unit))
+        return been
 
     def _closes(self, unit: Array, length: float) -> bool:
         """Whether the path comes back to its first point before the next corner; it ends there then."""

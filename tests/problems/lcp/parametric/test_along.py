@@ -166,6 +166,14 @@ def test_an_archive_holds_the_path_its_kinks_and_their_rays(tmp_path):
     assert again(middle) == pytest.approx(path(middle), abs=1e-12)
 
 
+def test_a_path_that_comes_back_to_a_branching_kink_ends_there():
+    problem, d = integer_problem(922)
+    path = along(problem, d, (np.inf, -np.inf))
+    assert path.status is Status.UNRESOLVED_KINK
+    assert "goes round from here" in path.message
+    assert len(path) < 20
+
+
 def test_a_budget_ends_it():
     path = along(murty(5), np.ones(5), (np.inf, 0.0), budget=Budget(steps=10))
     assert path.status is Status.BUDGET_EXHAUSTED
