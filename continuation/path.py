@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
+from scipy.optimize import brentq
 
 from continuation.arrays import Array
 from continuation.checks import real_vector
@@ -221,17 +223,25 @@ class Path:
         """The kinks, where the path goes from one smooth piece of the map to another."""
         return [event for event in self.events if event.kind == Kind.KINK]
 
-    def __call__(self, s: float | Array) -> Array:
-        """The path at arclength s: dense output, shape (N + 1,) or (k, N + 1).
+    def __call__(self, s: float | Array | None = None, *, t: float | None = None) -> Array:
+        """The path at arclength s: dense output, shape (N + 1,) or (k, N + 1); or where its parameter first is t.
 
         Raises
         ------
         ValueError
-            If s lies outside [0, arclength[-1]], or is no number.
+            If s lies outside [0, arclength[-1]], or is no number; if the parameter is t nowhere on the path.
         IndexError
             If the path has no points.
         """
-        wanted = real_vector("s", s) if np.size(s) else np.zeros(0)
+        if (s is None) == (t is None):
+            raise ValueError("s: expected an arclength, or t in its place, found both or neither")
+        if t is not None:
+            there = self.crossings(t)
+            if not len(there):
+                raise ValueError(f"t: expected a value that the parameter takes on the path, found {t:g}")
+            first: Array = there[0]
+            return first
+        wanted = real_vector("s", s) if s is not None and np.size(s) else np.zeros(0)
         knots = self.arclength.tolist()
         if not knots:
             raise IndexError("s: expected a path with points, found one without")
@@ -240,6 +250,34 @@ class Path:
             raise ValueError(f"s: expected values in [{knots[0]:g}, {knots[-1]:g}], found {found}")
         points = [self._at(float(value), knots) for value in np.atleast_1d(wanted)]
         return np.array(points) if wanted.ndim else points[0]
+
+    def crossings(self, t: float) -> Array:
+        """All points of the path at which its parameter is t, in order, shape (k, N + 1).
+
+        Where the parameter stands still at t, from one point of the path to the next, both are listed.
+
+        Parameters
+        ----------
+        t : float
+
+        Returns
+        -------
+        ndarray
+        """
+        found = [step.u for step in self.steps[:1] if step.lam == t]
+        for before, after in pairwise(self.steps):
+            curve = _curve(before, after)
+            places = (0.0, *(() if after.segment is None else after.segment.inside), 1.0)
+            off = [before.lam - t, *(float(curve(place)[-1]) - t for place in places[1:-1]), after.lam - t]
+            for (a, at_a), (b, at_b) in pairwise(zip(places, off)):
+                if at_a * at_b < 0.0:
+                    line = after.segment is None
+                    place = a + (b - a) * at_a / (at_a - at_b) if line else brentq(_off, a, b, (curve, t), xtol=1e-15)
+                    found.append(np.append(curve(place)[:-1], t))
+                elif at_b == 0.0:
+                    found.append(np.append(curve(b)[:-1], t))
+        size = self.steps[0].u.size if self.steps else 0
+        return np.array(found).reshape(-1, size)
 
     def _at(self, s: float, knots: list[float]) -> Array:
         i = min(max(bisect_right(knots, s), 1), len(knots) - 1)
@@ -255,6 +293,17 @@ class Path:
     def summary(self) -> dict[str, Any]:
         """The end in numbers, for tables and logs."""
         return {"status": self.status.name, "points": len(self), "events": len(self.events), **self.counts.as_dict()}
+
+
+def _off(place: float, curve: Callable[[float], Array], t: float) -> float:
+    return float(curve(place)[-1]) - t
+
+
+def _curve(before: Step, after: Step) -> Callable[[float], Array]:
+    """The path between two points, on [0, 1]: straight where it has no segment."""
+    if after.segment is not None:
+        return after.segment.at
+    return lambda place: before.u if place == 0.0 else before.u + place * (after.u - before.u)
 
 
 def _column(steps: Any, name: str) -> Array:

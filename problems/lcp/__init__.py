@@ -17,6 +17,10 @@ from problems.lcp.homotopies import (
     default_start,
     random_start,
 )
+from problems.lcp.parametric.along import along
+from problems.lcp.parametric.exact import ExactPath, UnprovenError, prove_path
+from problems.lcp.parametric.sensitivity import Gradient, NotDifferentiableError, Sensitivity
+from problems.lcp.parametric.solutions import Solutions, solutions
 from problems.lcp.proof.certificate import Certificate, ExactCertificate, certify, certify_exactly
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, empty_interior, farkas
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
@@ -26,12 +30,12 @@ from problems.lcp.search.sequence import Solver
 from problems.lcp.search.solver import solve
 
 __all__ = [
-    "LCP", "Certificate", "ExactCertificate", "Exhaustion", "Farkas", "FloatFarkas", "KKTHomotopy",
-    "KojimaMegiddoMizunoHomotopy", "MixedLCP", "NoStrictlyFeasiblePoint", "Outcome", "Program", "Solution", "Solver",
-    "Start", "Structure", "TwoVectorHomotopy", "WangHomotopy", "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "certify",
-    "certify_exactly", "classify", "default_start", "empty_interior", "farkas", "from_lp", "from_qp", "random_start",
-    "solve", "solve_by_enumeration",
-    "strictly_feasible_start",
+    "LCP", "Certificate", "ExactCertificate", "ExactPath", "Exhaustion", "Farkas", "FloatFarkas", "Gradient",
+    "KKTHomotopy", "KojimaMegiddoMizunoHomotopy", "MixedLCP", "NoStrictlyFeasiblePoint", "NotDifferentiableError",
+    "Outcome", "Program", "Sensitivity", "Solution", "Solutions", "Solver", "Start", "Structure", "TwoVectorHomotopy",
+    "UnprovenError", "WangHomotopy", "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "along", "certify", "certify_exactly",
+    "classify", "default_start", "empty_interior", "farkas", "from_lp", "from_qp", "prove_path", "random_start",
+    "solutions", "solve", "solve_by_enumeration", "strictly_feasible_start",
 ]  # fmt: skip
 
 register()

@@ -110,6 +110,18 @@ def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[lis
     return None
 
 
+def full_row_rank(matrix: Integers) -> bool:
+    """Whether the rows are independent, which they are if they are modulo a prime; False where none of a few tells.
+
+    Parameters
+    ----------
+    matrix : object array of shape (m, k)
+        Python integers.
+    """
+    order = np.arange(matrix.shape[1])
+    return any(_invert(matrix, order, prime)[0].size == matrix.shape[0] for prime in PRIMES)
+
+
 def fractions(numerators: list[int], denominator: int) -> tuple[Fraction, ...]:
     """Numerators over a common denominator, as reduced fractions."""
     return tuple(Fraction(value, denominator) for value in numerators)

@@ -9,6 +9,7 @@ from attrs import define, field
 from continuation.arrays import Array
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.search.pivots import Nearby
 from problems.lcp.search.search import Search
 
 
@@ -26,6 +27,8 @@ class Case:
         The homotopy of the paths for which the strategy names none.
     restarts, seed : int
     executor : Executor or None
+    guess : Nearby or None
+        The solution of a problem nearby, in the units of the search.
     facts : MatrixFacts or None
         What has been found out about the matrix by now.
     proof_sought : bool
@@ -44,6 +47,7 @@ class Case:
     restarts: int
     seed: int
     executor: Executor | None
+    guess: Nearby | None = None
     facts: MatrixFacts | None = field(default=None, init=False)
     proof_sought: bool = field(default=False, init=False)
     followed: str = field(default="", init=False)

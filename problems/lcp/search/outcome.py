@@ -15,6 +15,7 @@ from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
+from problems.lcp.parametric.sensitivity import NotDifferentiableError, Sensitivity, sensitivity
 from problems.lcp.proof.certificate import Certificate
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.reference.enumeration import Exhaustion
@@ -181,6 +182,22 @@ class Solution:
     def relative_residual(self) -> float:
         """The same with each row relative to its own terms: see `Certificate`."""
         return math.inf if self.certificate is None else self.certificate.relative_residual
+
+    def sensitivity(self) -> Sensitivity:
+        """How x moves with A and q: products with the derivative and its transpose; one-sided at biactive indices.
+
+        Returns
+        -------
+        Sensitivity
+
+        Raises
+        ------
+        NotDifferentiableError
+            If nothing was solved, or the solution is not isolated: a ValueError.
+        """
+        if not self.solved or self.x is None:
+            raise NotDifferentiableError(f"solution: expected one, found none. {self.outcome}")
+        return sensitivity(self.problem, self.x)
 
     @property
     def path(self) -> Path:

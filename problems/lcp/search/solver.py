@@ -39,6 +39,7 @@ from problems.lcp.reference.enumeration import decidable
 from problems.lcp.search.case import Case
 from problems.lcp.search.judging import answer, beyond_floats, of_program, unscaled, with_fixed
 from problems.lcp.search.outcome import Outcome, Solution
+from problems.lcp.search.pivots import Nearby
 from problems.lcp.search.search import Search
 from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, settled_by
 from problems.lcp.search.work import default_budget
@@ -58,6 +59,7 @@ def solve(
     homotopy: str = "auto",
     *,
     x0: Any = None,
+    guess: Solution | Nearby | None = None,
     finish: bool = True,
     path: bool = False,
     restarts: int | None = None,
@@ -81,6 +83,9 @@ def solve(
     x0 : array_like, shape (n,), optional
         A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start. For
         "auto" zeros are welcome, as in the solution of a problem nearby: where x0 > A x0 + q is tried first.
+    guess : Solution, optional
+        Of a problem nearby, of the same order: the piecewise linear path from its data to these is tried first, which
+        for a small change has a few kinks (time steps, moving loads; for one A and many q see `Solver`).
     finish : bool
         Whether active sets are tried, before the path and along it. Without it `path` is the pure homotopy.
     path : bool
@@ -122,8 +127,8 @@ def solve(
     """
     if isinstance(problem, Program):
         found = solve(
-            problem.problem, homotopy, x0=x0, finish=finish, path=path, restarts=restarts, seed=seed, budget=budget,
-            tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
+            problem.problem, homotopy, x0=x0, guess=guess, finish=finish, path=path, restarts=restarts, seed=seed,
+            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
         )  # fmt: skip
         return of_program(problem, found)
     require_problem(problem)
@@ -142,13 +147,15 @@ def solve(
     if problem.n == 0:
         return _nothing(problem, archive)
     start = None if x0 is None else _start(x0, problem, automatic)
+    near = _near(guess, problem)
     if problem.fixed.any():
         small = without_fixed(problem)
         if start is not None:
             start = start[small.kept]
+        near = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
         rest = None if small.problem is None else solve(
-            small.problem, homotopy, x0=start, finish=finish, path=path, restarts=restarts, seed=seed, budget=budget,
-            tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
+            small.problem, homotopy, x0=start, guess=near, finish=finish, path=path, restarts=restarts, seed=seed,
+            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
         )  # fmt: skip
         return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
@@ -158,6 +165,8 @@ def solve(
         scaled = None
     if scaled is not None and start is not None:
         start = scaled.u(start)
+    if scaled is not None and near is not None:
+        near = Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
     structure = Structure(problem if scaled is None else scaled.problem)
     search = Search(
         structure,
@@ -169,7 +178,7 @@ def solve(
         dict(options),
     )
     asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
-    case = Case(search, start, asked, restarts, seed, executor)
+    case = Case(search, start, asked, restarts, seed, executor, near)
     strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
     with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
@@ -224,6 +233,19 @@ def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
         i = int(np.argmax(start < 0.0))
         raise ValueError(f"x0: expected nonnegative numbers, found {start[i]} at index {i}")
     return start
+
+
+def _near(guess: Any, problem: MixedLCP) -> Nearby | None:
+    """The point of a guess."""
+    if guess is None:
+        return None
+    if not isinstance(guess, (Solution, Nearby)):
+        raise TypeError(f"guess: expected a Solution, found {type(guess).__name__}")
+    if guess.x is None or guess.w is None:
+        return None
+    if guess.x.size != problem.n:
+        raise ValueError(f"guess: expected a solution of {problem.n} unknowns, found one of {guess.x.size}")
+    return Nearby(guess.x, guess.w)
 
 
 def _nothing(problem: MixedLCP, archive: Any) -> Solution:

@@ -26,11 +26,14 @@ from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable, exhaust
 from problems.lcp.search.case import Case
-from problems.lcp.search.pivots import LARGEST, by_lemke, by_lemke_howson
+from problems.lcp.search.pivots import LARGEST, by_guess, by_lemke, by_lemke_howson
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
 
 FIRST = Policy(steps=30)
 """Corrections of an active set before any path, from a guess that is good; each costs less than a step of a path."""
+
+AT_GUESS = Policy(steps=2)
+"""Of the active set of a problem nearby: where it has hardly changed that is all; else pivots are quicker."""
 
 FROM_ZERO = Policy(steps=30, patience=PATIENCE)
 """From x = 0, which is no guess at all."""
@@ -116,6 +119,12 @@ def _from_zero(case: Case) -> bool:
 def _from_x0(case: Case) -> bool:
     assert case.x0 is not None
     return case.search.settle(case.problem.states(case.x0, case.problem.w(case.x0)), FIRST)
+
+
+def _from_guess(case: Case) -> bool:
+    assert case.guess is not None
+    x, w = case.guess.x, case.guess.w
+    return case.search.settle(case.problem.states(x, w), AT_GUESS) or by_guess(case.search, case.guess)
 
 
 def _proximally_from_last(case: Case) -> bool:
@@ -211,6 +220,10 @@ def _game_perhaps(case: Case) -> bool:
     return _pivotable(case) and case.known.nonnegative
 
 
+def _near(case: Case) -> bool:
+    return case.guess is not None and case.problem.n <= LARGEST and case.search.finish is not None
+
+
 def _provable(case: Case) -> bool:
     n, A = case.problem.n, case.problem.A
     entries = A.nnz if case.problem.sparse else n * n
@@ -250,6 +263,7 @@ _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {c
 WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
     Attempt("the point nearest to zero", _zero_solves, _zero, "The point nearest to zero is a solution."),
+    Attempt("a problem nearby", _near, _from_guess, "Solved from the solution of a problem nearby, before any path."),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
     Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),

@@ -1,0 +1,216 @@
+"""`along`: the piecewise linear path of LCP(q + t d, A), and of its kin with bounds and levels, as a `Path`."""
+
+from __future__ import annotations
+
+import math
+import time
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from attrs import evolve
+
+from continuation.archive import PathLog
+from continuation.archive.atomic import as_file
+from continuation.arrays import Array
+from continuation.budget import Budget
+from continuation.counts import Counts
+from continuation.path import Path
+from continuation.status import Status
+from continuation.step.tracer import Tracer
+from problems.lcp.data.problem import MixedLCP, require_problem
+from problems.lcp.data.scaling import Exponents, balanced
+from problems.lcp.parametric.basis import SingularBasisError
+from problems.lcp.parametric.natural import NaturalMap
+from problems.lcp.parametric.start import from_ray, from_solution
+from problems.lcp.parametric.trail import Trail
+from problems.lcp.search.solver import solve
+from problems.options import finite_vector
+
+CORNERS = 100_000
+"""Where no budget is given: Murty's example of order 16 has 65,535."""
+
+ALIKE = 1e3
+"""Rows and columns whose largest entries differ by less than this need no other units, which take a tenth of the time
+of a path to find (p = 500)."""
+
+OFF = 1e-9
+"""What a start that is given may be off by, relative to q, A and x."""
+
+
+def along(
+    problem: MixedLCP,
+    d: Any,
+    t: tuple[float, float] = (1.0, 0.0),
+    *,
+    x: Any = None,
+    ray: Any = None,
+    level: Any = 0.0,
+    budget: Budget | None = None,
+    archive: str | PathLike[str] | None = None,
+) -> Path:
+    """Follow the solutions of a problem as q + t d moves with t: exact between kinks, and at each kink to round-off.
+
+    The path is piecewise linear. Each kink is found by a ratio test and solved for afresh; t may turn back, or stand
+    still while x moves. Where several switches vanish at once all rays that leave are found, by trying all pieces up to
+    ten switches, and one is followed, which pivots choose.
+
+    Parameters
+    ----------
+    problem : LCP or MixedLCP
+        A sparse matrix is made dense.
+    d : array_like, shape (n,)
+    t : (float, float)
+        Where the path begins and where it ends. From t = inf it comes along a ray, if the point nearest to zero solves
+        the problem for large t, as with d > 0: Lemke's method is ``t=(inf, 0)``. To inf or -inf it goes on through
+        all values until a ray leads away.
+    x : array_like, shape (n,), optional
+        A solution for t[0]; by default `solve` finds one.
+    ray : array_like, shape (n + 1,), optional
+        Of several rays that leave the start the one that is nearest to this direction of (x, t), such as one of
+        ``kink.rays``; by default one on which t goes towards its end.
+    level : array_like, shape (n,), or one number
+        Where it is positive, unknowns without bounds pay t level_i |x_i|, as in a penalised regression (for which
+        t >= 0): w_i = -t level_i where x_i > 0, t level_i where x_i < 0, and between them where x_i = 0.
+    budget : continuation.Budget, optional
+        100,000 kinks by default.
+    archive : path, optional
+        A new HDF5 file for the path.
+
+    Returns
+    -------
+    continuation.Path
+        Its points are the kinks and the two ends, its parameter is t. ``path.kinks`` has the kinks, each with the
+        pairs that switch and the rays that meet there; ``path(t=0.5)`` is where the path first has that t,
+        ``path.crossings(t=0)`` are all such points.
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument; where x does not solve the problem, or no ray comes from t = inf.
+
+    References
+    ----------
+    Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.5; Osborne, Presnell and Turlach,
+    "A new approach to variable selection in least squares problems", IMA J. Numer. Anal. 20, 2000 (for levels).
+    """
+    began = time.perf_counter()
+    require_problem(problem)
+    n = problem.n
+    slope = finite_vector("d", d, n)
+    levels = levels_of(level, problem)
+    first, last = _interval(t)
+    if problem.sparse:
+        problem = evolve(problem, A=problem.A.toarray())
+    sign = 1.0 if last > first else -1.0
+    towards = None if ray is None else finite_vector("ray", ray, n + 1)
+    status, message, walk = Status.TRACING, "", None
+    point = np.zeros(n)
+    with np.errstate(all="ignore"):
+        work, rows, columns = _scaled(problem, slope, levels)
+        own = np.ldexp(slope, rows), np.ldexp(levels, rows)
+        try:
+            if math.isinf(first):
+                walk = from_ray(work, *own, sign)
+                walk.value = walk.value if (last - walk.value) * sign > 0.0 or math.isinf(last) else last - sign
+            else:
+                point = _solution(problem, slope, levels, first, x)
+                towards = None if towards is None else np.append(np.ldexp(towards[:-1], -columns), towards[-1])
+                walk = from_solution(work, *own, np.ldexp(point, -columns), first, sign, towards)
+            if walk is None:
+                status, message = Status.DEAD_END, "No ray leaves the start on which t goes towards its end."
+        except SingularBasisError:
+            status, message = Status.SINGULAR_START, str(Status.SINGULAR_START)
+        trail = Trail(np.append(np.ldexp(1.0, columns), 1.0))
+        if walk is None:
+            trail.points, trail.tangents = [np.append(point, first)], [np.zeros(n + 1)]
+        else:
+            status, message = trail.follow(walk, last, budget or Budget(steps=CORNERS))
+        natural = NaturalMap(problem, slope, levels, trail.points[0])
+        steps, events = trail.steps(natural.largest(np.array(trail.points)))
+    counts = Counts(accepted=len(steps))
+    path = Path(steps, events, status, message, counts, time.perf_counter() - began, references=_CITED)
+    if archive is not None:
+        _archived(path, natural, archive)
+    return path
+
+
+def _scaled(problem: MixedLCP, d: Array, levels: Array) -> tuple[MixedLCP, Exponents, Exponents]:
+    """The problem in units in which its rows and columns are comparable, and the exponents of two that lead there."""
+    size = np.abs(problem.A)
+    largest = np.concatenate([size.max(axis=0, initial=0.0), size.max(axis=1, initial=0.0)])
+    alike = largest.max(initial=0.0) <= ALIKE * largest.min(initial=np.inf)
+    scaled = None if alike else balanced(evolve(problem, q=np.abs(problem.q) + np.abs(d) + levels))
+    if scaled is None or not scaled.exact:
+        none = np.zeros(problem.n, dtype=np.int64)
+        return problem, none, none
+    return evolve(scaled.problem, q=np.ldexp(problem.q, scaled.rows)), scaled.rows, scaled.columns
+
+
+_CITED = (
+    "@book{cottle1992, author = {Cottle, Richard W. and Pang, Jong-Shi and Stone, Richard E.}, title = {The Linear "
+    "Complementarity Problem}, publisher = {Academic Press}, year = {1992}}",
+)
+
+
+def levels_of(level: Any, problem: MixedLCP) -> Array:
+    """The levels, zero where there are bounds.
+
+    Raises
+    ------
+    ValueError
+        If one is negative, or is given where there is a bound.
+    """
+    free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
+    if np.ndim(level) == 0 and free.any():
+        level = np.where(free, level, 0.0)
+    found = finite_vector("level", np.full(problem.n, level) if np.ndim(level) == 0 else level, problem.n)
+    wrong = (found < 0.0) | ((found > 0.0) & ~free)
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        raise ValueError(
+            f"level: expected 0 where there are bounds, and nowhere negative, found {found[i]} at index {i}"
+        )
+    return found
+
+
+def _interval(t: Any) -> tuple[float, float]:
+    try:
+        first, last = (float(value) for value in t)
+    except (TypeError, ValueError):
+        raise ValueError(f"t: expected two numbers, where the path begins and where it ends, found {t!r}") from None
+    if math.isnan(first) or math.isnan(last) or first == last:
+        raise ValueError(f"t: expected two different numbers, found {t!r}")
+    return first, last
+
+
+def _solution(problem: MixedLCP, d: Array, levels: Array, t: float, x: Any) -> Array:
+    """A solution for t: the one given, or one that `solve` finds."""
+    at = evolve(problem, q=problem.q + t * d)
+    if x is None:
+        if levels.any():
+            raise ValueError("x: expected a solution for t[0], which is looked for only where there is no level")
+        found = solve(at)
+        if not found.solved or found.x is None:
+            raise ValueError(f"t: expected a start t[0] with a solution, found none for {t:g}. {found.message}")
+        return found.x
+    given = finite_vector("x", x, problem.n)
+    off = np.abs(NaturalMap(problem, d, levels, given).residual(given, t))
+    if (off > OFF * at.scale(given)).any():
+        i = int(np.argmax(off))
+        raise ValueError(f"x: expected a solution for t = {t:g}, found one that is off by {off[i]:.1e} at index {i}")
+    return given
+
+
+def _archived(path: Path, homotopy: NaturalMap, archive: str | PathLike[str]) -> None:
+    tracer = Tracer(homotopy)
+    with PathLog(as_file("archive", archive)) as log:
+        # The log takes a step's kink from the last events of a path that grows.
+        tracer.path, tracer.counts = Path(), path.counts
+        kinks = {event.step: event for event in path.events}
+        for step in path.steps:
+            tracer.path.steps.append(step)
+            tracer.path.events += [kinks[step.index]] if step.index in kinks else []
+            log.step(tracer, step)
+        tracer.path = path
+        log.end(tracer)

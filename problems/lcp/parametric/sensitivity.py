@@ -1,0 +1,181 @@
+"""How a solution moves with A and q: a linear map, or, where x_i and w_i vanish together, one for each direction."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+from scipy.linalg import lu_solve
+from scipy.linalg.lapack import dgetrf
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import MixedLCP
+from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
+from problems.options import finite_vector, real_array
+
+BIACTIVE = 1e-10
+"""Relative to the terms of the rows, a w_i below this is zero, and an x_i is at its bound that shows in no row: what
+`solve` asks of its certificates."""
+
+
+class NotDifferentiableError(ValueError):
+    """The solution is not isolated, or moves in no direction, or in several."""
+
+
+@frozen(eq=False)
+class Gradient:
+    """Of a loss with gradient g with respect to x: ``d loss = q . dq + sum(A * dA)``.
+
+    Attributes
+    ----------
+    q : ndarray, shape (n,)
+    A : ndarray, shape (n, n)
+    one_sided : bool
+        Whether there are biactive indices, which are held at their bounds here: then this is the derivative only for
+        changes that keep them there, and one element of the generalised Jacobian.
+    """
+
+    q: Array
+    A: Array
+    one_sided: bool
+
+
+@frozen(eq=False)
+class Sensitivity:
+    """Derivatives of a solution with respect to A and q.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+    moving : ndarray of int
+        Where x is off its bounds, and w_i = 0.
+    biactive : ndarray of int
+        Where x is at a bound and w_i = 0: derivatives are one-sided there.
+    side : ndarray, shape (n,)
+        1 at a lower bound, -1 at an upper one.
+    factors : tuple
+        Of A on the moving indices.
+    A : ndarray, shape (n, n)
+    """
+
+    x: Array
+    moving: NDArray[np.intp]
+    biactive: NDArray[np.intp]
+    side: Array
+    factors: Any
+    A: Array
+
+    @property
+    def differentiable(self) -> bool:
+        """Whether there are no biactive indices, so that the derivative is a linear map."""
+        return not self.biactive.size
+
+    def jvp(self, dq: Any = None, dA: Any = None) -> Array:
+        """How x moves as q and A move by (dq, dA): at biactive indices the one-sided derivative in this direction.
+
+        Parameters
+        ----------
+        dq : array_like, shape (n,), optional
+        dA : array_like, shape (n, n), optional
+
+        Returns
+        -------
+        ndarray, shape (n,)
+
+        Raises
+        ------
+        NotDifferentiableError
+            If, at biactive indices, x moves in no direction or in more than one.
+
+        References
+        ----------
+        Cottle, Pang and Stone, section 7.4; Robinson, "Strongly regular generalized equations", Math. Oper. Res. 5,
+        1980.
+        """
+        n, inside, at = self.x.size, self.moving, self.biactive
+        moved = np.zeros(n) if dq is None else finite_vector("dq", dq, n)
+        if dA is not None:
+            moved = moved + _square("dA", dA, n) @ self.x
+        dx = np.zeros(n)
+        dx[inside] = -lu_solve(self.factors, moved[inside])
+        if at.size:
+            side = self.side[at]
+            into = lu_solve(self.factors, self.A[np.ix_(inside, at)] * side)
+            S = side[:, None] * (self.A[np.ix_(at, at)] * side - self.A[np.ix_(at, inside)] @ into)
+            r = side * (moved[at] + self.A[np.ix_(at, inside)] @ dx[inside])
+            grown = _only(S, r)
+            dx[at] = side * grown
+            dx[inside] -= into @ grown
+        return dx
+
+    def vjp(self, g: Any) -> Gradient:
+        """The gradient in A and q of a loss whose gradient in x is g.
+
+        Parameters
+        ----------
+        g : array_like, shape (n,)
+
+        Returns
+        -------
+        Gradient
+        """
+        n, inside = self.x.size, self.moving
+        q = np.zeros(n)
+        q[inside] = -lu_solve(self.factors, finite_vector("g", g, n)[inside], trans=1)
+        return Gradient(q, np.outer(q, self.x), not self.differentiable)
+
+
+def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
+    """The derivatives of a solution.
+
+    Parameters
+    ----------
+    problem : LCP or MixedLCP
+    x : ndarray, shape (n,)
+        A solution.
+
+    Raises
+    ------
+    NotDifferentiableError
+        If A is singular where x is off its bounds: the solution is not isolated, or vanishes.
+    """
+    w = problem.w(x)
+    A = problem.A.toarray() if problem.sparse else problem.A
+    terms = np.abs(A) @ np.abs(x) + np.abs(problem.q)
+    room = np.minimum(x - problem.lower, problem.upper - x)
+    with np.errstate(invalid="ignore"):
+        off = (np.abs(A) * room > BIACTIVE * terms[:, None]).any(axis=0) | np.isinf(room)
+    inside = np.flatnonzero(off)
+    at = np.flatnonzero(~off & ~problem.fixed & (np.abs(w) <= BIACTIVE * terms))
+    block = A[np.ix_(inside, inside)]
+    size = np.abs(block).max(initial=0.0)
+    factors: Any = dgetrf(block)[:2] if inside.size else (np.zeros((0, 0)), np.zeros(0, dtype=np.int32))
+    pivots = np.abs(np.diag(factors[0]))
+    if inside.size and not pivots.min() > np.finfo(float).eps * inside.size * size:
+        raise NotDifferentiableError("x: expected an isolated solution, found A singular where x is off its bounds")
+    side = np.where(x - problem.lower <= problem.upper - x, 1.0, -1.0)
+    return Sensitivity(x, inside, at, side, factors, A)
+
+
+def _only(S: Array, r: Array) -> Array:
+    """The solution of LCP(r, S), which is the direction."""
+    if r.size <= LARGEST_LISTED:
+        found = [ray.grown / ray.driven for ray in rays(S, r) if ray.driven > 0.0]
+        if len(found) != 1:
+            raise NotDifferentiableError(
+                f"dq, dA: expected a direction in which the solution moves one way, found {len(found) or 'no'} ways"
+            )
+        return found[0]
+    grown = a_solution(S, r)
+    if grown is None:
+        raise NotDifferentiableError("dq, dA: expected a direction in which the solution moves, found none")
+    return grown
+
+
+def _square(name: str, value: Any, n: int) -> Array:
+    matrix = real_array(name, value)
+    if matrix.shape != (n, n) or not np.isfinite(matrix).all():
+        raise ValueError(f"{name}: expected finite numbers of shape {(n, n)}, found shape {matrix.shape}")
+    return matrix

@@ -1,0 +1,211 @@
+"""`solutions`: several solutions of a problem, or all, by paths from one to the next, and by trying all faces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from attrs import define, evolve, field, frozen
+
+from continuation.arrays import Array
+from continuation.budget import Budget
+from continuation.counts import Counts
+from problems.lcp.data.problem import LCP, MixedLCP, require_problem
+from problems.lcp.parametric.along import along
+from problems.lcp.proof.certificate import Certificate, certify
+from problems.lcp.proof.verdict import confirmed
+from problems.lcp.reference.enumeration import decidable, solve_by_enumeration
+from problems.lcp.search.solver import solve
+from problems.options import finite_vector
+
+LARGEST_TRIED = 10
+"""Orders up to which all faces are tried: 0.1 s for ten; about a second for twelve."""
+
+SAME = 1e-7
+"""Solutions whose every x_i agrees this well, relative to the largest, are the same."""
+
+IN_VAIN = 30
+"""So many paths in a row that find nothing new, and twice as many as there are solutions, end the search. From one of
+the 31 equilibria of the coordination game m = 5 all others are found with 10."""
+
+CORNERS_A_PATH = 50
+"""Times the order: a path that goes on for longer is left."""
+
+
+@frozen(eq=False)
+class Solutions:
+    """What was found, in order; iterating gives the certificates.
+
+    Attributes
+    ----------
+    problem : MixedLCP
+    certificates : tuple of Certificate
+        Of one point each, all different by value.
+    complete : bool
+        Whether these are all solutions, which only trying all faces in exact arithmetic tells.
+    paths : int
+        How many were followed.
+    message : str
+    """
+
+    problem: MixedLCP
+    certificates: tuple[Certificate, ...]
+    complete: bool
+    paths: int
+    message: str
+
+    def __len__(self) -> int:
+        return len(self.certificates)
+
+    def __iter__(self) -> Iterator[Certificate]:
+        return iter(self.certificates)
+
+    def __repr__(self) -> str:
+        return f"<Solutions: {len(self)}, {'all there are' if self.complete else 'perhaps not all'}>"
+
+    @property
+    def points(self) -> Array:
+        """The solutions x, shape (number, n)."""
+        return np.array([one.x for one in self.certificates]).reshape(-1, self.problem.n)
+
+
+def solutions(
+    problem: MixedLCP,
+    *,
+    known: Sequence[Any] = (),
+    enumerate_faces: bool = True,
+    seed: int = 0,
+    budget: Budget | None = None,
+    tolerance: float = 1e-10,
+) -> Solutions:
+    """Look for several solutions of an LCP(q, A), or of a problem with bounds.
+
+    An LCP of order ten at most is solved on each of its complementary faces, in exact arithmetic: then the list is
+    complete, unless a face holds a continuum. Else paths are followed: from a solution found along which q + t d has
+    solutions, for a random d, through t = 0 again and again until a ray leads away. Each crossing of t = 0 is a
+    solution. All are certified, and told apart by value.
+
+    Parameters
+    ----------
+    problem : LCP or MixedLCP
+    known : sequence of array_like, shape (n,)
+        Solutions to begin at; by default the one that `solve` finds.
+    enumerate_faces : bool
+        Whether faces are tried where there are few.
+    seed : int
+        Of the directions d.
+    budget : continuation.Budget, optional
+        Its steps are the kinks of all paths together. By default 200,000, and the search ends before where 30 paths in
+        a row, and twice as many as there are solutions, find nothing new.
+    tolerance : float
+        As for `solve`.
+
+    Returns
+    -------
+    Solutions
+
+    Raises
+    ------
+    TypeError, ValueError
+        For bad input, naming the argument; where a point of `known` is no solution.
+
+    References
+    ----------
+    Cottle, Pang and Stone, section 4.5; for games, Shapley, "A note on the Lemke-Howson algorithm", Math. Programming
+    Study 1, 1974.
+    """
+    require_problem(problem)
+    if isinstance(problem, LCP) and enumerate_faces and decidable(problem, LARGEST_TRIED):
+        return _on_faces(problem, tolerance)
+    search = _Search(problem, tolerance, np.random.default_rng(seed), budget or Budget(steps=200_000))
+    for k, given in enumerate(known):
+        if not search.take(finite_vector(f"known[{k}]", given, problem.n)):
+            raise ValueError(f"known[{k}]: expected a solution that no other one in the list is, found another point")
+    if not search.found:
+        first = solve(problem, tolerance=tolerance, seed=seed)
+        if not first.solved or first.x is None:
+            return Solutions(problem, (), False, 0, f"No path has begun. {first.message}")
+        search.take(first.x)
+    ended = search.run()
+    message = f"{len(search.found)} found on {search.paths} paths (seed {seed}), which tell of no others. {ended}"
+    return Solutions(problem, tuple(search.found), False, search.paths, message)
+
+
+def _on_faces(problem: LCP, tolerance: float) -> Solutions:
+    tried = solve_by_enumeration(problem)
+    certificates = [certify(problem, one.point) for one in tried.solutions]
+    certified = tuple(one for one in certificates if confirmed(problem, one, tolerance))
+    complete = tried.complete and len(certified) == len(certificates)
+    message = f"All {2**problem.n} complementary faces were tried in exact arithmetic."
+    if not tried.complete:
+        message += " Some hold a continuum of solutions, of which there is one at least."
+    elif not complete:
+        message += f" {len(certificates) - len(certified)} of the solutions are none once rounded to floats."
+    return Solutions(problem, certified, complete, 0, message)
+
+
+@define(eq=False)
+class _Search:
+    """What was found, and where the next path begins."""
+
+    problem: MixedLCP
+    tolerance: float
+    random: np.random.Generator
+    budget: Budget
+    found: list[Certificate] = field(factory=list)
+    paths: int = 0
+    counts: Counts = field(factory=Counts)
+
+    def take(self, x: Array) -> bool:
+        """Take a point into the list, if it is a solution, and new."""
+        if self._known(x):
+            return False
+        polished = _polished(self.problem, x)
+        for point in (x,) if polished is None else (polished, x):
+            certificate = certify(self.problem, point)
+            if confirmed(self.problem, certificate, self.tolerance):
+                if self._known(point):
+                    return False
+                self.found.append(certificate)
+                return True
+        return False
+
+    def _known(self, x: Array) -> bool:
+        size = SAME * float(np.abs(x).max(initial=0.0))
+        return any(float(np.abs(x - one.x).max(initial=0.0)) <= size for one in self.found)
+
+    def run(self) -> str:
+        """Follow paths from all that is found; why no more were."""
+        n, in_vain, tried = self.problem.n, 0, 0
+        while in_vain < max(IN_VAIN, 2 * len(self.found)):
+            left = self.budget.steps - self.counts.accepted
+            if left <= 0:
+                return f"The budget is used up: {self.budget.steps:g} steps."
+            d = self.random.standard_normal(n)
+            start = self.found[tried % len(self.found)].x
+            tried += 1
+            new = 0
+            for end in (math.inf, -math.inf):
+                few = evolve(self.budget, steps=max(min(left, CORNERS_A_PATH * n), 2))
+                path = along(self.problem, d, (0.0, end), x=start, budget=few)
+                self.paths += 1
+                self.counts = self.counts + path.counts
+                new += sum(self.take(u[:n]) for u in path.crossings(0.0)[1:])
+            in_vain = 0 if new else in_vain + 1
+        return f"The last {in_vain} directions found nothing new."
+
+
+def _polished(problem: MixedLCP, x: Array) -> Array | None:
+    """The solution of the equations of x's piece: better than a point between two corners."""
+    inside = np.flatnonzero((x > problem.lower) & (x < problem.upper))
+    A = problem.A.toarray() if problem.sparse else problem.A
+    moved = x.copy()
+    block = A[np.ix_(inside, inside)]
+    try:
+        for _ in range(2):
+            moved[inside] -= np.linalg.solve(block, problem.w(moved)[inside])
+    except np.linalg.LinAlgError:
+        return None
+    return moved if np.isfinite(moved).all() else None

@@ -1,0 +1,164 @@
+"""Where a walk begins: on a ray, or at a solution for some t."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.linalg import qr
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.parametric.basis import Basis, SingularBasisError
+from problems.lcp.parametric.corner import FEW, LARGEST_LISTED, a_solution, rays
+from problems.lcp.parametric.stairs import Stairs
+from problems.lcp.parametric.ties import aim, small
+from problems.lcp.parametric.walk import FLAT, Walk
+
+
+def walk_at(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sign: float) -> Walk:
+    """The walk from given pieces: where t is, and which way it goes; along another variable where t cannot move.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+        Dense.
+    d, level : ndarray, shape (n,)
+    state : State
+    t : float
+    sign : float
+
+    Raises
+    ------
+    SingularBasisError
+        If the equations of these pieces are dependent, t's column included.
+    """
+    walk = _walk(problem, d, level, state, t, sign)
+    walk.rebase(problem.n)
+    return walk
+
+
+def _walk(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sign: float) -> Walk:
+    """The same without a basis."""
+    matrix = np.asfortranarray(problem.A)
+    sizes = np.maximum(np.abs(matrix).max(axis=1, initial=0.0), np.abs(d))
+    stairs, basis = Stairs.of(problem, level), Basis(matrix, d.copy())
+    return Walk(problem, d, stairs, state.copy(), basis, problem.n, t, sign, matrix, sizes)
+
+
+def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
+    """The walk that comes from t = +inf (sign = -1), or from -inf.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+        Dense.
+    d, level : ndarray, shape (n,)
+    sign : float
+
+    Raises
+    ------
+    ValueError
+        If the point nearest to zero is no solution for large t.
+    """
+    state: State = np.where(
+        level > 0.0, 0, np.where(np.isfinite(problem.lower), -1, np.where(np.isfinite(problem.upper), 1, 0))
+    ).astype(np.int8)
+    walk = walk_at(problem, d, level, state, 0.0, -sign)
+    walk.locate()
+    gaps, rates = walk.gaps.ravel(), walk.rates.ravel()
+    # As t grows out of sight no gap may shrink.
+    wrong = ((rates < 0.0) | ((rates == 0.0) & (gaps < 0.0))) & np.isfinite(gaps)
+    if wrong.any():
+        i = int(np.argmax(wrong)) % problem.n
+        raise ValueError(
+            f"t: no ray begins at t = {-sign * math.inf}, where x = {walk.u[0, i]:g} would have to solve row {i}: "
+            "expected a covering vector d, or a finite t to begin at"
+        )
+    far = (rates > 0.0) & np.isfinite(gaps)
+    last = float((-gaps[far] / rates[far]).max(initial=0.0))
+    walk.value, walk.sign = -sign * (last + max(1.0, last)), sign
+    return walk
+
+
+def from_solution(
+    problem: MixedLCP, d: Array, level: Array, x: Array, t: float, sign: float, ray: Array | None = None
+) -> Walk | None:
+    """The walk from a solution, along a ray that leaves it with t growing, or falling; or along the one given.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+        Dense.
+    d, level, x : ndarray, shape (n,)
+    t : float
+    sign : float
+    ray : ndarray, shape (n + 1,), optional
+
+    Returns
+    -------
+    Walk or None
+        None if no ray leaves that way.
+
+    Raises
+    ------
+    SingularBasisError
+        If the ray is not the only one on its piece.
+    """
+    stairs = Stairs.of(problem, level)
+    state = stairs.states(problem, x)
+    n = problem.n
+    try:
+        walk = walk_at(problem, d, level, state, t, sign)
+    except SingularBasisError:
+        return _standing(_walk(problem, d, level, state, t, sign), x, t, ray, sign)
+    walk.locate()
+    walk.find_tied()
+    if walk.tied.size:
+        S, r, along = small(walk)
+        if walk.tied.size > LARGEST_LISTED:
+            grown = a_solution(S, r)
+            if grown is None:
+                return None
+            switched, chosen = grown > 0.0, along @ np.append(grown, 1.0)
+        else:
+            found = rays(S, r)
+            directions = [along @ np.append(one.grown, one.driven) for one in found]
+            wanted = [_agreement(one, ray, sign) for one in directions]
+            if not wanted or max(wanted) <= 0.0:
+                return None
+            best = int(np.argmax(wanted))
+            switched, chosen = found[best].grown > 0.0, directions[best]
+        walk.switch_tied(switched)
+        aim(walk, chosen)
+        return walk
+    if ray is not None and walk.u[1] @ ray < 0.0:
+        walk.sign = -walk.sign
+    assert n == walk.driver
+    return walk
+
+
+def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
+    """How far a direction is the one wanted."""
+    length = float(np.linalg.norm(direction))
+    if ray is not None:
+        return float(direction @ ray) / length
+    return sign * float(direction[-1]) / length if abs(direction[-1]) > FEW * length else 0.0
+
+
+def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:
+    """Where A is singular on the moving x: the path goes along the kernel of [A, d] there."""
+    moving = np.flatnonzero(walk.moves_x)
+    shares = walk.d[moving] - walk.stairs.fixed_slope[walk.state[moving] + 1, moving]
+    block = np.column_stack([walk.matrix[np.ix_(moving, moving)], shares])
+    q, r, _ = qr(block.T, pivoting=True)
+    diagonal = np.abs(np.diag(r))
+    if diagonal.size and diagonal.min() <= FLAT * diagonal.max():
+        raise SingularBasisError("the equations of the start are dependent")
+    kernel = np.zeros(walk.problem.n + 1)
+    kernel[np.append(moving, walk.problem.n)] = q[:, -1]
+    if _agreement(kernel, ray, sign) < 0.0:
+        kernel = -kernel
+    walk.u = np.array([np.append(x, t), kernel])
+    aim(walk, kernel)
+    return walk

@@ -1,0 +1,234 @@
+"""A walk written down as a `Path`: its corners as steps and kinks, and how it ended."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+from attrs import define, field
+
+from continuation.arrays import Array, largest
+from continuation.budget import Budget
+from continuation.counts import Counts
+from continuation.path import LocatedEvent, Step
+from continuation.status import Kind, Status
+from problems.lcp.data.problem import State
+from problems.lcp.parametric.basis import SingularBasisError
+from problems.lcp.parametric.ties import Corner, snap, turn
+from problems.lcp.parametric.walk import Left, Walk
+
+SAME = 1e-9
+"""Two unit directions, or two points relative to their size, that differ by less are the same."""
+
+ARRIVED = 1e-11
+"""A corner as near as this to the t where the path ends, relative to both and to the step, is on it."""
+
+
+@define(eq=False)
+class Trail:
+    """A path while it is made.
+
+    Attributes
+    ----------
+    units : Array of shape (n + 1,)
+        Of x and t.
+    points, tangents : list of Array of shape (n + 1,)
+        The points so far, and the directions in which they were come on.
+    kinks : dict of int to tuple
+        By the number of the point: name, pairs that switch, rays.
+    """
+
+    units: Array
+    points: list[Array] = field(factory=list)
+    tangents: list[Array] = field(factory=list)
+    kinks: dict[int, tuple[str, tuple[int, ...], Array]] = field(factory=dict)
+    _unit: Array | None = field(default=None, init=False)
+    _sign: float = field(default=0.0, init=False)
+    _left: list[tuple[Array, Array]] = field(factory=list, init=False)
+
+    def follow(self, walk: Walk, last: float, budget: Budget) -> tuple[Status, str]:
+        """Follow a walk to its end; what that was, and a sentence.
+
+        Parameters
+        ----------
+        walk : Walk
+        last : float
+            The t at which it ends.
+        budget : Budget
+        """
+        began = time.perf_counter()
+        corner: Corner | None = None
+        while True:
+            if not _located(walk):
+                return Status.UNRESOLVED_KINK, "Rounding has led off the path: its last piece does not hold its end."
+            if corner is not None and len(corner.switches) > 1:
+                snap(walk, corner.switches)
+            u, direction = walk.u * self.units
+            if walk.still:
+                direction[-1] = 0.0
+            length = math.sqrt(float(direction @ direction))
+            unit = direction / length
+            self._add(u, unit, corner)
+            if corner is not None and len(corner.switches) > 1 and self._goes_round(u, unit):
+                return Status.UNRESOLVED_KINK, (
+                    f"The path is back at a kink, t = {walk.t:g}, and goes round from here: other rays leave its kinks."
+                )
+            left, step = walk.next_corner()
+            to_last = math.nan if walk.still else (last - walk.t) / walk.dt
+            if not walk.still and _arrives(walk, last, to_last, step):
+                self._end(unit, to_last * length, last)
+                return Status.REACHED_TARGET, str(Status.REACHED_TARGET)
+            if len(self.points) > 1 and self._closes(unit, step * length):
+                return Status.CLOSED, str(Status.CLOSED)
+            if left is Left.RAY:
+                return self._leave(walk, unit, length, last)
+            spent = budget.spent(Counts(accepted=len(self.points)), time.perf_counter() - began)
+            if spent:
+                return Status.BUDGET_EXHAUSTED, f"The budget is used up ({spent}) at t = {walk.t:g}."
+            t = walk.t if walk.still else walk.t + step * walk.dt
+            try:
+                corner = turn(walk)
+            except SingularBasisError:
+                corner = None
+            if corner is None:
+                return Status.UNRESOLVED_KINK, f"No way on was found from the corner at t = {t:g}."
+            if corner.dead:
+                self._end(unit, step * length, t)
+                self.kinks[len(self.points) - 1] = "dead end", corner.switches, -unit[None]
+                return Status.DEAD_END, str(Status.DEAD_END)
+
+    def steps(self, residuals: Array) -> tuple[list[Step], list[LocatedEvent]]:
+        """The points as steps, and the kinks.
+
+        Parameters
+        ----------
+        residuals : ndarray, shape (m,)
+            Of the points.
+        """
+        gaps = [0.0, *(math.sqrt(float(gap @ gap)) for gap in np.diff(self.points, axis=0))]
+        arcs, last = np.cumsum(gaps).tolist(), len(self.points) - 1
+        kinds = [Kind.KINK if k in self.kinks else Kind.TARGET if k == last else Kind.REGULAR for k in range(last + 1)]
+        kinds[0] = Kind.START
+        steps = [
+            Step(k, u, tangent, arcs[k], gaps[k], residual_norm=residual, kind=kinds[k])
+            for k, (u, tangent, residual) in enumerate(zip(self.points, self.tangents, residuals.tolist()))
+        ]
+        events = [
+            LocatedEvent(
+                name, Kind.KINK, arcs[k], steps[k].u, steps[k].tangent, steps[k].residual_norm, 0.0, 0, k, True,
+                switches, rays,
+            )
+            for k, (name, switches, rays) in self.kinks.items()
+        ]  # fmt: skip
+        return steps, events
+
+    def _add(self, u: Array, unit: Array, corner: Corner | None) -> None:
+        # At a kink the tangent is that of the arrival, as the engine's is; the first ray leads back, the second on.
+        arrival = unit if self._unit is None else self._unit
+        if corner is not None:
+            back = -arrival
+            found = [_unit(one * self.units) for one in corner.directions]
+            others = [one for one in found if not (_same(one, back) or _same(one, unit))]
+            turned = unit[-1] * self._sign < 0.0
+            name = "branching kink" if others else "turning kink" if turned else "kink"
+            self.kinks[len(self.points)] = name, corner.switches, np.array([back, unit, *others])
+        self.points.append(u)
+        self.tangents.append(arrival)
+        self._unit = unit
+        if unit[-1] != 0.0:
+            self._sign = math.copysign(1.0, unit[-1])
+
+    def _end(self, unit: Array, length: float, t: float) -> None:
+        u = self.points[-1] + length * unit
+        u[-1] = t
+        self.points.append(u)
+        self.tangents.append(unit)
+
+    def _leave(self, walk: Walk, unit: Array, length: float, last: float) -> tuple[Status, str]:
+        """Along a ray, to a point of it."""
+        far = 1.0 + largest(walk.u[0]) if walk.still else 2.0 * (abs(walk.t) + 1.0) / abs(walk.dt)
+        self._end(unit, far * length, walk.t if walk.still else walk.t + far * walk.dt)
+        if math.isinf(last) and not walk.still and walk.dt * last > 0.0:
+            return Status.REACHED_TARGET, "The path goes along a ray to its end at infinity."
+        where = "stands still" if walk.still else f"goes to {math.copysign(math.inf, walk.dt)}"
+        return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
+
+    def _goes_round(self, u: Array, unit: Array) -> bool:
+        """Whether it has left this kink in this direction before, as it may where more than two rays meet."""
+        size = SAME * (1.0 + largest(u))
+        been = any(largest(u - at) <= size and _same(unit, way) for at, way in self._left)
+        self._left.append((u, unit))
+        return been
+
+    def _closes(self, unit: Array, length: float) -> bool:
+        """Whether the path comes back to its first point before the next corner; it ends there then."""
+        first, last = self.points[0], self.points[-1]
+        # Mostly t alone tells that it is not there.
+        if unit[-1] != 0.0 and not 0.0 < (first[-1] - last[-1]) / unit[-1] <= 2.0 * length:
+            return False
+        gap = first - last
+        ahead = float(gap @ unit)
+        size = 1.0 + largest(first)
+        if not 0.0 < ahead <= length * (1.0 + SAME) or largest(gap - ahead * unit) > SAME * size:
+            return False
+        if not _same(unit, self.tangents[0]):
+            return False
+        self.points.append(first)
+        self.tangents.append(unit)
+        return True
+
+
+def state_at(walk: Walk, last: float, most: int) -> State | None:
+    """The pieces of the point where t is `last`, by a walk of so many corners at most; None where it leads elsewhere.
+
+    Parameters
+    ----------
+    walk : Walk
+    last : float
+    most : int
+    """
+    for _ in range(most):
+        if not _located(walk):
+            return None
+        left, step = walk.next_corner()
+        if not walk.still and _arrives(walk, last, (last - walk.t) / walk.dt, step):
+            return walk.state
+        if left is Left.RAY:
+            return None
+        try:
+            if turn(walk) is None:
+                return None
+        except SingularBasisError:
+            return None
+    return None
+
+
+def _arrives(walk: Walk, last: float, to_last: float, step: float) -> bool:
+    """Whether t is where the path ends before the next corner, or on it."""
+    if math.isinf(last) or math.isinf(step):
+        return 0.0 <= to_last < math.inf
+    off = abs(walk.t + step * walk.dt - last)
+    return 0.0 <= to_last <= step or off <= ARRIVED * max(abs(walk.t), abs(last), abs(step * walk.dt))
+
+
+def _unit(a: Array) -> Array:
+    unit: Array = a / np.linalg.norm(a)
+    return unit
+
+
+def _same(a: Array, b: Array) -> bool:
+    return largest(a - b) <= SAME
+
+
+def _located(walk: Walk) -> bool:
+    """Solve for the corner; once more with the inverse afresh where it is not within its limits."""
+    walk.locate()
+    if walk.inside():
+        return True
+    try:
+        walk.basis.invert()
+    except SingularBasisError:
+        return False
+    walk.locate()
+    return walk.inside()

@@ -1,0 +1,72 @@
+"""Derivatives of solutions, against differences and by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from problems.lcp import LCP, MixedLCP, NotDifferentiableError, solve
+
+H = 1e-6
+
+
+def bounded(seed, n=7):
+    random = np.random.default_rng(seed)
+    A = random.normal(size=(n, n))
+    lower = np.where(random.random(n) < 0.7, -random.random(n), -np.inf)
+    upper = np.where(random.random(n) < 0.7, random.random(n), np.inf)
+    return MixedLCP(A @ A.T + np.eye(n), 3.0 * random.normal(size=n), lower, upper), random
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_both_products_agree_with_differences(seed):
+    problem, random = bounded(seed)
+    n = problem.n
+    found = solve(problem).sensitivity()
+    assert found.differentiable
+    dq, dA, g = random.normal(size=n), random.normal(size=(n, n)), random.normal(size=n)
+    ends = [solve(MixedLCP(problem.A + h * dA, problem.q + h * dq, problem.lower, problem.upper)).x for h in (H, -H)]
+    dx = found.jvp(dq, dA)
+    assert dx == pytest.approx((ends[0] - ends[1]) / (2.0 * H), abs=1e-7)
+    gradient = found.vjp(g)
+    assert not gradient.one_sided
+    assert g @ dx == pytest.approx(gradient.q @ dq + (gradient.A * dA).sum(), rel=1e-12)
+
+
+def test_at_biactive_indices_it_is_one_sided():
+    # x = max(-q, 0) at q = 0, in each component for itself.
+    found = solve(LCP(np.eye(3), [0.0, -1.0, 2.0])).sensitivity()
+    assert found.biactive.tolist() == [0]
+    assert found.jvp([1.0, 1.0, 1.0]).tolist() == [0.0, -1.0, 0.0]
+    assert found.jvp([-1.0, 1.0, 1.0]) == pytest.approx([1.0, -1.0, 0.0], rel=1e-15)
+    assert found.vjp([1.0, 1.0, 1.0]).one_sided
+
+
+def test_one_sided_derivatives_are_those_of_differences():
+    random = np.random.default_rng(0)
+    for _ in range(10):
+        n = 6
+        A = random.normal(size=(n, n))
+        A = A @ A.T + np.eye(n)
+        x = np.where(np.arange(n) < 2, random.random(n), 0.0)
+        w = np.where(np.arange(n) < 4, 0.0, random.random(n))
+        problem = LCP(A, w - A @ x)
+        found = solve(problem).sensitivity()
+        assert found.biactive.tolist() == [2, 3]
+        dq = random.normal(size=n)
+        moved = solve(LCP(A, problem.q + H * dq)).x
+        assert found.jvp(dq) == pytest.approx((moved - x) / H, abs=1e-8)
+
+
+def test_what_has_no_derivative_says_so():
+    with pytest.raises(NotDifferentiableError, match="A singular where x is off its bounds"):
+        solve(LCP([[1.0, 1.0], [1.0, 1.0]], [-1.0, -1.0]), x0=[0.5, 0.5]).sensitivity()
+    with pytest.raises(NotDifferentiableError, match="expected one, found none"):
+        solve(LCP([[0.0]], [-1.0])).sensitivity()
+    jammed = solve(LCP([[-1.0]], [0.0])).sensitivity()
+    with pytest.raises(NotDifferentiableError, match="found 2 ways"):
+        jammed.jvp([1.0])
+    with pytest.raises(NotDifferentiableError, match="found no ways"):
+        jammed.jvp([-1.0])
+    with pytest.raises(ValueError, match="dA: expected finite numbers of shape"):
+        jammed.jvp(dA=[1.0])

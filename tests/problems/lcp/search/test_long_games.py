@@ -1,0 +1,24 @@
+"""Games on which the paths of both labels are longer than ten times the order."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from problems.lcp import LCP, solve
+from problems.lcp.pivoting.almost import Ended
+from problems.lcp.pivoting.starts import Game
+from problems.lcp.search.pivots import AT_ORDER
+
+
+def test_they_are_followed_on_before_any_path():
+    m, rho = 100, -0.9
+    X, Y = np.random.default_rng([77, 1]).standard_normal((2, m, m))
+    Y = rho * X + np.sqrt(1.0 - rho * rho) * Y
+    nothing = np.zeros((m, m))
+    problem = LCP(np.block([[nothing, X - X.min() + 1.0], [(Y - Y.min() + 1.0).T, nothing]]), -np.ones(2 * m))
+    game = Game.of(problem)
+    assert game.path(0).run(AT_ORDER * problem.n) is Ended.PIVOTS
+    found = solve(problem)
+    assert found.solved
+    assert not found.paths
+    assert "Lemke and Howson" in found.message
