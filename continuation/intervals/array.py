@@ -66,6 +66,18 @@ class Interval(NDArrayOperatorsMixin):
             raise ValueError(f"lo, hi: expected arrays of one shape with lo <= hi, found {lo!r} and {hi!r}")
         return wrap(Ends(low[None, None], high[None, None]), GRADIENT)
 
+    @staticmethod
+    def of(ends: Ends, algebra: int) -> Interval:
+        """The array with these ends, of shape (coefficients, boxes, *shape), neither checked nor copied.
+
+        Parameters
+        ----------
+        ends : Ends
+        algebra : int
+            `GRADIENT` or `CURVE`.
+        """
+        return wrap(ends, algebra)
+
     @property
     def lo(self) -> Array:
         """Lower ends of the value: shape (*shape), or (boxes, *shape) where there are many."""

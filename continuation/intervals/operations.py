@@ -62,8 +62,8 @@ def compose(rule: Rule, a: Ends, algebra: int) -> Ends:
     value = rule.value(u)
     if len(a.lo) == 1:
         return value
-    first = rule.first(u, value)
-    slopes = first * a[1:]
+    # Some derivatives have a formula where the function has no value.
+    slopes = rule.first(u, value).where(~np.isnan(value.lo) & ~np.isnan(value.hi)) * a[1:]
     if algebra == CURVE:
         half = thin(np.full((1,), 0.5))
         squares = RULES["square"].value(a[1:2])
