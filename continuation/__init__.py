@@ -6,6 +6,7 @@
 from continuation.auditing import arclength, audit, refine
 from continuation.branch_switching import branch_directions, switch_branch
 from continuation.budget import Budget
+from continuation.certificate import Proof, certify
 from continuation.citation import cite
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
@@ -52,6 +53,7 @@ __all__ = [
     "Path",
     "Predictor",
     "Preset",
+    "Proof",
     "Settings",
     "Status",
     "Step",
@@ -63,6 +65,7 @@ __all__ = [
     "arclength",
     "audit",
     "branch_directions",
+    "certify",
     "check_jacobian",
     "cite",
     "from_functions",

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from attrs import evolve, frozen
+from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.intervals.ends import EPS, Ends, thin
+
+Index = NDArray[np.intp]
 
 OVERHANG = 1e-3
 """How far a tube goes beyond both ends of its cell, in lengths of it, so that neighbours overlap."""
@@ -38,13 +43,13 @@ class Cells:
     slope_end: Array
     chart: Array
     radius: Array
-    slabs: Array
+    slabs: Index
     place: Array
 
     def __len__(self) -> int:
         return len(self.begin)
 
-    def take(self, index: Array) -> Cells:
+    def take(self, index: Any) -> Cells:
         """Some of them.
 
         Parameters
@@ -54,7 +59,7 @@ class Cells:
         """
         return Cells(*(getattr(self, name)[index] for name in NAMES))
 
-    def with_tubes(self, radius: Array, slabs: Array) -> Cells:
+    def with_tubes(self, radius: Array, slabs: Index) -> Cells:
         """The same with other radii and numbers of slabs."""
         return evolve(self, radius=radius, slabs=slabs)
 
@@ -95,8 +100,9 @@ def between(
         rate = float(chart @ tangent)
         # A tangent that does not lead on serves no cubic: the chord does.
         slopes.append(tangent * (along / rate) if rate > 0.0 else end - begin)
-    rows = (begin, end, *slopes, chart, np.zeros_like(begin))
-    return Cells(*(row[None] for row in rows), np.ones(1, dtype=np.intp), np.array([place]))
+    first, last = (slope[None] for slope in slopes)
+    nothing, one = np.zeros_like(begin)[None], np.ones(1, dtype=np.intp)
+    return Cells(begin[None], end[None], first, last, chart[None], nothing, one, np.array([place]))
 
 
 @frozen(eq=False)
@@ -112,7 +118,7 @@ class Slabs:
         That of each slab.
     """
 
-    owner: Array
+    owner: Index
     middle: Array
     half: Array
     cells: Cells
@@ -120,7 +126,7 @@ class Slabs:
     def __len__(self) -> int:
         return len(self.owner)
 
-    def take(self, index: Array) -> Slabs:
+    def take(self, index: Any) -> Slabs:
         """Some of them."""
         return Slabs(self.owner[index], self.middle[index], self.half[index], self.cells.take(index))
 
@@ -160,17 +166,16 @@ def slabs_of(cells: Cells) -> Slabs:
     return Slabs(owner, middle, 0.5 * length * (1.0 + 1e-9), cells.take(owner))
 
 
-def at_node(cells: Cells, s: float) -> Slabs:
+def at_node(cells: Cells, s: Array) -> Slabs:
     """Slabs of no length at one end of each cell.
 
     Parameters
     ----------
     cells : Cells
-    s : float
+    s : ndarray, shape (cells,)
         0 or 1.
     """
-    count = len(cells)
-    return Slabs(np.arange(count), np.full(count, s), np.zeros(count), cells)
+    return Slabs(np.arange(len(cells)), s, np.zeros(len(cells)), cells)
 
 
 @frozen(eq=False)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from contextlib import suppress
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
+from continuation.budget import Budget
 from continuation.certificate.cells import Cells, between, joined
-from continuation.certificate.folds import pieces
+from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts, SupportsQuadratic
 from continuation.certificate.test import ByIntervals, Engine
@@ -19,11 +20,18 @@ from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.intervals.ends import Mask
 from continuation.metric import Automatic, Metric
 from continuation.path import Path, Step
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
+from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance
+
+NEXT_TO_END = 1e-6
+"""Where a path has a singular end, in lengths of the parameter's way there, it is proved up to there."""
+
+TAIL_STEPS = 300
 
 DEPTH = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
@@ -42,10 +50,10 @@ def engines(homotopy: Any) -> tuple[Engine, ByIntervals]:
         If the residual does not run on interval arrays; the message names the operation.
     """
     plain = ByIntervals(homotopy.residual)
-    y, lam = homotopy.start()
-    plain.probe(np.append(np.asarray(y, dtype=float), float(lam)))
     if isinstance(homotopy, SupportsQuadratic):
         return ByProducts(homotopy.quadratic()), plain
+    y, lam = homotopy.start()
+    plain.probe(np.append(np.asarray(y, dtype=float), float(lam)))
     return plain, plain
 
 
@@ -85,8 +93,8 @@ def certify(path: Path, homotopy: Any) -> Proof:
     engine, plain = engines(homotopy)
     if path.u.shape[1] != len(np.atleast_1d(homotopy.start()[0])) + 1:
         raise ValueError(f"path: expected points of {homotopy}, found {path.u.shape[1] - 1} unknowns")
-    cells, gaps = Search(engine, plain, homotopy, path).run()
-    return verified(engine, plain, cells, path, homotopy, gaps, proved=True)
+    cells, gaps, found = Search(engine, plain, homotopy, path).run()
+    return verified(engine, plain, cells, path, homotopy, gaps, found)
 
 
 @frozen(eq=False)
@@ -115,20 +123,25 @@ class Search:
     homotopy: Any
     path: Path
 
-    def run(self) -> tuple[Cells, list[Gap]]:
-        """Proved cells in order, and the gaps between them."""
+    def run(self) -> tuple[Cells, list[Gap], list[Piece]]:
+        """Proved cells in order, the gaps between them, and the pieces of the cells."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
-        pending = list(pairwise(self._nodes(solver.evaluator)))
+        nodes = self._nodes(solver.evaluator)
+        tail = self._tail(nodes)
+        pending = list(pairwise([*nodes[: -1 if tail else None], *tail]))
         done: list[Cells] = []
+        told: list[list[Piece]] = []
         gaps: list[Gap] = []
         for depth in range(DEPTH + 1):
             if not pending:
                 break
             found = search(self.engine, joined([_cell(a, b) for a, b in pending]))
+            proved = found.cells.take(found.proved)
+            counted, by_cell = self._counted(proved, depth == DEPTH)
             settled = found.proved.copy()
-            if depth < DEPTH:
-                settled[settled] = self._counted(found.cells.take(found.proved))
-            done.append(found.cells.take(settled))
+            settled[settled] = counted
+            done.append(proved.take(counted))
+            told += by_cell
             failed = [(pair, bool(found.undefined[k])) for k, pair in enumerate(pending) if not settled[k]]
             pending = []
             for (a, b), undefined in failed:
@@ -139,26 +152,51 @@ class Search:
                     why = "the residual has no value, or is not decided, on a box around it" if undefined else middle
                     gaps.append(Gap(a.place, b.place, why))
         cells = joined(done)
-        return cells.take(np.argsort(cells.place[:, 0], kind="stable")), gaps
+        order = np.argsort(cells.place[:, 0], kind="stable")
+        numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
+        return cells.take(order), gaps, numbered
 
-    def _counted(self, cells: Cells) -> Array:
-        """Whether the tubes are thin enough to tell the turning points, cell by cell."""
-        good = np.ones(len(cells), bool)
-        if len(cells):
-            found = pieces(self.engine, self.plain, cells)
-            good[[piece.cell for piece in found if not piece.sign and not piece.bend]] = False
-        return good
+    def _counted(self, cells: Cells, last: bool) -> tuple[Mask, list[list[Piece]]]:
+        """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
+        if not len(cells):
+            return np.zeros(0, bool), []
+        by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
+        for piece in pieces(self.engine, self.plain, cells):
+            by_cell[piece.cell].append(piece)
+        good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
+        return good, [part for part, kept in zip(by_cell, good) if kept]
 
     def _nodes(self, evaluator: Evaluator) -> list[Node]:
         """The stored points; tangents that are not stored, or are those of a chord, computed."""
         weights = _weights(self.homotopy, self.path)
-        out = []
+        out: list[Node] = []
         for k, step in enumerate(self.path.steps):
             tangent = step.tangent
             if not np.isfinite(tangent).all() or _made(step):
                 tangent = self._tangent(evaluator, step.u, weights[k], out[-1].u if out else None)
             out.append(Node(step.u, tangent, weights[k], step.arclength))
         return out
+
+    def _tail(self, nodes: list[Node]) -> list[Node]:
+        """Points up to next to an end that was found otherwise than by a step; none where a tube holds it as it is."""
+        before, end = nodes[-2:]
+        if not _made(self.path.steps[-1]) or search(self.engine, _cell(before, end)).proved.all():
+            return []
+        lam, goal = float(before.u[-1]), float(end.u[-1])
+        near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
+        if lam == goal or (lam - near) * (near - goal) <= 0.0:
+            return []
+        start = (before.u, before.tangent)
+        traced = Tracer(self.homotopy, start=start, target=near, finish=_never, budget=Budget(steps=TAIL_STEPS))
+        with suppress(EvaluationError):
+            for _ in traced:
+                pass
+        found = traced.path
+        if len(found) < 2 or not np.array_equal(found.steps[0].u, before.u):
+            return []
+        rate = (end.place - before.place) / (found.arclength[-1] * (1.0 + NEXT_TO_END))
+        metric = _weights(self.homotopy, found)
+        return [Node(s.u, s.tangent, w, before.place + rate * s.arclength) for s, w in zip(found.steps[1:], metric[1:])]
 
     def _tangent(self, evaluator: Evaluator, u: Array, weights: Array, before: Array | None) -> Array:
         border = weights * (u - before) if before is not None else weights * (self.path.steps[1].u - u)
@@ -178,6 +216,10 @@ class Search:
         except EvaluationError as error:
             return f"no point of the path was found between its ends ({error})"
         return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
+
+
+def _never(y: Array, lam: float) -> None:
+    """No other finish than the target."""
 
 
 def _made(step: Step) -> bool:
@@ -202,6 +244,3 @@ def _weights(homotopy: Any, path: Path) -> list[Array]:
     for u, tangent in zip(points, tangents):
         out.append(own.weights(u, tangent, out[-1] if out else None))
     return out
-
-
-Certify = Callable[[Path, Any], Proof]

@@ -6,16 +6,13 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
+from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
 from continuation.certificate.test import ByIntervals, Engine, Judged, solved, tangent
 from continuation.intervals.calculus import along_curve
 from continuation.intervals.ends import EPS, Ends, bilinear, thin
 
 PARTS, DEPTH = 4, 3
 """A slab without a sign is cut in four, three times at most: where that does not help the tube is too wide."""
-
-NARROW = 1
-"""Cuts after which the second derivative is asked whether the slab holds one turning point."""
 
 
 @frozen(eq=False)
@@ -67,7 +64,7 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
     for depth in range(DEPTH + 1):
         sign, radius, judged = _signs(engine, slabs, refined=depth > 0)
         bend = np.zeros(len(slabs), dtype=np.intp)
-        if depth >= NARROW and not sign.all():
+        if not sign.all():
             bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
         keep = (sign != 0) | (bend != 0) | (depth == DEPTH)
         rows = zip(*(x[keep].tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
@@ -80,11 +77,11 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
     return sorted(found, key=lambda piece: (piece.cell, piece.lo))
 
 
-def _signs(engine: Engine, slabs: Slabs, refined: bool) -> tuple[Array, Array, Judged]:
+def _signs(engine: Engine, slabs: Slabs, refined: bool) -> tuple[Index, Array, Judged]:
     """Signs of the parameter's component, radii within which the curve lies on the slab, and the bounds for them."""
     radius = slabs.cells.radius
     judged = engine.judge(slabs, radius)
-    for _ in range(2 * refined):
+    if refined:
         # The curve lies in the image of its box, which on a part of a tube is smaller.
         with np.errstate(all="ignore"):
             inner = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
@@ -94,7 +91,7 @@ def _signs(engine: Engine, slabs: Slabs, refined: bool) -> tuple[Array, Array, J
     return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0)), radius, judged
 
 
-def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> Array:
+def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> Index:
     """Signs of the derivative of the parameter's component of t, c . t = 1, along the path.
 
     H' t = 0 gives H' t' = -H''(u', t), where u' is t times c . p' > 0: the sign is that of the last component of
@@ -147,4 +144,3 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
         elif before != after:
             out.append(Turn(*place, certain=bool(before and after)))
     return out, unknown
-

@@ -1,4 +1,4 @@
-"""What joins tubes to one curve: a point of the curve at each node, in the tubes on either side, passed in one direction.
+"""What joins tubes to one curve: at each node a point of it that is in the tubes on either side, passed in one way.
 
 At the node that two cells share the test of Krawczyk on a box of no length proves a point z of the left curve with
 |z - u| <= r_t. In the chart of the right cell z belongs to a parameter s' near 0; where p(s') + [-r, r] holds it, it is
@@ -9,15 +9,19 @@ charts, the one goes on where the other ends.
 from __future__ import annotations
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node
 from continuation.certificate.test import Engine, tangent, up_by
 from continuation.certificate.tubes import along, velocity
-from continuation.intervals.ends import EPS, Ends
+from continuation.intervals.ends import EPS, Ends, Mask
 
-ROUNDS = 4
+ROUNDS, RADII = 4, 8
+"""Tests of a node, with derivatives over ever larger boxes, and radii that are tried with one of them."""
+
+CLOSE, ROOM = 1e-9, 1e-3
+"""Of the radii of the tube: the least box around a node, and the one over which derivatives are bounded first."""
 
 NEAR = 32.0
 """Units in the last place: the least box around a node."""
@@ -25,7 +29,7 @@ NEAR = 32.0
 
 @frozen(eq=False)
 class Nodes:
-    """Points of the curve, proved near one end of each cell.
+    """Points of the curve, proved near ends of cells.
 
     Attributes
     ----------
@@ -39,59 +43,57 @@ class Nodes:
     tangent: Ends
 
     @property
-    def proved(self) -> Array:
+    def proved(self) -> Mask:
         """Whether there is a point, cell by cell."""
-        return np.isfinite(self.radius).all(axis=1)
+        return np.asarray(np.isfinite(self.radius).all(axis=1))
+
+    def take(self, index: slice) -> Nodes:
+        """Some of them."""
+        return Nodes(self.radius[index], self.tangent[index])
 
 
-def nodes(engine: Engine, cells: Cells, s: float, chart: Array | None = None) -> Nodes:
+def nodes(engine: Engine, cells: Cells, s: Array) -> Nodes:
     """A point of the curve at one end of each cell.
 
     Parameters
     ----------
     engine : Engine
     cells : Cells
-    s : float
+    s : ndarray, shape (cells,)
         0 or 1.
-    chart : ndarray, optional
-        Another one than that of the cells, shape (cells, N + 1).
     """
-    if chart is not None:
-        cells = evolve(cells, chart=chart)
     slabs = at_node(cells, s)
-    u = cells.begin if s == 0.0 else cells.end
-    least = NEAR * EPS * np.abs(u) + 1e-9 * cells.radius
-    radius, done = least, np.zeros(len(cells), bool)
+    u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
+    least = NEAR * EPS * np.abs(u) + CLOSE * cells.radius
+    largest, done = ROOM * cells.radius + 4.0 * least, np.zeros(len(cells), bool)
     for _ in range(ROUNDS):
-        judged = engine.judge(slabs, radius)
+        judged = engine.judge(slabs, largest)
         with np.errstate(all="ignore"):
-            total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
-        done = (total < radius).all(axis=1)
+            radius = np.fmin(np.maximum(2.0 * judged.misfit, least), largest)
+            for _ in range(RADII):
+                total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
+                done = np.asarray((total < radius).all(axis=1))
+                if done.all():
+                    break
+                radius = np.where(done[:, None], radius, np.fmin(np.maximum(1.5 * total, least), largest))
         if done.all():
             break
-        with np.errstate(all="ignore"):
-            wider = np.maximum(2.0 * total, least)
-        radius = np.where((done | ~np.isfinite(total).all(axis=1))[:, None], radius, wider)
-    else:
-        judged = engine.judge(slabs, radius)
-        with np.errstate(all="ignore"):
-            total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
-        done = (total < radius).all(axis=1)
+        largest = np.where(done[:, None], largest, 8.0 * largest)
     return Nodes(np.where(done[:, None], radius, np.nan), tangent(judged, radius))
 
 
-def reach(cells: Cells, s: float, radius: Array) -> Array:
+def reach(cells: Cells, s: Array, radius: Array) -> Array:
     """How wide a tube has to be at one end to hold every point within `radius` of the node; nan where it ends before.
 
     Parameters
     ----------
     cells : Cells
-    s : float
+    s : ndarray, shape (cells,)
         0 or 1.
     radius : ndarray, shape (cells, N + 1)
     """
     count = len(cells)
-    room = Slabs(np.arange(count), np.full(count, s), np.full(count, 0.9 * OVERHANG), cells)
+    room = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells)
     speed = velocity(room)
     least, _ = along(cells.chart, speed)
     with np.errstate(all="ignore"):
@@ -101,7 +103,7 @@ def reach(cells: Cells, s: float, radius: Array) -> Array:
     return np.where((away <= 0.9 * OVERHANG)[:, None], wide, np.nan)
 
 
-def linked(left: Cells, at: Nodes, right: Cells) -> Array:
+def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
     """Whether the curves of the left cells go on in the right ones.
 
     Parameters
@@ -117,6 +119,6 @@ def linked(left: Cells, at: Nodes, right: Cells) -> Array:
     with np.errstate(all="ignore"):
         same = (left.end == right.begin).all(axis=1)
         inside = (at.radius <= left.radius).all(axis=1)
-        held = (reach(right, 0.0, at.radius) <= right.radius).all(axis=1)
+        held = (reach(right, np.zeros(len(right)), at.radius) <= right.radius).all(axis=1)
         onward, _ = along(right.chart, at.tangent)
-        return same & inside & held & (onward > 0.0)
+        return np.asarray(same & inside & held & (onward > 0.0))

@@ -245,7 +245,9 @@ class Polynomial:
         with np.errstate(all="ignore"):
             sizes, errors = self.derivative.image(x)
             vectors = np.stack([*sizes.transpose(1, 0, 2), *errors.transpose(1, 0, 2)[:3]], axis=-1)
-            through = np.matmul(left, np.concatenate([vectors, self.derivative.products(x, radius)[..., None]], axis=-1))
+            through = np.matmul(
+                left, np.concatenate([vectors, self.derivative.products(x, radius)[..., None]], axis=-1)
+            )
             size, error, quadratic = through[..., :4], through[..., 4:7], through[..., 7]
             along = up_by((np.abs(self.chart) * x).sum(axis=1, keepdims=True), m)
             # |I - Y_0 G_0| x, with the rounding of the product and the errors of G_0.
@@ -259,5 +261,7 @@ class Polynomial:
             second = times(self.second, x) + gamma * (2.0 * size[..., 2] + 2.0 * times(self.size_E, by_E[..., 0]))
             second = second + error[..., 2] + by_E[..., 2]
             linear = first + by_E[..., 1] + by_E[..., 5]
-            total = base + quadratic + t * (linear + t * (second + t * (size[..., 3] + by_E[..., 3] + t * by_E[..., 4])))
+            total = (
+                base + quadratic + t * (linear + t * (second + t * (size[..., 3] + by_E[..., 3] + t * by_E[..., 4])))
+            )
         return up_by(total, 4 * m + 16)

@@ -11,6 +11,7 @@ Computing 4 (1969) 187-201; with the uniqueness of Moore, SIAM J. Numer. Anal. 1
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -71,7 +72,8 @@ def times(matrix: Array, x: Array) -> Array:
 def inverses(matrices: Array) -> Array:
     """Approximate inverses of a stack; nan for a singular one."""
     try:
-        return np.linalg.inv(matrices)
+        found: Array = np.linalg.inv(matrices)
+        return found
     except np.linalg.LinAlgError:
         out = np.full_like(matrices, np.nan)
         for k, matrix in enumerate(matrices):
@@ -177,7 +179,8 @@ class Bounded:
     def spread(self, x: Array, radius: Array) -> Array:
         """Nothing is known (nan) beyond the largest radii."""
         bound = up_by(times(self.off, x), x.shape[1])
-        return np.where((radius <= self.largest).all(axis=1)[:, None], bound, np.nan)
+        known = (radius <= self.largest).all(axis=1, keepdims=True)
+        return np.where(known, bound, np.nan)
 
 
 @frozen(eq=False)
@@ -193,7 +196,7 @@ class Several:
     def of(cls, parts: list[Any]) -> Several:
         """In order."""
         ends = np.cumsum([0, *(len(part.misfit) for part in parts)]).tolist()
-        places = [slice(a, b) for a, b in zip(ends[:-1], ends[1:])]
+        places = [slice(a, b) for a, b in pairwise(ends)]
         misfit, matrices = (np.concatenate([getattr(p, k) for p in parts]) for k in ("misfit", "preconditioner"))
         return cls(parts, misfit, matrices, places)
 

@@ -6,13 +6,16 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
+from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
 from continuation.certificate.test import Engine, Judged
-from continuation.intervals.ends import EPS, Ends, bilinear, thin
+from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
 
 FLOOR = 1e-6
 """Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's
 curve. The curve itself is found where it is, within the misfit."""
+
+ROUND_OFF = 128.0
+"""Units in the last place of the nodes: the same for a component that stands still."""
 
 FIRST = 0.1
 """The radii that a test begins with, in half widths of a slab: they widen the derivatives by so much."""
@@ -44,7 +47,7 @@ def sizes(cells: Cells) -> Array:
     return out + 64.0 * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end)) + np.finfo(float).tiny
 
 
-def holds(slabs: Slabs, judged: Judged, radius: Array) -> Array:
+def holds(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
     """Whether the test holds, slab by slab: the only place where something is proved.
 
     Parameters
@@ -60,7 +63,7 @@ def holds(slabs: Slabs, judged: Judged, radius: Array) -> Array:
     with np.errstate(all="ignore"):
         total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
         # Along the cubic the charts must advance: then each of them is crossed once, in order.
-        return (total < radius).all(axis=1) & (advance(slabs) > 0.0)
+        return np.asarray((total < radius).all(axis=1) & (advance(slabs) > 0.0))
 
 
 def advance(slabs: Slabs) -> Array:
@@ -97,9 +100,9 @@ class Found:
     """
 
     cells: Cells
-    proved: Array
+    proved: Mask
     misfit: Array
-    undefined: Array
+    undefined: Mask
 
 
 def search(engine: Engine, cells: Cells) -> Found:
@@ -133,7 +136,7 @@ def search(engine: Engine, cells: Cells) -> Found:
             factor = np.where(np.isfinite(kappa), np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0)), 4.0)
         grown = np.where(more, np.maximum(2, factor) * slabs[pending], slabs[pending]).astype(np.intp)
         slabs[pending] = np.minimum(grown, MOST_SLABS + 1)
-        again = more | ~np.isfinite(wanted).all(axis=1)
+        again = more | ~np.asarray(np.isfinite(wanted).all(axis=1))
         radius[pending] = np.where(
             (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
         )
@@ -144,7 +147,7 @@ def search(engine: Engine, cells: Cells) -> Found:
 def _fixed_point(slabs: Slabs, judged: Judged, cells: Cells, scale: Array) -> tuple[Array, Array, Array]:
     """Radii a little above what the test gives back, the bound of the contraction, and the misfit in sizes; a cell."""
     count, owner = len(cells), slabs.owner
-    least = FLOOR * scale
+    least = FLOOR * scale + ROUND_OFF * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     with np.errstate(all="ignore"):
         off = _largest(judged.misfit, owner, count)
         radius = np.minimum(np.maximum(2.0 * off, least), cells.radius)
@@ -161,21 +164,21 @@ def _fixed_point(slabs: Slabs, judged: Judged, cells: Cells, scale: Array) -> tu
         return radius, kappa, (off / scale).max(axis=1)
 
 
-def _largest(values: Array, owner: Array, count: int) -> Array:
+def _largest(values: Array, owner: Index, count: int) -> Array:
     """The largest of each cell's slabs; nan where one is."""
     out = np.zeros((count, values.shape[1]))
     np.maximum.at(out, owner, values)
     return out
 
 
-def _every(values: Array, owner: Array, count: int) -> Array:
+def _every(values: Mask, owner: Index, count: int) -> Mask:
     """Whether all of a cell's slabs have it."""
     out = np.ones(count, bool)
     np.logical_and.at(out, owner, values)
     return out
 
 
-def check(engine: Engine, cells: Cells) -> Array:
+def check(engine: Engine, cells: Cells) -> Mask:
     """Whether the tubes of these cells are proved, with the radii and slabs that they have.
 
     Parameters

@@ -167,7 +167,13 @@ class Interval(NDArrayOperatorsMixin):
         return self.linear(lambda x: x.transpose(0, 1, *(axis + 2 for axis in order)))
 
     def linear(self, select: Callable[[Array], Array]) -> Interval:
-        """What an operation that only selects entries makes of it: the same with either end."""
+        """What an operation that only selects entries makes of it: the same with either end.
+
+        Parameters
+        ----------
+        select : callable
+            Of an array of shape (coefficients, boxes, *shape).
+        """
         return wrap(Ends(select(self.ends.lo), select(self.ends.hi)), self.algebra)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
