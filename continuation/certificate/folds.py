@@ -15,6 +15,10 @@ PARTS, DEPTH = 4, 3
 """A slab without a sign is cut in four, three times at most: where that does not help the tube is too wide."""
 
 
+HOPE = 0.3
+"""A cell of whose parts fewer than that are told is not cut further: its tube is too wide."""
+
+
 @frozen(eq=False)
 class Piece:
     """A range of parameters of one cell, with what is known of the parameter's component of the tangent on it.
@@ -66,7 +70,9 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
         bend = np.zeros(len(slabs), dtype=np.intp)
         if not sign.all():
             bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
-        keep = (sign != 0) | (bend != 0) | (depth == DEPTH)
+        known = (sign != 0) | (bend != 0)
+        share = np.bincount(slabs.owner, known) / np.maximum(np.bincount(slabs.owner), 1)
+        keep = known | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
         rows = zip(*(x[keep].tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
         found += [Piece(cell, middle - half, middle + half, a, b) for cell, middle, half, a, b in rows]
         if keep.all():
@@ -86,7 +92,8 @@ def _signs(engine: Engine, slabs: Slabs, refined: bool) -> tuple[Index, Array, J
         with np.errstate(all="ignore"):
             inner = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
             radius = np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
-        judged = engine.judge(slabs, radius)
+        if not engine.exact:
+            judged = engine.judge(slabs, radius)
     t = tangent(judged, radius)
     return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0)), radius, judged
 

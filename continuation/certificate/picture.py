@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells
-from continuation.certificate.proof import Proof
 from continuation.point.segment import HermiteSegment
 
 POINTS = 12
@@ -18,12 +18,14 @@ VISIBLE = 0.004
 """Radii are drawn at least this wide, in widths of the picture: most tubes are thinner than a line."""
 
 
-def draw(proof: Proof, component: int, axes: Any = None) -> Any:
+def draw(cells: Cells, gaps: Sequence[tuple[float, float]], component: int, axes: Any = None) -> Any:
     """The tube in one component against the parameter.
 
     Parameters
     ----------
-    proof : Proof
+    cells : Cells
+    gaps : sequence of tuple of float
+        Arclengths at their ends.
     component : int
         Of y.
     axes : matplotlib axes, optional
@@ -36,7 +38,6 @@ def draw(proof: Proof, component: int, axes: Any = None) -> Any:
 
     if axes is None:
         axes = Figure(figsize=(6.0, 4.0), layout="constrained").subplots()
-    cells = proof.cells
     points = [_points(cells, k) for k in range(len(cells))]
     every = np.concatenate(points)[:, [-1, component]]
     least = VISIBLE * np.maximum(np.ptp(every, axis=0), 1e-300)
@@ -49,13 +50,13 @@ def draw(proof: Proof, component: int, axes: Any = None) -> Any:
             axes.fill(np.repeat(box_x, 2), [*box_y, *box_y[::-1]], color="C0", alpha=0.35, linewidth=0.0)
         axes.plot(lam, y, color="C0", linewidth=0.8)
     axes.plot(every[::POINTS, 0], every[::POINTS, 1], ".", color="black", markersize=3, label="nodes")
-    for gap in proof.gaps:
-        ends = [p for p, (a, b) in zip(points, cells.place) if b == gap.begin or a == gap.end]
+    for begin, end in gaps:
+        ends = [p for p, (a, b) in zip(points, cells.place) if b == begin or a == end]
         for curve in ends:
             axes.plot(curve[[0, -1], -1], curve[[0, -1], component], "x", color="C3")
     axes.set_xlabel("parameter")
     axes.set_ylabel(f"y[{component}]")
-    axes.set_title("complete" if proof.complete else f"{len(proof.gaps)} gaps")
+    axes.set_title(f"{len(gaps)} gaps" if gaps else "complete")
     return axes
 
 

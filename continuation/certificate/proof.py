@@ -110,4 +110,4 @@ class Proof:
         """
         from continuation.certificate.picture import draw
 
-        return draw(self, component, axes)
+        return draw(self.cells, [(gap.begin, gap.end) for gap in self.gaps], component, axes)

@@ -8,7 +8,7 @@ Y(s) = (I - x E) Y_0 with x = s - middle, which leaves terms of second order in 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from attrs import frozen
@@ -110,6 +110,7 @@ class ByProducts:
     """
 
     form: Quadratic
+    exact: ClassVar[bool] = True
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `continuation.certificate.test.Engine.judge`; valid for all radii."""

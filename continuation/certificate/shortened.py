@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from continuation.auditing import Halved
-from continuation.certificate.certify import certify
+from continuation.certificate.certifying import certify
 from continuation.certificate.proof import Proof
 from continuation.step.options import Options
 from continuation.step.tracer import Tracer

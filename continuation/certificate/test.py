@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from attrs import frozen
@@ -50,7 +50,15 @@ class Judged(Protocol):
 
 
 class Engine(Protocol):
-    """A way to bound what Krawczyk's test needs."""
+    """A way to bound what Krawczyk's test needs.
+
+    Attributes
+    ----------
+    exact : bool
+        Whether bounds hold for all radii, and smaller ones need no new judgement.
+    """
+
+    exact: ClassVar[bool]
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
@@ -72,8 +80,7 @@ def times(matrix: Array, x: Array) -> Array:
 def inverses(matrices: Array) -> Array:
     """Approximate inverses of a stack; nan for a singular one."""
     try:
-        found: Array = np.linalg.inv(matrices)
-        return found
+        return np.asarray(np.linalg.inv(matrices), dtype=float)
     except np.linalg.LinAlgError:
         out = np.full_like(matrices, np.nan)
         for k, matrix in enumerate(matrices):
@@ -93,6 +100,7 @@ class ByIntervals:
     """
 
     residual: Callable[[Any, Any], Any]
+    exact: ClassVar[bool] = False
 
     def image(self, u: Interval) -> Interval:
         """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""

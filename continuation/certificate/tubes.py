@@ -14,7 +14,7 @@ FLOOR = 1e-6
 """Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's
 curve. The curve itself is found where it is, within the misfit."""
 
-ROUND_OFF = 128.0
+ROUND_OFF = 1024.0
 """Units in the last place of the nodes: the same for a component that stands still."""
 
 FIRST = 0.1
@@ -157,7 +157,7 @@ def _fixed_point(slabs: Slabs, judged: Judged, cells: Cells, scale: Array) -> tu
             image = _largest(judged.spread(radius[owner], np.minimum(radius, cells.radius)[owner]), owner, count)
             kappa = (image / radius).max(axis=1)
             total = off + image
-            inside = (total * (1.0 + 8.0 * EPS) < radius).all(axis=1)
+            inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
             if inside.all():
                 break
             radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))

@@ -105,6 +105,8 @@ def _joined_up(engine: Engine, cells: Cells) -> tuple[Cells, Nodes, Mask, Nodes]
         needed = reach(right, np.zeros(len(right)), at.radius[:-1])
         wanted[1:] = np.maximum(wanted[1:], np.where(np.isfinite(needed), WIDER * needed, 0.0))
         changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
+        if not len(changed):
+            break
         tried = cells.take(changed).with_tubes(wanted[changed], cells.slabs[changed])
         good = check(engine, tried)
         radius = cells.radius.copy()

@@ -150,16 +150,17 @@ def bilinear(product: Callable[[Array, Array], Array], a: Ends, b: Ends) -> Ends
         `accumulated`: numpy's, in whatever order they add.
     a, b : Ends
     """
-    ma, mb = a.middle(), b.middle()
-    ra, rb = a.radius(ma), b.radius(mb)
+    # Intervals of one number, made by `thin`, have no radius to be computed: of large matrices that is what costs.
+    ma, mb = (x.lo if x.lo is x.hi else x.middle() for x in (a, b))
+    ra, rb = (None if x.lo is x.hi else x.radius(m) for x, m in ((a, ma), (b, mb)))
     size_a, size_b = np.abs(ma), np.abs(mb)
     centre, sizes = product(ma, mb), product(size_a, size_b)
     count = float(np.max(product(np.ones_like(ma[:1]), np.ones_like(mb[:1])), initial=1.0))
     radius = accumulated(count) * sizes
-    if rb.any():
+    if rb is not None and rb.any():
         radius = radius + product(size_a, rb)
-    if ra.any():
-        radius = radius + product(ra, size_b + rb)
+    if ra is not None and ra.any():
+        radius = radius + product(ra, size_b if rb is None else size_b + rb)
     radius = radius * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
     radius = np.where(sizes + radius == 4.0 * count * TINIEST, 0.0, radius) if _exact_zeros(sizes, a, b) else radius
     return Ends(-up_sum(radius - centre), up_sum(centre + radius))
