@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
@@ -14,6 +14,9 @@ from continuation.intervals.ends import EPS, Ends, bilinear, thin
 PARTS, DEPTH = 4, 3
 """A slab without a sign is cut in four, three times at most: where that does not help the tube is too wide."""
 
+
+NARROWER = 3
+"""How often the box around a curve is replaced by its image where that takes no new bounds."""
 
 HOPE = 0.3
 """A cell of whose parts fewer than that are told is not cut further: its tube is too wide."""
@@ -64,9 +67,10 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
         Proved ones.
     """
     slabs = slabs_of(cells)
+    radius = slabs.cells.radius
     found: list[Piece] = []
     for depth in range(DEPTH + 1):
-        sign, radius, judged = _signs(engine, slabs, refined=depth > 0)
+        sign, radius, judged = _signs(engine, slabs, radius, depth > 0)
         bend = np.zeros(len(slabs), dtype=np.intp)
         if not sign.all():
             bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
@@ -78,23 +82,21 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
         if keep.all():
             break
         # The curve in a part lies where that in the whole does: radii that were found are kept.
-        narrowed = evolve(slabs, cells=slabs.cells.with_tubes(radius, slabs.cells.slabs))
-        slabs = narrowed.take(~keep).halved(PARTS)
+        slabs, radius = slabs.take(~keep).halved(PARTS), np.repeat(radius[~keep], PARTS, axis=0)
     return sorted(found, key=lambda piece: (piece.cell, piece.lo))
 
 
-def _signs(engine: Engine, slabs: Slabs, refined: bool) -> tuple[Index, Array, Judged]:
+def _signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> tuple[Index, Array, Judged]:
     """Signs of the parameter's component, radii within which the curve lies on the slab, and the bounds for them."""
-    radius = slabs.cells.radius
     judged = engine.judge(slabs, radius)
-    if refined:
+    for _ in range(NARROWER if engine.exact else int(narrow)):
         # The curve lies in the image of its box, which on a part of a tube is smaller.
         with np.errstate(all="ignore"):
             inner = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
             radius = np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
         if not engine.exact:
             judged = engine.judge(slabs, radius)
-    t = tangent(judged, radius)
+    t = tangent(judged, radius, slabs.cells.radius)
     return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0)), radius, judged
 
 
@@ -104,7 +106,8 @@ def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> I
     H' t = 0 gives H' t' = -H''(u', t), where u' is t times c . p' > 0: the sign is that of the last component of
     -G'^{-1} (H''(t, t), 0).
     """
-    t, x = tangent(judged, radius), slabs.offset[:, None]
+    tube, x = slabs.cells.radius, slabs.offset[:, None]
+    t = tangent(judged, radius, tube)
     box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
     with np.errstate(all="ignore"):
         image = plain.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).ends
@@ -112,7 +115,7 @@ def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> I
             return np.zeros(len(slabs), dtype=np.intp)
         column = Ends(image.lo[2][..., None], image.hi[2][..., None])
         half = bilinear(np.matmul, thin(judged.preconditioner[:, :, :-1]), column)
-        v = solved(judged, Ends(half.lo[..., 0], half.hi[..., 0]), radius)
+        v = solved(judged, Ends(half.lo[..., 0], half.hi[..., 0]), radius, tube)
         return np.where(v.hi[:, -1] < 0.0, 1, np.where(v.lo[:, -1] > 0.0, -1, 0))
 
 

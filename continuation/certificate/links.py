@@ -79,7 +79,7 @@ def nodes(engine: Engine, cells: Cells, s: Array) -> Nodes:
         if done.all():
             break
         largest = np.where(done[:, None], largest, 8.0 * largest)
-    return Nodes(np.where(done[:, None], radius, np.nan), tangent(judged, radius))
+    return Nodes(np.where(done[:, None], radius, np.nan), tangent(judged, radius, radius))
 
 
 def reach(cells: Cells, s: Array, radius: Array) -> Array:

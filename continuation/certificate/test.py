@@ -229,29 +229,40 @@ def _side_by_side(parts: list[Interval]) -> Interval:
     return Interval.of(Ends(lo, hi), parts[0].algebra)
 
 
-def tangent(judged: Judged, radius: Array) -> Ends:
-    """The tangent t of the curve in a tube, c . t = 1, over each slab, shape (slabs, N + 1); nan where unknown."""
-    column = judged.preconditioner[:, :, -1]
-    return solved(judged, thin(column), radius)
+def tangent(judged: Judged, radius: Array, tube: Array) -> Ends:
+    """The tangent t of the curve, c . t = 1, over each slab, shape (slabs, N + 1); nan where unknown.
+
+    Parameters
+    ----------
+    judged : Judged
+    radius : ndarray, shape (slabs, N + 1)
+        Within which the curve lies.
+    tube : ndarray, shape (slabs, N + 1)
+        Radii with which the test holds, for a norm.
+    """
+    return solved(judged, thin(judged.preconditioner[:, :, -1]), radius, tube)
 
 
-def solved(judged: Judged, v: Ends, radius: Array) -> Ends:
+def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
     """The solutions of G' z = b for v that holds Y(middle) b, all over the slab.
 
-    With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1;
-    bounds E |Y(s) b| <= theta r and E r <= kappa r make that theta r / (1 - kappa).
+    With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1:
+    two terms, and a geometric series, as E^3 |Y(s) b| <= theta r and E r <= kappa r.
 
     Parameters
     ----------
     judged : Judged
     v : Ends
-    radius : ndarray, shape (slabs, N + 1)
+    radius, tube : ndarray, shape (slabs, N + 1)
+        As in `tangent`.
     """
     with np.errstate(all="ignore"):
         slack = judged.moved(v.magnitude())
         v = v + Ends(-slack, slack)
-        kappa = (judged.spread(radius, radius) / radius).max(axis=1) * (1.0 + 4.0 * EPS)
-        theta = (judged.spread(v.magnitude(), radius) / radius).max(axis=1) * (1.0 + 4.0 * EPS)
+        first = judged.spread(v.magnitude(), radius)
+        second = judged.spread(first, radius)
+        kappa = (judged.spread(tube, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
+        theta = (judged.spread(second, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
         factor = np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * (1.0 + 8.0 * EPS)
-        room = up_by(factor[:, None] * radius, 1)
+        room = up_by(first + second + factor[:, None] * tube, 3)
         return v + Ends(-room, room)
