@@ -73,6 +73,10 @@ def trace(
     if proof is not None:
         tracer.path.proof = proof
         tracer.path.message = f"{tracer.path.message} {proof}"
+        if isinstance(archive, (str, PathLike)):
+            from continuation.archive import add_proof
+
+            add_proof(archive, proof)
     return tracer.path
 
 

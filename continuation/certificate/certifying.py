@@ -15,6 +15,7 @@ from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts, SupportsQuadratic
+from continuation.certificate.second import confirmed
 from continuation.certificate.test import ByIntervals, Engine
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
@@ -98,6 +99,41 @@ def certify(path: Path, homotopy: Any) -> Proof:
         raise ValueError(f"path: expected points of {homotopy}, found {path.u.shape[1] - 1} unknowns")
     cells, gaps, found = Search(engine, plain, homotopy, path).run()
     return verified(engine, plain, cells, path, homotopy, gaps, found)
+
+
+def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
+    """Check a proof again, every condition, with the charts and radii that it has.
+
+    Parameters
+    ----------
+    cells : Cells
+        Of a proof, perhaps from a file.
+    path : Path
+        What they are to prove.
+    homotopy : Homotopy
+    second : bool
+        Whether python-flint is asked as well, tube by tube.
+
+    Returns
+    -------
+    Proof
+
+    Raises
+    ------
+    ImportError
+        If it is to be asked and is not installed.
+    """
+    engine, plain = engines(homotopy)
+    proof = verified(engine, plain, cells, path, homotopy, [])
+    if not second:
+        return proof
+    places = proof.cells.place.tolist()
+    doubts = [
+        Gap(begin, end, "python-flint does not confirm the tube")
+        for (begin, end), good in zip(places, confirmed(homotopy.residual, proof.cells))
+        if not good
+    ]
+    return evolve(proof, gaps=(*proof.gaps, *doubts))
 
 
 @frozen(eq=False)

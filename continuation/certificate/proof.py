@@ -30,7 +30,7 @@ class Gap:
         return f"from s = {self.begin:.6g} to {self.end:.6g}: {self.reason}"
 
 
-@frozen(eq=False)
+@frozen(eq=False, repr=False)
 class Proof:
     """A proof that a traced path is one path, or how far it goes.
 
@@ -51,8 +51,6 @@ class Proof:
         What is known of the end, in words.
     end_radius : ndarray or None
         Where the end is proved to lie on the curve, exactly at the target: how far from the stored one it is at most.
-    evaluations : int
-        Calls of the residual and factorisations that the search took beside those of interval arithmetic.
     """
 
     cells: Cells
@@ -61,6 +59,20 @@ class Proof:
     turning_points: tuple[tuple[float, float], ...]
     end: str
     end_radius: Array | None = None
+
+    @classmethod
+    def empty(cls, width: int, gap: Gap) -> Proof:
+        """One of nothing.
+
+        Parameters
+        ----------
+        width : int
+            N + 1.
+        gap : Gap
+        """
+        rows, none = np.zeros((0, width)), np.zeros(0, dtype=np.intp)
+        cells = Cells(rows, rows, rows, rows, rows, rows, none, np.zeros((0, 2)))
+        return cls(cells, rows, (gap,), (), "")
 
     @property
     def complete(self) -> bool:
@@ -71,6 +83,9 @@ class Proof:
     def boxes(self) -> int:
         """How many boxes hold the path: one a cell, more where a cell was cut into slabs."""
         return int(self.cells.slabs.sum())
+
+    def __repr__(self) -> str:
+        return f"<Proof: {self}>"
 
     def __str__(self) -> str:
         if self.complete:
