@@ -30,6 +30,27 @@ class Gap:
         return f"from s = {self.begin:.6g} to {self.end:.6g}: {self.reason}"
 
 
+def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
+    """In order, those that touch and have one reason as one.
+
+    Parameters
+    ----------
+    gaps : list of Gap
+    """
+    out: list[Gap] = []
+    for gap in sorted(gaps, key=lambda gap: (gap.reason, gap.begin, gap.end)):
+        if out and out[-1].reason == gap.reason and gap.begin <= out[-1].end:
+            last = out.pop()
+            out.append(Gap(last.begin, max(last.end, gap.end), gap.reason))
+        else:
+            out.append(gap)
+    return tuple(sorted(out, key=lambda gap: (gap.begin, gap.end)))
+
+
+SHOWN = 4
+"""Gaps in a sentence; the others are counted."""
+
+
 @frozen(eq=False, repr=False)
 class Proof:
     """A proof that a traced path is one path, or how far it goes.
@@ -91,7 +112,8 @@ class Proof:
         if self.complete:
             turns = len(self.turning_points)
             return f"Proved: one curve through all points, {turns} turning points, {self.boxes} boxes. {self.end}"
-        return "Not proved " + "; ".join(str(gap) for gap in self.gaps)
+        more = f"; and {len(self.gaps) - SHOWN} more" if len(self.gaps) > SHOWN else ""
+        return "Not proved " + "; ".join(str(gap) for gap in self.gaps[:SHOWN]) + more
 
     def radius(self, s: float) -> Array:
         """The tube's radius at arclength s, shape (N + 1,): nan in a gap.

@@ -12,7 +12,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined
 from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.links import Nodes, linked, nodes, reach
-from continuation.certificate.proof import Gap, Proof
+from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.test import ByIntervals, Engine
 from continuation.certificate.tubes import along, check
 from continuation.intervals.ends import Ends, Mask, thin
@@ -80,8 +80,7 @@ def verified(
     gaps += more + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
     gaps += missing
-    gaps.sort(key=lambda gap: (gap.begin, gap.end))
-    return Proof(cells, at.radius, tuple(gaps), turning, end, radius)
+    return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Cells, Nodes, Mask, Nodes]:

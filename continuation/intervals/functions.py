@@ -203,6 +203,11 @@ def _append(arr: Any, values: Any, axis: Any = None) -> Any:
     return RULES[np.concatenate]([arr, values], axis)
 
 
+def _bincount(x: Any, weights: Any, minlength: int = 0) -> Any:
+    places = np.arange(max(minlength, int(np.max(x, initial=-1)) + 1))
+    return (places[:, None] == x).astype(float) @ as_interval(weights)
+
+
 def _clip(a: Any, a_min: Any = None, a_max: Any = None) -> Any:
     a = a if a_min is None else np.maximum(a, a_min)
     return a if a_max is None else np.minimum(a, a_max)
@@ -231,6 +236,7 @@ RULES: dict[Any, Callable[..., Any]] = {
     np.tensordot: _tensordot,
     np.einsum: _einsum,
     np.append: _append,
+    np.bincount: _bincount,
     np.where: _where,
     np.clip: _clip,
     np.zeros_like: lambda a, dtype=None, *, shape=None: _like(a, 0.0, dtype, shape),
