@@ -13,10 +13,10 @@ from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.folds import Piece, pieces
+from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts, SupportsQuadratic
 from continuation.certificate.second import confirmed
-from continuation.certificate.test import ByIntervals, Engine
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
 from continuation.counts import Counts

@@ -7,7 +7,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
-from continuation.certificate.test import ByIntervals, Engine, Judged, solved, tangent
+from continuation.certificate.krawczyk import ByIntervals, Engine, Judged, solved, tangent
 from continuation.intervals.calculus import along_curve
 from continuation.intervals.ends import EPS, Ends, bilinear, thin
 

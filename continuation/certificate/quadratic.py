@@ -15,7 +15,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs, expansion
-from continuation.certificate.test import Judged, Several, inverses, times, up_by
+from continuation.certificate.krawczyk import Judged, Several, inverses, times, up_by
 from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin
 
 ENTRIES = 4_000_000
@@ -113,7 +113,7 @@ class ByProducts:
     exact: ClassVar[bool] = True
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
-        """As `continuation.certificate.test.Engine.judge`; valid for all radii."""
+        """As `continuation.certificate.krawczyk.Engine.judge`; valid for all radii."""
         m = radius.shape[1]
         size = max(1, ENTRIES // (m * m))
         parts = np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))

@@ -7,7 +7,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
-from continuation.certificate.test import Engine, Judged
+from continuation.certificate.krawczyk import Engine, Judged
 from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
 
 FLOOR = 1e-6

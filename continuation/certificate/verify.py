@@ -11,9 +11,9 @@ from attrs import evolve
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined
 from continuation.certificate.folds import Piece, Turn, pieces, turns
+from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.links import Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.test import ByIntervals, Engine
 from continuation.certificate.tubes import along, check
 from continuation.intervals.ends import Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
