@@ -131,12 +131,6 @@ class Slabs:
         return Slabs(self.owner[index], self.middle[index], self.half[index], self.cells.take(index))
 
     @property
-    def range(self) -> Ends:
-        """The parameters, shape (slabs, 1): a little more than middle +- half."""
-        slack = 4.0 * EPS * (1.0 + np.abs(self.middle) + self.half)
-        return Ends((self.middle - self.half - slack)[:, None], (self.middle + self.half + slack)[:, None])
-
-    @property
     def offset(self) -> Array:
         """At least the distance of any parameter of the range from the middle, shape (slabs,)."""
         return np.where(self.half > 0.0, self.half * (1.0 + 8.0 * EPS) + 8.0 * EPS * (1.0 + np.abs(self.middle)), 0.0)

@@ -93,15 +93,12 @@ class Found:
     cells : Cells
         With radii and slabs.
     proved : ndarray of bool, shape (cells,)
-    misfit : ndarray, shape (cells,)
-        How far the cubic is off the path, in sizes of the cell: large where the stored points are too far apart.
     undefined : ndarray of bool, shape (cells,)
         Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
     """
 
     cells: Cells
     proved: Mask
-    misfit: Array
     undefined: Mask
 
 
@@ -116,7 +113,7 @@ def search(engine: Engine, cells: Cells) -> Found:
     count, scale = len(cells), sizes(cells)
     radius = np.zeros_like(scale)
     slabs = cells.slabs.copy()
-    proved, undefined, misfit = np.zeros(count, bool), np.zeros(count, bool), np.full(count, np.inf)
+    proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     radius[:] = FIRST * scale / (2.0 * slabs[:, None])
     pending = np.arange(count)
     for _ in range(ROUNDS):
@@ -127,7 +124,6 @@ def search(engine: Engine, cells: Cells) -> Found:
         judged = engine.judge(parts, tried.radius[parts.owner])
         wanted, kappa, off = _fixed_point(parts, judged, tried, scale[pending])
         good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
-        misfit[pending] = off
         undefined[pending] = ~np.isfinite(off)
         radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
@@ -141,7 +137,7 @@ def search(engine: Engine, cells: Cells) -> Found:
             (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
         )
         pending = pending[~good & (slabs[pending] <= MOST_SLABS)]
-    return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, misfit, undefined)
+    return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, undefined)
 
 
 def _fixed_point(slabs: Slabs, judged: Judged, cells: Cells, scale: Array) -> tuple[Array, Array, Array]:
