@@ -72,7 +72,8 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
     for depth in range(DEPTH + 1):
         sign, radius, judged = _signs(engine, slabs, radius, depth > 0)
         bend = np.zeros(len(slabs), dtype=np.intp)
-        if not sign.all():
+        # Where bounds are sharp, a first cut tells most of what has no sign, for less than the second derivative costs.
+        if not sign.all() and (depth or not engine.exact):
             bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
         known = (sign != 0) | (bend != 0)
         share = np.bincount(slabs.owner, known) / np.maximum(np.bincount(slabs.owner), 1)

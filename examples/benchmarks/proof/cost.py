@@ -102,7 +102,7 @@ def picture(file: str, found: list) -> None:
     right.plot([t[0] for t in table], [t[1] for t in table], "s-", label="points")
     right.plot([t[0] for t in table], [t[2] for t in table], "o-", label="boxes")
     right.set_xscale("log")
-    right.set_ylim(bottom=0.0)
+    right.set_ylim(0.0, 1.3 * max(t[2] for t in table))
     right.set_xlabel("tolerance of the trace")
     right.set_ylabel("number (Freudenstein and Roth)")
     right.legend()
