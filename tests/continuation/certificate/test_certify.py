@@ -256,7 +256,10 @@ def test_a_certified_trace_is_the_same_trace_where_that_is_proved(tmp_path):
     assert again.complete
     assert len(again.turning_points) == 2
     with open_archive(file) as archive:
-        np.testing.assert_array_equal(archive[0].u, path.u)
+        stored = archive[0]
+    np.testing.assert_array_equal(stored.u, path.u)
+    assert np.isnan(stored.tangents).any()  # computed again where a file has none
+    assert certify(stored, FreudensteinRoth()).complete
 
 
 def test_a_changed_certificate_proves_nothing(tmp_path):
