@@ -6,6 +6,7 @@
 from continuation.auditing import arclength, audit, refine
 from continuation.branch_switching import branch_directions, switch_branch
 from continuation.budget import Budget
+from continuation.certificate import Proof, certify
 from continuation.citation import cite
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
@@ -54,6 +55,7 @@ __all__ = [
     "Path",
     "Predictor",
     "Preset",
+    "Proof",
     "Settings",
     "Status",
     "Step",
@@ -65,6 +67,7 @@ __all__ = [
     "arclength",
     "audit",
     "branch_directions",
+    "certify",
     "check_jacobian",
     "cite",
     "from_functions",

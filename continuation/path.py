@@ -156,6 +156,8 @@ class Path:
         There: the path is a power series in |lam - target|^(1 / winding_number).
     rejected : tuple of Rejected
         The attempts that failed at the last point, where the path ended for want of a step.
+    proof : Proof or None
+        That it is one path, where that was asked for (`continuation.certify`).
     """
 
     steps: list[Step] = field(factory=list)
@@ -168,6 +170,7 @@ class Path:
     end_error: float | None = None
     winding_number: int | None = None
     rejected: tuple[Rejected, ...] = ()
+    proof: Any = None
 
     def __len__(self) -> int:
         return len(self.steps)

@@ -19,6 +19,7 @@ def trace(
     *,
     archive: str | PathLike[str] | Observer | None = None,
     progress: bool = False,
+    certified: bool = False,
     observers: Sequence[Observer] = (),
     state: State | None = None,
     **options: Unpack[Options],
@@ -33,6 +34,9 @@ def trace(
         An HDF5 file to write the path to; must not exist.
     progress : bool, default False
         Show a progress bar (needs tqdm).
+    certified : bool, default False
+        Prove the path (`continuation.certify`), with steps shortened until that succeeds; `path.proof` and the message
+        say what was proved. Needs a residual that runs on interval arrays.
     observers : sequence of Observer, default ()
         Watch the trace: a plot, a log.
     state : State, default None
@@ -51,6 +55,11 @@ def trace(
         For bad input: a homotopy without the methods needed, a start that is not finite, an unknown option.
     """
     each("observers", observers, OBSERVER)
+    proof = None
+    if certified:
+        from continuation.certificate.shortened import provable
+
+        options, proof = provable(homotopy, options)
     watching = list(observers)
     if archive is not None:
         watching.append(_log(archive))
@@ -61,6 +70,13 @@ def trace(
     tracer = Tracer(homotopy, observers=watching, state=state, **options)
     for _ in tracer:
         pass
+    if proof is not None:
+        tracer.path.proof = proof
+        tracer.path.message = f"{tracer.path.message} {proof}"
+        if isinstance(archive, (str, PathLike)):
+            from continuation.archive import add_proof
+
+            add_proof(archive, proof)
     return tracer.path
 
 

@@ -4,6 +4,7 @@ The schema is `continuation-path-2` (`continuation.archive.schema`): two tables,
 xarray (engines h5netcdf and netCDF4) and every netCDF-4 tool read without this package.
 """
 
+from continuation.archive.certificates import add_proof, recheck
 from continuation.archive.codec import SupportsArchive
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
 from continuation.archive.export import export
@@ -29,10 +30,12 @@ __all__ = [
     "Selection",
     "SupportsArchive",
     "Table",
+    "add_proof",
     "describe",
     "export",
     "merge",
     "open_archive",
+    "recheck",
     "recover",
     "resume",
     "trace_many",

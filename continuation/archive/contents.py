@@ -84,6 +84,11 @@ class Contents:
         if self._image.missing:
             self.flaws.append(f"its last {self._image.missing} bytes are missing")
 
+    @property
+    def root(self) -> Any:
+        """The root of the file, for groups that only some files have."""
+        return self._h5
+
     def close(self) -> None:
         """Close the file."""
         self._h5.close()

@@ -26,16 +26,15 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
     parser.add_argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps")
     parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
-    parser.add_argument(
-        "--trust",
-        action="append",
-        default=[],
-        type=_named,
-        metavar="MODULE:NAME",
-        help="a class or function that may be made, besides what is installed; can be given again",
-    )
+    _add_trust(parser)
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.set_defaults(run=_resume)
+
+    parser = subparsers.add_parser("recheck", help="check the proofs of an archive again, without tracing")
+    parser.add_argument("file", metavar="FILE", help="an archive with certificates")
+    _add_trust(parser)
+    parser.add_argument("--second", action="store_true", help="by python-flint's ball arithmetic as well")
+    parser.set_defaults(run=_recheck)
 
     parser = subparsers.add_parser("recover", help="make whole what a killed writer left")
     parser.add_argument("file", metavar="FILE", help="replaced by a copy of all that was committed")
@@ -52,6 +51,17 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("target", metavar="OUT", help="a new archive")
     parser.add_argument("files", metavar="FILE", nargs="+", help="archives with the same number of unknowns")
     parser.set_defaults(run=_merge)
+
+
+def _add_trust(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--trust",
+        action="append",
+        default=[],
+        type=_named,
+        metavar="MODULE:NAME",
+        help="a class or function that may be made, besides what is installed; can be given again",
+    )
 
 
 def _inspect(arguments: argparse.Namespace) -> int:
@@ -86,6 +96,19 @@ def _named(path: str) -> Any:
         return attrgetter(name)(import_module(module))
     except (ImportError, AttributeError, ValueError) as error:
         raise argparse.ArgumentTypeError(f"expected module:name, found {path!r} ({error})") from None
+
+
+def _recheck(arguments: argparse.Namespace) -> int:
+    from continuation.archive import recheck
+    from continuation.certificate.second import available
+
+    if arguments.second and not available():
+        raise UsageError("--second", "python-flint is not installed; pip install continuation[proof]")
+    with complaints("FILE"):
+        proofs = recheck(arguments.file, trust=arguments.trust, second=arguments.second)
+    for number, proof in enumerate(proofs):
+        print(f"path {number}: {proof}")
+    return SUCCESS if proofs and all(proof.complete for proof in proofs) else FAILURE
 
 
 def _recover(arguments: argparse.Namespace) -> int:

@@ -10,12 +10,14 @@ import scipy.sparse as sp
 from attrs import evolve, frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.certificate.quadratic import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, require_lcp
 from problems.lcp.homotopies.interior import RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.kkt_system import KKTSystem, factor_kkt
+from problems.lcp.homotopies.quadratics import exact_end, kkt_form
 from problems.lcp.homotopies.references import DUTTA_DAS_JANA
 from problems.lcp.homotopies.starts import Start, centred, default_start, natural_units, positive_vector, relaxed_w
 from problems.options import quiet
@@ -206,6 +208,20 @@ class KKTHomotopy:
             defect[2 * n :] = convolved(z2, w, k)
             c[k] = point.solve(-defect)
         return c
+
+    def quadratic(self) -> Quadratic:
+        """H as affine parts and one product of them, for proofs of paths."""
+        return kkt_form(self)
+
+    def certify_end(self, y: Array) -> str:
+        """A sentence on the exact solution at x, where there is one.
+
+        Parameters
+        ----------
+        y : ndarray
+            The end of a path.
+        """
+        return exact_end(self.problem, y[: self.n])
 
     def max_step(self, u: Array, v: Array) -> float:
         """How far along v until x, z1, z2 or w = A x + q + lambda rho reaches zero; lambda itself is free."""

@@ -70,7 +70,9 @@ class Sides:
         return y if self.problem.standard else self._summed(self.sign * y)
 
     def _summed(self, values: Array) -> Array:
-        return np.asarray(np.bincount(self.index, values, self.problem.n), dtype=float)
+        # Times 1.0: of no values numpy counts in integers; and interval arrays are to pass.
+        total: Array = np.multiply(1.0, np.bincount(self.index, values, self.problem.n))
+        return total
 
     def sizes(self, x: Array, unit: float) -> Array:
         """In what an unknown is large or small: its distance from the nearest bound, or itself but at least a unit."""

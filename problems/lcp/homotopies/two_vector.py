@@ -13,6 +13,7 @@ import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.certificate.quadratic import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
@@ -20,6 +21,7 @@ from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_proble
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
+from problems.lcp.homotopies.quadratics import exact_end, pairs_form
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import inside_start, inside_vector, natural_units, positive_vector
 from problems.lcp.proof.phase1 import strictly_feasible_start
@@ -156,6 +158,20 @@ class TwoVectorHomotopy:
             defect[n:] = convolved(self.sides.pull(x), y, k)
             c[k] = point.solve(-defect)
         return c
+
+    def quadratic(self) -> Quadratic:
+        """H as affine parts and one product of them, for proofs of paths."""
+        return pairs_form(self)
+
+    def certify_end(self, y: Array) -> str:
+        """A sentence on the exact solution at x, where there is one.
+
+        Parameters
+        ----------
+        y : ndarray
+            The end of a path.
+        """
+        return exact_end(self.problem, y[: self.n])
 
     def max_step(self, u: Array, v: Array) -> float:
         """How far along v until a bound or a zero of y is reached; lambda itself is free."""

@@ -1,0 +1,164 @@
+"""Proofs of paths in the group `/certificate`: what was found, so that it can be checked again without a trace.
+
+A file is a data source here as elsewhere: charts, radii and nodes are read as numbers, checked against their checksums
+and shapes, and prove nothing until every condition has been tested again (`recheck`).
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Sequence
+from contextlib import closing
+from os import PathLike
+from pathlib import Path as File
+from typing import Any
+
+import h5py
+import numpy as np
+
+from continuation.archive.atomic import as_file, beside, like, publish, short
+from continuation.archive.checks import DamageError, digest
+from continuation.archive.datasets import StructureError, dataset, names, subgroup
+from continuation.archive.errors import ArchiveError
+from continuation.archive.files import FAULTS
+from continuation.archive.reader import Archive, open_archive
+from continuation.archive.recover import own
+from continuation.archive.resume import stored_homotopy
+from continuation.archive.trust import registry
+from continuation.certificate.cells import NAMES, Cells
+from continuation.certificate.certifying import recheck as checked_again
+from continuation.certificate.proof import Gap, Proof
+
+GROUP = "certificate"
+
+_COLUMNS = {"slabs": np.dtype("i8"), "place": np.dtype("f8")}
+"""Types of what is not a vector of the path's length; `place` has two numbers a cell."""
+
+
+def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
+    """Put a proof into a closed archive, in place of one that is there.
+
+    Parameters
+    ----------
+    file : path
+        It is copied, and the copy put in its place.
+    proof : Proof
+    path : int
+        Number of the path that it proves; the last one by default.
+
+    Raises
+    ------
+    ArchiveError
+        If the file cannot be read or replaced, or has no such path.
+    """
+    name = File(os.path.realpath(as_file("file", file)))
+    with open_archive(name) as source, closing(own(source.contents, name)):
+        number = range(len(source))[path]
+        with beside(name) as part:
+            shutil.copyfile(name, part)
+            with h5py.File(part, "r+") as copy:
+                group = copy.require_group(GROUP)
+                if str(number) in group:
+                    del group[str(number)]
+                _write(group.create_group(str(number)), proof)
+            like(part, name)
+            publish(part, name, replace=True)
+
+
+def _write(group: Any, proof: Proof) -> None:
+    group.attrs["summary"] = str(proof)[:1000]
+    for column in NAMES:
+        values = np.ascontiguousarray(getattr(proof.cells, column))
+        group.create_dataset(column, data=values.astype(_COLUMNS.get(column, "f8")))
+        group[column].attrs["checksum"] = np.uint32(digest(group[column][()]))
+
+
+def read_cells(archive: Archive, path: int) -> Cells | None:
+    """The cells of a stored proof; None where the path has none.
+
+    Parameters
+    ----------
+    archive : Archive
+    path : int
+
+    Raises
+    ------
+    ArchiveError
+        If they are not what was written.
+    """
+    try:
+        return _read(archive.contents.root, path, archive.layout.unknowns + 1)
+    except FAULTS as error:
+        raise ArchiveError(
+            f"{archive.contents.file}: the certificate of path {path} is damaged ({short(error)})"
+        ) from None
+
+
+def _read(root: Any, path: int, width: int) -> Cells | None:
+    if GROUP not in names(root):
+        return None
+    group = subgroup(root, GROUP)
+    if str(path) not in names(group):
+        return None
+    group, columns, count = subgroup(group, str(path)), {}, None
+    for column in NAMES:
+        shape: Sequence[int | None] = (None,) if column == "slabs" else (None, 2 if column == "place" else width)
+        found = dataset(group, column, _COLUMNS.get(column, np.dtype("f8")), shape)
+        found = dataset(group, column, None, found.shape)
+        values = np.asarray(found[()])
+        if digest(values) != found.attrs["checksum"]:
+            raise DamageError(f"{column} is not what was written")
+        count = len(values) if count is None else count
+        if len(values) != count or not np.isfinite(values).all():
+            raise StructureError(f"{column} has {len(values)} rows, or numbers that are not finite")
+        columns[column] = values
+    if count and not (columns["slabs"].min() >= 1 and columns["slabs"].max() <= _MOST_SLABS):
+        raise StructureError("slabs are not from 1 to 64")
+    return Cells(**columns)
+
+
+_MOST_SLABS = 64
+"""More is in no file of ours, and would take long to check."""
+
+
+def recheck(
+    file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = (), second: bool = False
+) -> list[Proof]:
+    """Check the proofs of an archive again, every condition, without tracing.
+
+    Parameters
+    ----------
+    file : path
+    homotopy : Homotopy, optional
+        Needed where the file cannot say how to make it.
+    trust : sequence of class or function
+        What may be made, as for `resume`.
+    second : bool
+        By python-flint's balls as well, an arithmetic of other authors: needs that package and takes longer.
+
+    Returns
+    -------
+    list of Proof
+        One a path; a path without a certificate has a gap from its first point to its last.
+
+    Raises
+    ------
+    ArchiveError
+        If the file cannot be read, its certificate is damaged, or its homotopy cannot be made.
+    """
+    with open_archive(file) as source:
+        if homotopy is None:
+            checkpoint = source.checkpoint()
+            if checkpoint is None:
+                raise ArchiveError(f"{source.file}: says nothing of its homotopy; pass homotopy=")
+            homotopy = stored_homotopy(source, checkpoint, registry(trust))
+        out = []
+        for number in range(len(source)):
+            path, cells = source.path(number), read_cells(source, number)
+            if cells is None:
+                span = float(path.arclength[0]), float(path.arclength[-1])
+                out.append(Proof.empty(path.u.shape[1], Gap(*span, "the file holds no certificate")))
+            else:
+                out.append(checked_again(cells, path, homotopy, second))
+        return out

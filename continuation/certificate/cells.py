@@ -1,0 +1,216 @@
+"""Pieces of a path that are proved one by one: a cubic, a chart across it, and the radii of a tube around it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from continuation.intervals.ends import EPS, Ends, thin
+
+Index = NDArray[np.intp]
+
+OVERHANG = 1e-3
+"""How far a tube goes beyond both ends of its cell, in lengths of it, so that neighbours overlap."""
+
+
+@frozen(eq=False)
+class Cells:
+    """Pieces in order, each from the node where the one before ends; arrays of shape (cells, N + 1) but for two.
+
+    Attributes
+    ----------
+    begin, end : ndarray
+        The nodes: p(0) and p(1) of the Hermite cubic p.
+    slope_begin, slope_end : ndarray
+        p'(0) and p'(1).
+    chart : ndarray
+        The vector c: a point u belongs to the parameter s with c . (u - p(s)) = 0.
+    radius : ndarray
+        The tube: |u - p(s)| <= radius, component by component.
+    slabs : ndarray of int, shape (cells,)
+        Into how many parts of equal length the parameter is cut for the test.
+    place : ndarray, shape (cells, 2)
+        Arclengths of the path at either end.
+    """
+
+    begin: Array
+    end: Array
+    slope_begin: Array
+    slope_end: Array
+    chart: Array
+    radius: Array
+    slabs: Index
+    place: Array
+
+    def __len__(self) -> int:
+        return len(self.begin)
+
+    def take(self, index: Any) -> Cells:
+        """Some of them.
+
+        Parameters
+        ----------
+        index : ndarray
+            Of numbers or truth values.
+        """
+        return Cells(*(getattr(self, name)[index] for name in NAMES))
+
+    def with_tubes(self, radius: Array, slabs: Index) -> Cells:
+        """The same with other radii and numbers of slabs."""
+        return evolve(self, radius=radius, slabs=slabs)
+
+
+NAMES = tuple(Cells.__annotations__)
+
+
+def joined(parts: list[Cells]) -> Cells:
+    """One after the other.
+
+    Parameters
+    ----------
+    parts : list of Cells
+    """
+    return Cells(*(np.concatenate([getattr(part, name) for part in parts]) for name in NAMES))
+
+
+def between(
+    begin: Array, tangent_begin: Array, end: Array, tangent_end: Array, weights: Array, place: tuple[float, float]
+) -> Cells:
+    """The cell between two nodes with these tangents, across its chord in the metric; no tube yet.
+
+    Parameters
+    ----------
+    begin, end : ndarray, shape (N + 1,)
+    tangent_begin, tangent_end : ndarray, shape (N + 1,)
+        Of any length.
+    weights : ndarray, shape (N + 1,)
+        The metric.
+    place : tuple of float
+        Arclengths.
+    """
+    chart = weights * (end - begin)
+    chart = chart / (float(np.abs(chart).max()) or 1.0)
+    along = float(chart @ (end - begin))
+    slopes = []
+    for tangent in (tangent_begin, tangent_end):
+        rate = float(chart @ tangent)
+        # A tangent that does not lead on serves no cubic: the chord does.
+        slopes.append(tangent * (along / rate) if rate > 0.0 else end - begin)
+    first, last = (slope[None] for slope in slopes)
+    nothing, one = np.zeros_like(begin)[None], np.ones(1, dtype=np.intp)
+    return Cells(begin[None], end[None], first, last, chart[None], nothing, one, np.array([place]))
+
+
+@frozen(eq=False)
+class Slabs:
+    """Parts of cells: the parameter within `half` of `middle`; arrays of shape (slabs,) and of cells, one a slab.
+
+    Attributes
+    ----------
+    owner : ndarray of int
+        The cell of each.
+    middle, half : ndarray
+    cells : Cells
+        That of each slab.
+    """
+
+    owner: Index
+    middle: Array
+    half: Array
+    cells: Cells
+
+    def __len__(self) -> int:
+        return len(self.owner)
+
+    def take(self, index: Any) -> Slabs:
+        """Some of them."""
+        return Slabs(self.owner[index], self.middle[index], self.half[index], self.cells.take(index))
+
+    @property
+    def offset(self) -> Array:
+        """At least the distance of any parameter of the range from the middle, shape (slabs,)."""
+        return np.where(self.half > 0.0, self.half * (1.0 + 8.0 * EPS) + 8.0 * EPS * (1.0 + np.abs(self.middle)), 0.0)
+
+    def halved(self, parts: int) -> Slabs:
+        """Each cut into so many."""
+        steps = (2.0 * np.arange(parts) + 1.0) / parts - 1.0
+        middle = (self.middle[:, None] + self.half[:, None] * steps).ravel()
+        index = np.repeat(np.arange(len(self)), parts)
+        # A little longer than a part: together they cover the whole, whatever rounding does.
+        half = np.repeat(self.half / parts, parts) * (1.0 + 1e-9)
+        return Slabs(self.owner[index], middle, half, self.cells.take(index))
+
+
+def slabs_of(cells: Cells) -> Slabs:
+    """All slabs of all cells, in order; those of one cell cover [-OVERHANG, 1 + OVERHANG].
+
+    Parameters
+    ----------
+    cells : Cells
+    """
+    counts = cells.slabs.astype(np.intp)
+    owner = np.repeat(np.arange(len(cells)), counts)
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+    length = (1.0 + 2.0 * OVERHANG) / counts[owner]
+    middle = (number + 0.5) * length - OVERHANG
+    return Slabs(owner, middle, 0.5 * length * (1.0 + 1e-9), cells.take(owner))
+
+
+def at_node(cells: Cells, s: Array) -> Slabs:
+    """Slabs of no length at one end of each cell.
+
+    Parameters
+    ----------
+    cells : Cells
+    s : ndarray, shape (cells,)
+        0 or 1.
+    """
+    return Slabs(np.arange(len(cells)), s, np.zeros(len(cells)), cells)
+
+
+@frozen(eq=False)
+class Expansion:
+    """The cubic about the middle of a slab: p(middle + x) = sum_k q_k x^k, exactly, as intervals that hold q_k."""
+
+    q: tuple[Ends, Ends, Ends, Ends]
+
+    def over(self, x: Ends) -> tuple[Ends, Ends, Ends]:
+        """p, p' and p''/2 over offsets x of shape (slabs, 1)."""
+        q0, q1, q2, q3 = self.q
+        two, three = thin(np.full((1, 1), 2.0)), thin(np.full((1, 1), 3.0))
+        value = q0 + x * (q1 + x * (q2 + x * q3))
+        first = q1 + x * (two * q2 + three * x * q3)
+        return value, first, q2 + three * x * q3
+
+
+def expansion(slabs: Slabs) -> Expansion:
+    """The cubics of slabs about their middles.
+
+    Parameters
+    ----------
+    slabs : Slabs
+    """
+    cells, m = slabs.cells, thin(slabs.middle[:, None])
+    d0, d1 = thin(cells.slope_begin), thin(cells.slope_end)
+    chord = thin(cells.end) - thin(cells.begin)
+    two, three = thin(np.full((1, 1), 2.0)), thin(np.full((1, 1), 3.0))
+    a2, a3 = three * chord - two * d0 - d1, d0 + d1 - two * chord
+    # From the nearer end, where the cubic is that node, and round-off of the other one does not count.
+    from_end = (slabs.middle > 0.5)[:, None]
+    t = Ends(*(np.where(from_end, e, f) for e, f in zip(_ends(m - thin(np.ones((1, 1)))), _ends(m))))
+    b2 = a2 + three * a3
+    base, slope, bend = (
+        Ends(np.where(from_end, p.lo, q.lo), np.where(from_end, p.hi, q.hi))
+        for p, q in ((thin(cells.end), thin(cells.begin)), (d1, d0), (b2, a2))
+    )
+    q0 = base + t * (slope + t * (bend + t * a3))
+    q1 = slope + t * (two * bend + three * t * a3)
+    return Expansion((q0, q1, bend + three * t * a3, a3))
+
+
+def _ends(x: Ends) -> tuple[Array, Array]:
+    return x.lo, x.hi

@@ -1,0 +1,288 @@
+"""`certify`: from a traced path to a proof that it is one path."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation.arrays import Array
+from continuation.budget import Budget
+from continuation.certificate.cells import Cells, between, joined
+from continuation.certificate.folds import Piece, pieces
+from continuation.certificate.krawczyk import ByIntervals, Engine
+from continuation.certificate.proof import Gap, Proof
+from continuation.certificate.quadratic import ByProducts, SupportsQuadratic
+from continuation.certificate.second import confirmed
+from continuation.certificate.tubes import search
+from continuation.certificate.verify import verified
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.intervals.ends import Mask
+from continuation.metric import Automatic, Metric
+from continuation.path import Path, Step
+from continuation.point.linearization import Linearization, linearize
+from continuation.point.projection import PathSolver
+from continuation.step.tracer import Tracer
+from continuation.tolerance import Tolerance
+
+NEXT_TO_END = 1e-6
+"""Where a path has a singular end, in lengths of the parameter's way there, it is proved up to there."""
+
+TAIL_STEPS = 300
+
+FINE = 4
+"""Slabs of a halved cell to begin with: its misfit is of third order in their length, and thin tubes tell more."""
+
+DEPTH = 8
+"""How often a cell is halved: its error, of fourth order, is then below round-off."""
+
+
+def engines(homotopy: Any) -> tuple[Engine, ByIntervals]:
+    """What bounds derivatives for this homotopy: by products where it is quadratic; and by intervals, which all can.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+
+    Raises
+    ------
+    TypeError
+        If the residual does not run on interval arrays; the message names the operation.
+    """
+    plain = ByIntervals(homotopy.residual)
+    if isinstance(homotopy, SupportsQuadratic):
+        return ByProducts(homotopy.quadratic()), plain
+    y, lam = homotopy.start()
+    plain.probe(np.append(np.asarray(y, dtype=float), float(lam)))
+    return plain, plain
+
+
+def certify(path: Path, homotopy: Any) -> Proof:
+    """Prove that a traced path is one path: what is proved, and gaps where it is not.
+
+    Between two points runs the Hermite cubic through points and tangents; around it a tube is sought in which
+    Krawczyk's test holds for every parameter, so that it has exactly one curve, without branch points, folds allowed.
+    Cells that fail are halved at a new point that the corrector finds. Neighbouring tubes are linked at their nodes,
+    turning points are counted and compared with those of the path, and the end is joined to the target.
+
+    Parameters
+    ----------
+    path : Path
+        Traced or read from an archive; tangents that it does not have are computed.
+    homotopy : Homotopy
+        The one that was traced. Its residual is to run on interval arrays as it runs on jets; a homotopy that is
+        quadratic and says so (`quadratic`) is proved at a fraction of the cost of its trace.
+
+    Returns
+    -------
+    Proof
+
+    Raises
+    ------
+    TypeError
+        If the residual does not run on interval arrays; the message names the operation.
+    ValueError
+        If the path has fewer than two points, or not those of this homotopy.
+
+    References
+    ----------
+    Krawczyk, Computing 4 (1969) 187-201; for curves, Breden, Lessard and Vanicat, Acta Appl. Math. 128 (2013) 113-152.
+    """
+    if len(path) < 2:
+        raise ValueError(f"path: expected at least two points, found {len(path)}")
+    engine, plain = engines(homotopy)
+    if path.u.shape[1] != len(np.atleast_1d(homotopy.start()[0])) + 1:
+        raise ValueError(f"path: expected points of {homotopy}, found {path.u.shape[1] - 1} unknowns")
+    cells, gaps, found = Search(engine, plain, homotopy, path).run()
+    return verified(engine, plain, cells, path, homotopy, gaps, found)
+
+
+def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
+    """Check a proof again, every condition, with the charts and radii that it has.
+
+    Parameters
+    ----------
+    cells : Cells
+        Of a proof, perhaps from a file.
+    path : Path
+        What they are to prove.
+    homotopy : Homotopy
+    second : bool
+        Whether python-flint is asked as well, tube by tube.
+
+    Returns
+    -------
+    Proof
+
+    Raises
+    ------
+    ImportError
+        If it is to be asked and is not installed.
+    """
+    engine, plain = engines(homotopy)
+    proof = verified(engine, plain, cells, path, homotopy, [])
+    if not second:
+        return proof
+    places = proof.cells.place.tolist()
+    doubts = [
+        Gap(begin, end, "python-flint does not confirm the tube")
+        for (begin, end), good in zip(places, confirmed(homotopy.residual, proof.cells))
+        if not good
+    ]
+    return evolve(proof, gaps=(*proof.gaps, *doubts))
+
+
+@frozen(eq=False)
+class Node:
+    """A point of the path with its tangent and the metric there."""
+
+    u: Array
+    tangent: Array
+    weights: Array
+    place: float
+
+
+@frozen(eq=False, slots=False)
+class Search:
+    """The search for cells and tubes.
+
+    Attributes
+    ----------
+    engine : Engine
+    homotopy : Homotopy
+    path : Path
+    """
+
+    engine: Engine
+    plain: ByIntervals
+    homotopy: Any
+    path: Path
+
+    def run(self) -> tuple[Cells, list[Gap], list[Piece]]:
+        """Proved cells in order, the gaps between them, and the pieces of the cells."""
+        solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
+        nodes = self._nodes(solver.evaluator)
+        tail = self._tail(nodes)
+        pending = list(pairwise([*nodes[: -1 if tail else None], *tail]))
+        done: list[Cells] = []
+        told: list[list[Piece]] = []
+        gaps: list[Gap] = []
+        for depth in range(DEPTH + 1):
+            if not pending:
+                break
+            trial = joined([_cell(a, b) for a, b in pending])
+            if depth:
+                trial = trial.with_tubes(trial.radius, np.full(len(trial), FINE))
+            found = search(self.engine, trial)
+            proved = found.cells.take(found.proved)
+            counted, by_cell = self._counted(proved, depth == DEPTH)
+            settled = found.proved.copy()
+            settled[settled] = counted
+            done.append(proved.take(counted))
+            told += by_cell
+            failed = [(pair, bool(found.undefined[k])) for k, pair in enumerate(pending) if not settled[k]]
+            pending = []
+            for (a, b), undefined in failed:
+                middle = self._middle(solver, a, b) if depth < DEPTH else "no tube holds it, however short"
+                if isinstance(middle, Node):
+                    pending += [(a, middle), (middle, b)]
+                else:
+                    why = "the residual has no value, or is not decided, on a box around it" if undefined else middle
+                    gaps.append(Gap(a.place, b.place, why))
+        cells = joined(done)
+        order = np.argsort(cells.place[:, 0], kind="stable")
+        numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
+        return cells.take(order), gaps, numbered
+
+    def _counted(self, cells: Cells, last: bool) -> tuple[Mask, list[list[Piece]]]:
+        """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
+        if not len(cells):
+            return np.zeros(0, bool), []
+        by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
+        for piece in pieces(self.engine, self.plain, cells):
+            by_cell[piece.cell].append(piece)
+        good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
+        return good, [part for part, kept in zip(by_cell, good) if kept]
+
+    def _nodes(self, evaluator: Evaluator) -> list[Node]:
+        """The stored points; tangents that are not stored, or are those of a chord, computed."""
+        weights = _weights(self.homotopy, self.path)
+        out: list[Node] = []
+        for k, step in enumerate(self.path.steps):
+            tangent = step.tangent
+            if not np.isfinite(tangent).all() or _made(step):
+                tangent = self._tangent(evaluator, step.u, weights[k], out[-1].u if out else None)
+            out.append(Node(step.u, tangent, weights[k], step.arclength))
+        return out
+
+    def _tail(self, nodes: list[Node]) -> list[Node]:
+        """Points up to next to an end that was found otherwise than by a step; none where a tube holds it as it is."""
+        before, end = nodes[-2:]
+        if not _made(self.path.steps[-1]) or search(self.engine, _cell(before, end)).proved.all():
+            return []
+        lam, goal = float(before.u[-1]), float(end.u[-1])
+        near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
+        if lam == goal or (lam - near) * (near - goal) <= 0.0:
+            return []
+        start = (before.u, before.tangent)
+        traced = Tracer(self.homotopy, start=start, target=near, finish=_never, budget=Budget(steps=TAIL_STEPS))
+        with suppress(EvaluationError):
+            for _ in traced:
+                pass
+        found = traced.path
+        if len(found) < 2 or not np.array_equal(found.steps[0].u, before.u):
+            return []
+        rate = (end.place - before.place) / (found.arclength[-1] * (1.0 + NEXT_TO_END))
+        metric = _weights(self.homotopy, found)
+        return [Node(s.u, s.tangent, w, before.place + rate * s.arclength) for s, w in zip(found.steps[1:], metric[1:])]
+
+    def _tangent(self, evaluator: Evaluator, u: Array, weights: Array, before: Array | None) -> Array:
+        border = weights * (u - before) if before is not None else weights * (self.path.steps[1].u - u)
+        try:
+            return linearize(evaluator, u, weights, border).tangent
+        except EvaluationError:
+            return np.full_like(u, np.nan)
+
+    def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
+        """A point of the path between two nodes, or why there is none."""
+        cell = _cell(a, b)
+        guess = 0.5 * (a.u + b.u) + 0.125 * (cell.slope_begin[0] - cell.slope_end[0])
+        chart = cell.chart[0]
+        try:
+            near = linearize(solver.evaluator, guess, a.weights, chart)
+            found: Linearization = solver.project_and_linearize(near, guess, chart)
+        except EvaluationError as error:
+            return f"no point of the path was found between its ends ({error})"
+        return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
+
+
+def _never(y: Array, lam: float) -> None:
+    """No other finish than the target."""
+
+
+def _made(step: Step) -> bool:
+    """Whether a point was not stepped to, but is an end that was found otherwise: its tangent is a chord."""
+    return step.index > 0 and step.segment is None and step.corrector_iterations == 0
+
+
+def _cell(a: Node, b: Node) -> Cells:
+    return between(a.u, a.tangent, b.u, b.tangent, a.weights, (a.place, b.place))
+
+
+def _weights(homotopy: Any, path: Path) -> list[Array]:
+    """The metric at each point: the homotopy's own, or one by how far the path has gone up to the next point."""
+    points, tangents = path.u, path.tangents
+    own: Metric | None = getattr(homotopy, "metric", None)
+    if own is None:
+        extent = np.maximum.accumulate(np.abs(points - points[0]), axis=0)
+        extent = np.vstack([extent[1:], extent[-1:]])
+        extent = np.where(extent > 0.0, extent, extent.max(axis=1, keepdims=True))
+        return [Automatic().of_extent(np.where(row > 0.0, row, 1.0)) for row in extent]
+    out: list[Array] = []
+    for u, tangent in zip(points, tangents):
+        out.append(own.weights(u, tangent, out[-1] if out else None))
+    return out

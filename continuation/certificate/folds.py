@@ -1,0 +1,157 @@
+"""The turning points of a proved path: where the parameter's component of the tangent has no sign, and how many."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
+from continuation.certificate.krawczyk import ByIntervals, Engine, Judged, solved, tangent
+from continuation.intervals.calculus import along_curve
+from continuation.intervals.ends import EPS, Ends, bilinear, thin
+
+PARTS, DEPTH = 4, 3
+"""A slab without a sign is cut in four, three times at most: where that does not help the tube is too wide."""
+
+
+NARROWER = 3
+"""How often the box around a curve is replaced by its image where that takes no new bounds."""
+
+HOPE = 0.3
+"""A cell of whose parts fewer than that are told is not cut further: its tube is too wide."""
+
+
+@frozen(eq=False)
+class Piece:
+    """A range of parameters of one cell, with what is known of the parameter's component of the tangent on it.
+
+    Attributes
+    ----------
+    cell : int
+    lo, hi : float
+    sign : int
+        Of that component; 0 where it has none.
+    bend : int
+        Sign of its derivative along the path; 0 where it is not known.
+    """
+
+    cell: int
+    lo: float
+    hi: float
+    sign: int
+    bend: int
+
+
+@frozen(eq=False)
+class Turn:
+    """A range in which the path has exactly one turning point, in cells: number + parameter.
+
+    At an end of the path it is not `certain`: the point may lie a little beyond.
+    """
+
+    lo: float
+    hi: float
+    certain: bool
+
+
+def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
+    """Pieces of all cells in order, cut until the sign of the tangent, or of its derivative, is known.
+
+    Parameters
+    ----------
+    engine : Engine
+    plain : ByIntervals
+        For second derivatives.
+    cells : Cells
+        Proved ones.
+    """
+    slabs = slabs_of(cells)
+    radius = slabs.cells.radius
+    found: list[Piece] = []
+    for depth in range(DEPTH + 1):
+        sign, radius, judged = _signs(engine, slabs, radius, depth > 0)
+        bend = np.zeros(len(slabs), dtype=np.intp)
+        # Where bounds are sharp, a first cut tells most of what has no sign, for less than the second derivative costs.
+        if not sign.all() and (depth or not engine.exact):
+            bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
+        known = (sign != 0) | (bend != 0)
+        share = np.bincount(slabs.owner, known) / np.maximum(np.bincount(slabs.owner), 1)
+        keep = known | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
+        rows = zip(*(x[keep].tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
+        found += [Piece(cell, middle - half, middle + half, a, b) for cell, middle, half, a, b in rows]
+        if keep.all():
+            break
+        # The curve in a part lies where that in the whole does: radii that were found are kept.
+        slabs, radius = slabs.take(~keep).halved(PARTS), np.repeat(radius[~keep], PARTS, axis=0)
+    return sorted(found, key=lambda piece: (piece.cell, piece.lo))
+
+
+def _signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> tuple[Index, Array, Judged]:
+    """Signs of the parameter's component, radii within which the curve lies on the slab, and the bounds for them."""
+    judged = engine.judge(slabs, radius)
+    for _ in range(NARROWER if engine.exact else int(narrow)):
+        # The curve lies in the image of its box, which on a part of a tube is smaller.
+        with np.errstate(all="ignore"):
+            inner = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
+            radius = np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
+        if not engine.exact:
+            judged = engine.judge(slabs, radius)
+    t = tangent(judged, radius, slabs.cells.radius)
+    return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0)), radius, judged
+
+
+def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> Index:
+    """Signs of the derivative of the parameter's component of t, c . t = 1, along the path.
+
+    H' t = 0 gives H' t' = -H''(u', t), where u' is t times c . p' > 0: the sign is that of the last component of
+    -G'^{-1} (H''(t, t), 0).
+    """
+    tube, x = slabs.cells.radius, slabs.offset[:, None]
+    t = tangent(judged, radius, tube)
+    box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
+    with np.errstate(all="ignore"):
+        image = plain.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).ends
+        if len(image.lo) < 3:  # constant along every line: no derivative has a sign
+            return np.zeros(len(slabs), dtype=np.intp)
+        column = Ends(image.lo[2][..., None], image.hi[2][..., None])
+        half = bilinear(np.matmul, thin(judged.preconditioner[:, :, :-1]), column)
+        v = solved(judged, Ends(half.lo[..., 0], half.hi[..., 0]), radius, tube)
+        return np.where(v.hi[:, -1] < 0.0, 1, np.where(v.lo[:, -1] > 0.0, -1, 0))
+
+
+def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
+    """Turning points in order, and ranges in which they could not be counted.
+
+    Pieces without a sign form runs. A run on which the derivative has one sign all along, between different signs, has
+    exactly one turning point; between equal signs none is possible with it. Other runs are not understood.
+
+    Parameters
+    ----------
+    found : list of Piece
+
+    Returns
+    -------
+    turns : list of Turn
+    unknown : list of tuple of float
+    """
+    out: list[Turn] = []
+    unknown: list[tuple[float, float]] = []
+    k = 0
+    while k < len(found):
+        if found[k].sign:
+            k += 1
+            continue
+        begin = k
+        while k < len(found) and not found[k].sign:
+            k += 1
+        run = found[begin:k]
+        place = (run[0].cell + run[0].lo, run[-1].cell + run[-1].hi)
+        before = found[begin - 1].sign if begin else 0
+        after = found[k].sign if k < len(found) else 0
+        bends = {piece.bend for piece in run}
+        if len(bends) != 1 or 0 in bends:
+            unknown.append(place)
+        elif before != after:
+            out.append(Turn(*place, certain=bool(before and after)))
+    return out, unknown

@@ -1,0 +1,268 @@
+"""Krawczyk's test on slabs, for any homotopy whose residual runs on interval arrays.
+
+In the chart c . (u - p(s)) = 0 let G(s, u) = (H(u), c . (u - p(s))), and Y any matrix. If for every s of a slab
+
+    |Y G(s, p(s))| + |I - Y G'(p(s) + d)| r < r    for all |d| <= r, component by component,
+
+then p(s) + [-r, r] holds exactly one zero of G(s, .) for every such s, and it moves smoothly with s: one arc (Krawczyk,
+Computing 4 (1969) 187-201; with the uniqueness of Moore, SIAM J. Numer. Anal. 14 (1977) 611-615).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Slabs, expansion
+from continuation.intervals.array import Interval, UndecidedError, as_interval
+from continuation.intervals.calculus import along_curve, derivatives, with_gradient
+from continuation.intervals.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
+
+ENTRIES = 2_000_000
+"""Numbers of one array while many slabs go through a residual together: 16 MB."""
+
+
+class Judged(Protocol):
+    """What is known of slabs once their derivatives have been bounded."""
+
+    @property
+    def misfit(self) -> Array:
+        """A bound of |Y G(s, p(s))|, shape (slabs, N + 1); nan where there is none."""
+        ...
+
+    @property
+    def preconditioner(self) -> Array:
+        """Y in the middle of each slab, shape (slabs, N + 1, N + 1)."""
+        ...
+
+    def moved(self, x: Array) -> Array:
+        """A bound of |Y(s) z - Y(middle) z| where |Y(middle) z| <= x, shape (slabs, N + 1)."""
+        ...
+
+    def spread(self, x: Array, radius: Array) -> Array:
+        """A bound of |I - Y G'(p(s) + d)| x for |d| <= radius and x >= 0; both of shape (slabs, N + 1)."""
+        ...
+
+
+class Engine(Protocol):
+    """A way to bound what Krawczyk's test needs.
+
+    Attributes
+    ----------
+    exact : bool
+        Whether bounds hold for all radii, and smaller ones need no new judgement.
+    """
+
+    exact: ClassVar[bool]
+
+    def judge(self, slabs: Slabs, radius: Array) -> Judged:
+        """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
+        ...
+
+
+def up_by(x: Array, count: int) -> Array:
+    """A bound for sums of `count` products of numbers >= 0 that were rounded in any order."""
+    bound: Array = x * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
+    return bound
+
+
+def times(matrix: Array, x: Array) -> Array:
+    """Matrices times vectors, slab by slab."""
+    product: Array = np.matmul(matrix, x[..., None])[..., 0]
+    return product
+
+
+def inverses(matrices: Array) -> Array:
+    """Approximate inverses of a stack; nan for a singular one."""
+    try:
+        return np.asarray(np.linalg.inv(matrices), dtype=float)
+    except np.linalg.LinAlgError:
+        out = np.full_like(matrices, np.nan)
+        for k, matrix in enumerate(matrices):
+            if np.isfinite(matrix).all() and np.linalg.matrix_rank(matrix) == len(matrix):
+                out[k] = np.linalg.inv(matrix)
+        return out
+
+
+@frozen(eq=False)
+class ByIntervals:
+    """Any homotopy: derivatives over the boxes by interval arithmetic.
+
+    Attributes
+    ----------
+    residual : callable
+        ``residual(y, lam)``, of the homotopy.
+    """
+
+    residual: Callable[[Any, Any], Any]
+    exact: ClassVar[bool] = False
+
+    def image(self, u: Interval) -> Interval:
+        """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""
+        whole: Any = u
+        try:
+            return as_interval(self.residual(whole[:-1], whole[-1]))
+        except UndecidedError:
+            count = u.ends.lo.shape[1]
+            if count == 1:
+                shape = (len(u.ends.lo), 1, u.size - 1)
+                return Interval.of(thin(np.full(shape, np.nan)), u.algebra)
+            halves = (slice(None, count // 2), slice(count // 2, None))
+            parts = [self.image(u.linear(lambda x, half=half: x[:, half])) for half in halves]  # type: ignore[misc]
+            return _side_by_side(parts)
+
+    def probe(self, u: Array) -> None:
+        """Run the residual on one point: TypeError, naming the operation, where it cannot be."""
+        self.image(with_gradient(u[None], u[None]))
+
+    def judge(self, slabs: Slabs, radius: Array) -> Judged:
+        """As `Engine.judge`."""
+        m = radius.shape[1]
+        size = max(1, ENTRIES // (m * (m + 1)))
+        parts = [
+            self._judge(slabs.take(part), radius[part])
+            for part in np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
+        ]
+        return parts[0] if len(parts) == 1 else Several.of(parts)
+
+    def _judge(self, slabs: Slabs, radius: Array) -> Bounded:
+        curve, x = expansion(slabs), slabs.offset[:, None]
+        value, first, bend = curve.over(Ends(-x, x))
+        box = value + Ends(-radius, radius)
+        lo, hi = derivatives(self.image(with_gradient(box.lo, box.hi)), radius.shape[1])
+        middle = 0.5 * lo + 0.5 * hi
+        chart = slabs.cells.chart[:, None, :]
+        full = np.concatenate([middle, chart], axis=1)
+        with np.errstate(all="ignore"):
+            Y = inverses(full)
+            width = Ends(lo, hi).radius(middle)
+            size_Y, m = np.abs(Y), radius.shape[1]
+            off = np.abs(np.eye(m) - np.matmul(Y, full))
+            # Rounding of Y times the middle, of the subtraction, and the width of the derivative.
+            off = up_by(off + accumulated(m) * (np.matmul(size_Y, np.abs(full)) + np.eye(m)), 2)
+            off = off + up_by(np.matmul(size_Y[:, :, :-1], width), m)
+            misfit = self._misfit(curve, (value, first, bend), Y[:, :, :-1], x)
+        return Bounded(misfit, Y, up_by(off, 1), radius)
+
+    def _misfit(self, curve: Any, over: tuple[Ends, Ends, Ends], Y: Array, x: Array) -> Array:
+        """|Y H(p(s))| by Taylor's formula about the middle, to second order; to first order where H has kinks."""
+        q0, q1, q2, _ = curve.q
+        count = len(x)
+        both = [Ends(np.concatenate([p.lo, q.lo]), np.concatenate([p.hi, q.hi])) for p, q in zip((q0, q1, q2), over)]
+        image = self.image(along_curve(*both)).ends
+        if len(image.lo) == 1:  # constant along the curve
+            image = Ends(*(np.concatenate([e, np.zeros((2, *e.shape[1:]))]) for e in (image.lo, image.hi)))
+        at, along = image[:, :count], image[:, count:]
+        linear = size_of(Y, at[1]) * x + size_of(Y, along[2]) * x * x
+        blunt = size_of(Y, along[1]) * x
+        return up_by(size_of(Y, at[0]) + np.fmin(linear, blunt), 4)
+
+
+def size_of(Y: Array, v: Ends) -> Array:
+    """A bound of |Y v| for interval vectors v, slab by slab."""
+    column = Ends(v.lo[..., None], v.hi[..., None])
+    image = bilinear(np.matmul, thin(Y), column)
+    bound: Array = image.magnitude()[..., 0]
+    return np.where(np.isfinite(v.lo).all(axis=-1) & np.isfinite(v.hi).all(axis=-1), bound.T, np.nan).T
+
+
+@frozen(eq=False)
+class Bounded:
+    """The bounds as a matrix: |I - Y G'| entry by entry, for all radii up to `largest`."""
+
+    misfit: Array
+    preconditioner: Array
+    off: Array
+    largest: Array
+
+    def moved(self, x: Array) -> Array:
+        """Y is the same all over the slab."""
+        return np.zeros_like(x)
+
+    def spread(self, x: Array, radius: Array) -> Array:
+        """Nothing is known (nan) beyond the largest radii."""
+        bound = up_by(times(self.off, x), x.shape[1])
+        known = (radius <= self.largest).all(axis=1, keepdims=True)
+        return np.where(known, bound, np.nan)
+
+
+@frozen(eq=False)
+class Several:
+    """Bounds of slabs that went through in parts."""
+
+    parts: list[Any]
+    misfit: Array
+    preconditioner: Array
+    places: list[slice]
+
+    @classmethod
+    def of(cls, parts: list[Any]) -> Several:
+        """In order."""
+        ends = np.cumsum([0, *(len(part.misfit) for part in parts)]).tolist()
+        places = [slice(a, b) for a, b in pairwise(ends)]
+        misfit, matrices = (np.concatenate([getattr(p, k) for p in parts]) for k in ("misfit", "preconditioner"))
+        return cls(parts, misfit, matrices, places)
+
+    def spread(self, x: Array, radius: Array) -> Array:
+        """Part by part."""
+        return np.concatenate([part.spread(x[k], radius[k]) for part, k in zip(self.parts, self.places)])
+
+    def moved(self, x: Array) -> Array:
+        """Part by part."""
+        return np.concatenate([part.moved(x[k]) for part, k in zip(self.parts, self.places)])
+
+
+def _side_by_side(parts: list[Interval]) -> Interval:
+    """Boxes of two arrays in one; a part without derivatives has zeros for them."""
+    longest = max(len(part.ends.lo) for part in parts)
+
+    def padded(x: Array) -> Array:
+        missing = longest - len(x)
+        return np.concatenate([x, np.zeros((missing, *x.shape[1:]))]) if missing else x
+
+    lo, hi = (np.concatenate([padded(getattr(part.ends, end)) for part in parts], axis=1) for end in ("lo", "hi"))
+    return Interval.of(Ends(lo, hi), parts[0].algebra)
+
+
+def tangent(judged: Judged, radius: Array, tube: Array) -> Ends:
+    """The tangent t of the curve, c . t = 1, over each slab, shape (slabs, N + 1); nan where unknown.
+
+    Parameters
+    ----------
+    judged : Judged
+    radius : ndarray, shape (slabs, N + 1)
+        Within which the curve lies.
+    tube : ndarray, shape (slabs, N + 1)
+        Radii with which the test holds, for a norm.
+    """
+    return solved(judged, thin(judged.preconditioner[:, :, -1]), radius, tube)
+
+
+def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
+    """The solutions of G' z = b for v that holds Y(middle) b, all over the slab.
+
+    With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1:
+    two terms, and a geometric series, as E^3 |Y(s) b| <= theta r and E r <= kappa r.
+
+    Parameters
+    ----------
+    judged : Judged
+    v : Ends
+    radius, tube : ndarray, shape (slabs, N + 1)
+        As in `tangent`.
+    """
+    with np.errstate(all="ignore"):
+        slack = judged.moved(v.magnitude())
+        v = v + Ends(-slack, slack)
+        first = judged.spread(v.magnitude(), radius)
+        second = judged.spread(first, radius)
+        kappa = (judged.spread(tube, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
+        theta = (judged.spread(second, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
+        factor = np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * (1.0 + 8.0 * EPS)
+        room = up_by(first + second + factor[:, None] * tube, 3)
+        return v + Ends(-room, room)

@@ -1,0 +1,124 @@
+"""What joins tubes to one curve: at each node a point of it that is in the tubes on either side, passed in one way.
+
+At the node that two cells share the test of Krawczyk on a box of no length proves a point z of the left curve with
+|z - u| <= r_t. In the chart of the right cell z belongs to a parameter s' near 0; where p(s') + [-r, r] holds it, it is
+the one zero that the right tube has there, and both curves pass through it. Where the tangent at z advances in both
+charts, the one goes on where the other ends.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node
+from continuation.certificate.krawczyk import Engine, tangent, up_by
+from continuation.certificate.tubes import along, velocity
+from continuation.intervals.ends import EPS, Ends, Mask
+
+ROUNDS, RADII = 4, 8
+"""Tests of a node, with derivatives over ever larger boxes, and radii that are tried with one of them."""
+
+CLOSE, ROOM = 1e-9, 1e-3
+"""Of the radii of the tube: the least box around a node, and the one over which derivatives are bounded first."""
+
+NEAR = 32.0
+"""Units in the last place: the least box around a node."""
+
+
+@frozen(eq=False)
+class Nodes:
+    """Points of the curve, proved near ends of cells.
+
+    Attributes
+    ----------
+    radius : ndarray, shape (cells, N + 1)
+        |z - u| <= radius; nan where nothing is proved.
+    tangent : Ends
+        That of the curve there, with c . t = 1.
+    """
+
+    radius: Array
+    tangent: Ends
+
+    @property
+    def proved(self) -> Mask:
+        """Whether there is a point, cell by cell."""
+        return np.asarray(np.isfinite(self.radius).all(axis=1))
+
+    def take(self, index: slice) -> Nodes:
+        """Some of them."""
+        return Nodes(self.radius[index], self.tangent[index])
+
+
+def nodes(engine: Engine, cells: Cells, s: Array) -> Nodes:
+    """A point of the curve at one end of each cell.
+
+    Parameters
+    ----------
+    engine : Engine
+    cells : Cells
+    s : ndarray, shape (cells,)
+        0 or 1.
+    """
+    slabs = at_node(cells, s)
+    u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
+    least = NEAR * EPS * np.abs(u) + CLOSE * cells.radius
+    largest, done = ROOM * cells.radius + 4.0 * least, np.zeros(len(cells), bool)
+    for _ in range(ROUNDS):
+        judged = engine.judge(slabs, largest)
+        with np.errstate(all="ignore"):
+            radius = np.fmin(np.maximum(2.0 * judged.misfit, least), largest)
+            for _ in range(RADII):
+                total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
+                done = np.asarray((total < radius).all(axis=1))
+                if done.all():
+                    break
+                radius = np.where(done[:, None], radius, np.fmin(np.maximum(1.5 * total, least), largest))
+        if done.all():
+            break
+        largest = np.where(done[:, None], largest, 8.0 * largest)
+    return Nodes(np.where(done[:, None], radius, np.nan), tangent(judged, radius, radius))
+
+
+def reach(cells: Cells, s: Array, radius: Array) -> Array:
+    """How wide a tube has to be at one end to hold every point within `radius` of the node; nan where it ends before.
+
+    Parameters
+    ----------
+    cells : Cells
+    s : ndarray, shape (cells,)
+        0 or 1.
+    radius : ndarray, shape (cells, N + 1)
+    """
+    count = len(cells)
+    room = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells)
+    speed = velocity(room)
+    least, _ = along(cells.chart, speed)
+    with np.errstate(all="ignore"):
+        off = up_by((np.abs(cells.chart) * radius).sum(axis=1), radius.shape[1])
+        away = np.where(least > 0.0, off / least, np.nan) * (1.0 + 4.0 * EPS)
+        wide = up_by(radius + away[:, None] * speed.magnitude(), 2)
+    return np.where((away <= 0.9 * OVERHANG)[:, None], wide, np.nan)
+
+
+def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
+    """Whether the curves of the left cells go on in the right ones.
+
+    Parameters
+    ----------
+    left, right : Cells
+    at : Nodes
+        Of the left cells, at their ends.
+
+    Returns
+    -------
+    ndarray of bool
+    """
+    with np.errstate(all="ignore"):
+        same = (left.end == right.begin).all(axis=1)
+        inside = (at.radius <= left.radius).all(axis=1)
+        held = (reach(right, np.zeros(len(right)), at.radius) <= right.radius).all(axis=1)
+        onward, _ = along(right.chart, at.tangent)
+        return np.asarray(same & inside & held & (onward > 0.0))

@@ -1,0 +1,150 @@
+"""What was proved of a path, and what was not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Cells
+
+
+@frozen
+class Gap:
+    """A part of the path for which there is no proof.
+
+    Attributes
+    ----------
+    begin, end : float
+        Arclengths.
+    reason : str
+    """
+
+    begin: float
+    end: float
+    reason: str
+
+    def __str__(self) -> str:
+        return f"from s = {self.begin:.6g} to {self.end:.6g}: {self.reason}"
+
+
+def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
+    """In order, those that touch and have one reason as one.
+
+    Parameters
+    ----------
+    gaps : list of Gap
+    """
+    out: list[Gap] = []
+    for gap in sorted(gaps, key=lambda gap: (gap.reason, gap.begin, gap.end)):
+        if out and out[-1].reason == gap.reason and gap.begin <= out[-1].end:
+            last = out.pop()
+            out.append(Gap(last.begin, max(last.end, gap.end), gap.reason))
+        else:
+            out.append(gap)
+    return tuple(sorted(out, key=lambda gap: (gap.begin, gap.end)))
+
+
+SHOWN = 4
+"""Gaps in a sentence; the others are counted."""
+
+
+@frozen(eq=False, repr=False)
+class Proof:
+    """A proof that a traced path is one path, or how far it goes.
+
+    Where it is complete, the tubes hold one smooth curve of zeros of the homotopy's residual, round-off included: it
+    passes the boxes of all stored points in their order and in one direction, has no branch point, and just the turning
+    points that the path lists. That there is no other curve outside of the tubes is not said.
+
+    Attributes
+    ----------
+    cells : Cells
+        What is proved: cubics, charts and radii.
+    node_radius : ndarray, shape (cells, N + 1)
+        How far the curve is from the end of each cell, at most.
+    gaps : tuple of Gap
+    turning_points : tuple of tuple of float
+        Ranges of arclength that hold one turning point each.
+    end : str
+        What is known of the end, in words.
+    end_radius : ndarray or None
+        Where the end is proved to lie on the curve, exactly at the target: how far from the stored one it is at most.
+    """
+
+    cells: Cells
+    node_radius: Array
+    gaps: tuple[Gap, ...]
+    turning_points: tuple[tuple[float, float], ...]
+    end: str
+    end_radius: Array | None = None
+
+    @classmethod
+    def empty(cls, width: int, gap: Gap) -> Proof:
+        """One of nothing.
+
+        Parameters
+        ----------
+        width : int
+            N + 1.
+        gap : Gap
+        """
+        rows, none = np.zeros((0, width)), np.zeros(0, dtype=np.intp)
+        cells = Cells(rows, rows, rows, rows, rows, rows, none, np.zeros((0, 2)))
+        return cls(cells, rows, (gap,), (), "")
+
+    @property
+    def complete(self) -> bool:
+        """Whether the proof covers the path from its first point to its last."""
+        return not self.gaps
+
+    @property
+    def boxes(self) -> int:
+        """How many boxes hold the path: one a cell, more where a cell was cut into slabs."""
+        return int(self.cells.slabs.sum())
+
+    def __repr__(self) -> str:
+        return f"<Proof: {self}>"
+
+    def __str__(self) -> str:
+        if self.complete:
+            turns = len(self.turning_points)
+            return f"Proved: one curve through all points, {turns} turning points, {self.boxes} boxes. {self.end}"
+        more = f"; and {len(self.gaps) - SHOWN} more" if len(self.gaps) > SHOWN else ""
+        return "Not proved " + "; ".join(str(gap) for gap in self.gaps[:SHOWN]) + more
+
+    def radius(self, s: float) -> Array:
+        """The tube's radius at arclength s, shape (N + 1,): nan in a gap.
+
+        Parameters
+        ----------
+        s : float
+
+        Returns
+        -------
+        ndarray
+        """
+        place = self.cells.place
+        inside = np.flatnonzero((place[:, 0] <= s) & (s <= place[:, 1]))
+        if not len(inside):
+            return np.full(self.cells.radius.shape[1], np.nan)
+        return np.asarray(self.cells.radius[inside].max(axis=0))
+
+    def plot(self, component: int = 0, axes: Any = None) -> Any:
+        """The tube against the parameter: each cell's cubic with its radius, and what is not proved as gaps.
+
+        Parameters
+        ----------
+        component : int
+            Of y.
+        axes : matplotlib axes, optional
+
+        Returns
+        -------
+        matplotlib axes
+        """
+        from continuation.certificate.picture import draw
+
+        return draw(self.cells, [(gap.begin, gap.end) for gap in self.gaps], component, axes)

@@ -1,0 +1,191 @@
+"""Tubes around cells: radii and slabs with which Krawczyk's test holds, found and checked."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
+from continuation.certificate.krawczyk import Engine, Judged
+from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
+
+FLOOR = 1e-6
+"""Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's
+curve. The curve itself is found where it is, within the misfit."""
+
+ROUND_OFF = 1024.0
+"""Units in the last place of the nodes: the same for a component that stands still."""
+
+FIRST = 0.1
+"""The radii that a test begins with, in half widths of a slab: they widen the derivatives by so much."""
+
+INFLATION = 1.1
+"""How much wider than what the test gives the next radii are: a fixed point is approached from above."""
+
+ROUNDS, RADII = 6, 12
+"""Tests of a cell, and radii that are tried with the bounds of one of them."""
+
+CONTRACTING = 0.6
+"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls in proportion to their
+length; at half of it a test holds at once."""
+
+MOST_SLABS = 16
+"""Beyond so many a new point of the path is worth more."""
+
+
+def sizes(cells: Cells) -> Array:
+    """How far a cell goes in each component; where that is little, a share of what its metric counts as much."""
+    far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
+    with np.errstate(all="ignore"):
+        # chart = weights * chord up to a factor: the square root of chord over chart is a length of that metric.
+        unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
+        length = np.sqrt(np.sum(np.abs(cells.chart * (cells.end - cells.begin)), axis=1, keepdims=True))
+        alike = 1e-6 * length * unit
+    alike = np.where(np.isfinite(alike), alike, 0.0)
+    out: Array = np.maximum(far, alike)
+    return out + 64.0 * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end)) + np.finfo(float).tiny
+
+
+def holds(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
+    """Whether the test holds, slab by slab: the only place where something is proved.
+
+    Parameters
+    ----------
+    slabs : Slabs
+    judged : Judged
+    radius : ndarray, shape (slabs, N + 1)
+
+    Returns
+    -------
+    ndarray of bool
+    """
+    with np.errstate(all="ignore"):
+        total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
+        # Along the cubic the charts must advance: then each of them is crossed once, in order.
+        return np.asarray((total < radius).all(axis=1) & (advance(slabs) > 0.0))
+
+
+def advance(slabs: Slabs) -> Array:
+    """A lower bound of c . p'(s) over each slab, shape (slabs,)."""
+    bound, _ = along(slabs.cells.chart, velocity(slabs))
+    return bound
+
+
+def velocity(slabs: Slabs) -> Ends:
+    """The range of p' over each slab, shape (slabs, N + 1)."""
+    x = slabs.offset[:, None]
+    return expansion(slabs).over(Ends(-x, x))[1]
+
+
+def along(chart: Array, v: Ends) -> tuple[Array, Array]:
+    """The range of c . v, row by row."""
+    product = bilinear(np.matmul, thin(chart[:, None, :]), Ends(v.lo[..., None], v.hi[..., None]))
+    return product.lo[:, 0, 0], product.hi[:, 0, 0]
+
+
+@frozen(eq=False)
+class Found:
+    """What came of a search for tubes.
+
+    Attributes
+    ----------
+    cells : Cells
+        With radii and slabs.
+    proved : ndarray of bool, shape (cells,)
+    undefined : ndarray of bool, shape (cells,)
+        Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
+    """
+
+    cells: Cells
+    proved: Mask
+    undefined: Mask
+
+
+def search(engine: Engine, cells: Cells) -> Found:
+    """Radii and slabs for cells that have none, all of them in one batch a round.
+
+    Parameters
+    ----------
+    engine : Engine
+    cells : Cells
+    """
+    count, scale = len(cells), sizes(cells)
+    radius = np.zeros_like(scale)
+    slabs = cells.slabs.copy()
+    proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
+    radius[:] = FIRST * scale / (2.0 * slabs[:, None])
+    pending = np.arange(count)
+    for _ in range(ROUNDS):
+        if not len(pending):
+            break
+        tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
+        parts = slabs_of(tried)
+        judged = engine.judge(parts, tried.radius[parts.owner])
+        wanted, kappa, off = _fixed_point(parts, judged, tried, scale[pending])
+        good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
+        undefined[pending] = ~np.isfinite(off)
+        radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
+        proved[pending] = good
+        more = ~good & ~(kappa < CONTRACTING)
+        with np.errstate(all="ignore"):
+            factor = np.where(np.isfinite(kappa), np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0)), 4.0)
+        grown = np.where(more, np.maximum(2, factor) * slabs[pending], slabs[pending]).astype(np.intp)
+        slabs[pending] = np.minimum(grown, MOST_SLABS + 1)
+        again = more | ~np.asarray(np.isfinite(wanted).all(axis=1))
+        radius[pending] = np.where(
+            (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
+        )
+        pending = pending[~good & (slabs[pending] <= MOST_SLABS)]
+    return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, undefined)
+
+
+def _fixed_point(slabs: Slabs, judged: Judged, cells: Cells, scale: Array) -> tuple[Array, Array, Array]:
+    """Radii a little above what the test gives back, the bound of the contraction, and the misfit in sizes; a cell."""
+    count, owner = len(cells), slabs.owner
+    least = FLOOR * scale + ROUND_OFF * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
+    with np.errstate(all="ignore"):
+        off = _largest(judged.misfit, owner, count)
+        radius = np.minimum(np.maximum(2.0 * off, least), cells.radius)
+        radius = np.where(np.isfinite(radius), radius, cells.radius)
+        kappa = np.full(count, np.inf)
+        for _ in range(RADII):
+            image = _largest(judged.spread(radius[owner], np.minimum(radius, cells.radius)[owner]), owner, count)
+            kappa = (image / radius).max(axis=1)
+            total = off + image
+            inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
+            if inside.all():
+                break
+            radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
+        return radius, kappa, (off / scale).max(axis=1)
+
+
+def _largest(values: Array, owner: Index, count: int) -> Array:
+    """The largest of each cell's slabs; nan where one is."""
+    out = np.zeros((count, values.shape[1]))
+    np.maximum.at(out, owner, values)
+    return out
+
+
+def _every(values: Mask, owner: Index, count: int) -> Mask:
+    """Whether all of a cell's slabs have it."""
+    out = np.ones(count, bool)
+    np.logical_and.at(out, owner, values)
+    return out
+
+
+def check(engine: Engine, cells: Cells) -> Mask:
+    """Whether the tubes of these cells are proved, with the radii and slabs that they have.
+
+    Parameters
+    ----------
+    engine : Engine
+    cells : Cells
+
+    Returns
+    -------
+    ndarray of bool, shape (cells,)
+    """
+    parts = slabs_of(cells)
+    radius = cells.radius[parts.owner]
+    return _every(holds(parts, engine.judge(parts, radius), radius), parts.owner, len(cells))

@@ -1,0 +1,298 @@
+"""What has to hold of cells so that a path is proved: tubes, links, order, turning points, events and the end."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from attrs import evolve
+
+from continuation.arrays import Array
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined
+from continuation.certificate.folds import Piece, Turn, pieces, turns
+from continuation.certificate.krawczyk import ByIntervals, Engine
+from continuation.certificate.links import Nodes, linked, nodes, reach
+from continuation.certificate.proof import Gap, Proof, merged
+from continuation.certificate.tubes import along, check
+from continuation.intervals.ends import Ends, Mask, thin
+from continuation.path import LocatedEvent, Path
+from continuation.point.segment import HermiteSegment
+from continuation.status import Kind, Status
+
+NOT_A_NODE = "a point of the path is no node of the proof"
+NO_END = "no tube was found at the end"
+NO_CURVE = "no point of the curve was found at the end"
+
+NEAR_END = 1e-5
+"""How far the parameter may be from its target, of its way there, where an exact end takes the place of the rest."""
+
+WIDER = 1.5
+"""A tube that does not hold its neighbour's node is tried once with radii that do, and so much more."""
+
+
+def verified(
+    engine: Engine,
+    plain: ByIntervals,
+    cells: Cells,
+    path: Path,
+    homotopy: Any,
+    gaps: list[Gap],
+    found: list[Piece] | None = None,
+) -> Proof:
+    """The proof that these cells make.
+
+    Parameters
+    ----------
+    engine : Engine
+    plain : ByIntervals
+    cells : Cells
+        In order.
+    path : Path
+        What they are to prove.
+    homotopy : Homotopy
+    gaps : list of Gap
+        Known already.
+    found : list of Piece, optional
+        The pieces of the cells, where their tubes have been tested already.
+    """
+    gaps = list(gaps)
+    if found is None and len(cells):
+        good = check(engine, cells)
+        gaps += [Gap(begin, end, "the tube does not hold") for begin, end in cells.place[~good].tolist()]
+        cells = cells.take(good)
+    if not len(cells):
+        whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
+        return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
+    cells, at, joints, ends = _joined_up(engine, cells)
+    gaps += [
+        Gap(float(cells.place[k, 1]), float(cells.place[k + 1, 0]), "two tubes are not linked")
+        for k in np.flatnonzero(~joints)
+        if cells.place[k, 1] == cells.place[k + 1, 0]
+    ]
+    gaps += _order(cells, path, ends.take(slice(0, 1)))
+    certificate = _certificate(cells, at, ends, path, homotopy)
+    if certificate:
+        before = float(cells.place[-1, 1])
+        gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
+    places = [_place(cells, event) for event in path.events]
+    turning, more = _turning(cells, found or pieces(engine, plain, cells), path, places)
+    gaps += more + _events(path, places)
+    end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
+    gaps += missing
+    return Proof(cells, at.radius, merged(gaps), turning, end, radius)
+
+
+def _joined_up(engine: Engine, cells: Cells) -> tuple[Cells, Nodes, Mask, Nodes]:
+    """The cells with links between them, some of them widened for that; points of the curve at all nodes.
+
+    The last two are those at the start, and at the end with the parameter for a chart.
+    """
+    level = np.zeros_like(cells.chart[-1:])
+    level[0, -1] = 1.0
+    for again in (True, False):
+        first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
+        s = np.ones(len(cells) + 2)
+        s[-2] = 0.0
+        every = nodes(engine, joined([cells, first, last]), s)
+        at, ends = every.take(slice(0, -2)), every.take(slice(-2, None))
+        left, right = cells.take(slice(None, -1)), cells.take(slice(1, None))
+        joints = linked(left, at.take(slice(0, -1)), right)
+        if joints.all() or not again:
+            break
+        wanted = np.maximum(cells.radius, np.where(np.isfinite(at.radius), WIDER * at.radius, 0.0))
+        needed = reach(right, np.zeros(len(right)), at.radius[:-1])
+        wanted[1:] = np.maximum(wanted[1:], np.where(np.isfinite(needed), WIDER * needed, 0.0))
+        changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
+        if not len(changed):
+            break
+        tried = cells.take(changed).with_tubes(wanted[changed], cells.slabs[changed])
+        good = check(engine, tried)
+        radius = cells.radius.copy()
+        radius[changed[good]] = wanted[changed[good]]
+        cells = cells.with_tubes(radius, cells.slabs)
+    return cells, at, joints, ends
+
+
+def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
+    """That the points of the path are nodes, in order, and that nothing is between cells; and the start."""
+    gaps = []
+    arclength, points = path.arclength, path.u
+    k = 0
+    for j, (s, u) in enumerate(zip(arclength.tolist(), points)):
+        while k < len(cells) and not (cells.place[k, 0] == s and (cells.begin[k] == u).all()):
+            if cells.place[k, 1] == s and (cells.end[k] == u).all():
+                break
+            k += 1
+        if k == len(cells):
+            before = float(arclength[max(j - 1, 0)])
+            at_end = bool(j == len(points) - 1 and before < cells.place[-1, 1])
+            gaps.append(Gap(float(cells.place[-1, 1]) if at_end else before, float(s), NOT_A_NODE))
+            break
+    for (_, before), (after, _) in pairwise(cells.place.tolist()):
+        if before != after:
+            gaps.append(Gap(before, after, "no tube was found"))
+    if arclength[0] != cells.place[0, 0]:
+        gaps.append(Gap(float(arclength[0]), float(cells.place[0, 0]), "no tube was found at the start"))
+    if arclength[-1] != cells.place[-1, 1]:
+        gaps.append(Gap(float(cells.place[-1, 1]), float(arclength[-1]), NO_END))
+    if not first.proved.all() or not (first.radius <= cells.radius[:1]).all():
+        gaps.append(Gap(float(arclength[0]), float(arclength[0]), "no point of the curve was found at the start"))
+    return gaps
+
+
+# --- turning points and events ----------------------------------------------------------------------------
+
+
+def _turning(
+    cells: Cells, found: list[Piece], path: Path, places: list[float | None]
+) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
+    """Ranges of arclength with one turning point each, and where they are not those of the path."""
+    understood, unknown = turns(found)
+    gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
+    turning = {id(event) for event in path.turning_points}
+    listed = [(p, event.arclength) for p, event in zip(places, path.events) if id(event) in turning]
+    used: set[int] = set()
+    for turn in understood:
+        slack = 2.0 * OVERHANG
+        inside = [
+            k
+            for k, (place, _) in enumerate(listed)
+            if place is not None and k not in used and turn.lo - slack <= place <= turn.hi + slack
+        ]
+        if len(inside) != 1 and (turn.certain or inside):
+            reason = "a turning point that the path does not list" if not inside else "more turning points are listed"
+            gaps.append(Gap(*_range(cells, turn.lo, turn.hi), reason))
+        used.update(inside)
+    gaps += [
+        Gap(s, s, "a turning point is listed where there is none") for k, (_, s) in enumerate(listed) if k not in used
+    ]
+    return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
+
+
+def _counts(turn: Turn, listed: list[tuple[float | None, float]]) -> bool:
+    slack = 2.0 * OVERHANG
+    return turn.certain or any(p is not None and turn.lo - slack <= p <= turn.hi + slack for p, _ in listed)
+
+
+def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
+    """Places in cells as arclengths."""
+    out = []
+    for place in (lo, hi):
+        k = min(max(int(place), 0), len(cells) - 1)
+        begin, end = cells.place[k].tolist()
+        out.append(begin + min(max(place - k, 0.0), 1.0) * (end - begin))
+    return out[0], out[1]
+
+
+def _place(cells: Cells, event: LocatedEvent) -> float | None:
+    """Cell and parameter of a point that lies in the tube; None where it lies in none.
+
+    With c . (u - p(s - e)) > 0 > c . (u - p(s + e)) it belongs to a parameter in between, and is to be within the
+    radius of all that the cubic is there.
+    """
+    s = event.arclength
+    span = cells.place[:, 1] - cells.place[:, 0]
+    near = np.flatnonzero((cells.place[:, 0] - span <= s) & (s <= cells.place[:, 1] + span))
+    for k in near.tolist():
+        cell = cells.take(np.array([k]))
+        t = _parameter(cell, event.u)
+        for width in (1e-9, 1e-6, 0.5 * OVERHANG):
+            if -OVERHANG + width <= t <= 1.0 + OVERHANG - width and _inside(cell, t, width, event.u):
+                return float(k + t)
+    return None
+
+
+def _parameter(cell: Cells, u: Array) -> float:
+    """Newton's method for c . (p(t) - u) = 0, in floats."""
+    c = cell.chart[0]
+    cubic = HermiteSegment(cell.begin[0], cell.end[0], cell.slope_begin[0], cell.slope_end[0])
+    t = 0.5
+    for _ in range(30):
+        slope, before = float(c @ cubic.derivative(t)), t
+        if not slope > 0.0:
+            return np.nan
+        t = min(max(t + float(c @ (u - cubic.at(t))) / slope, -OVERHANG), 1.0 + OVERHANG)
+        if abs(t - before) < 1e-12:
+            break
+    return t
+
+
+def _inside(cell: Cells, t: float, width: float, u: Array) -> bool:
+    signs = []
+    for s, side in ((t - width, 1.0), (t + width, -1.0)):
+        q0 = expansion(Slabs(np.zeros(1, int), np.array([s]), np.zeros(1), cell)).q[0]
+        lo, hi = along(cell.chart, thin(u[None]) - q0)
+        signs.append(lo[0] > 0.0 if side > 0.0 else hi[0] < 0.0)
+    room = Slabs(np.zeros(1, int), np.array([t]), np.array([width]), cell)
+    x = room.offset[:, None]
+    off = thin(u[None]) - expansion(room).over(Ends(-x, x))[0]
+    return bool(all(signs) and (off.magnitude() <= cell.radius).all())
+
+
+def _events(path: Path, places: list[float | None]) -> list[Gap]:
+    """That every listed event lies in the tube, in order, and that none is a branch point."""
+    gaps, last = [], -np.inf
+    for event, place in zip(path.events, places):
+        s = event.arclength
+        if place is None:
+            gaps.append(Gap(s, s, f"the event {event.name!r} does not lie on the curve"))
+        elif event.kind is Kind.BRANCH_POINT:
+            gaps.append(Gap(s, s, "a branch point is listed where the curve is smooth"))
+        elif place < last - 2.0 * OVERHANG:
+            gaps.append(Gap(s, s, f"the event {event.name!r} is out of order"))
+        last = last if place is None else max(last, place)
+    return gaps
+
+
+# --- the end ----------------------------------------------------------------------------------------------
+
+
+@runtime_checkable
+class SupportsEndCertificate(Protocol):
+    """A homotopy whose ends can be proved to be solutions by other means than the path."""
+
+    def certify_end(self, y: Array) -> str:
+        """What is proved of the end, as a sentence; empty where nothing is.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+
+        Returns
+        -------
+        str
+        """
+        ...
+
+
+def _certificate(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> str:
+    """What is said of an end that the tubes do not reach, or not at the target, where the homotopy can prove it."""
+    last, end = float(cells.end[-1, -1]), path.steps[-1]
+    if path.status is not Status.REACHED_TARGET or not isinstance(homotopy, SupportsEndCertificate):
+        return ""
+    if not at.proved[-1] or _at_target(cells, ends, path):
+        return ""
+    if not abs(last - end.lam) <= NEAR_END * abs(path.steps[0].lam - end.lam):
+        return ""
+    sentence = homotopy.certify_end(end.y)
+    return f"Proved to lam = {last:.1e}. {sentence}" if sentence else ""
+
+
+def _at_target(cells: Cells, ends: Nodes, path: Path) -> bool:
+    """Whether the last tube has a point of the curve exactly at the parameter of the last point of the path."""
+    last, there = cells.take(slice(-1, None)), ends.take(slice(1, 2))
+    whole = last.place[0, 1] == path.arclength[-1] and bool((last.end[0] == path.steps[-1].u).all())
+    held = reach(last, np.ones(1), there.radius) <= last.radius
+    return bool(whole and there.proved.all() and held.all())
+
+
+def _end(cells: Cells, at: Nodes, ends: Nodes, path: Path) -> tuple[str, Array | None, list[Gap]]:
+    """What is proved of the end: where the path reached its target, a point of the curve exactly there."""
+    s = float(path.arclength[-1])
+    if path.status is not Status.REACHED_TARGET:
+        found = bool(at.proved[-1])
+        return ("The end is a point of the curve.", None, []) if found else ("", None, [Gap(s, s, NO_CURVE)])
+    if _at_target(cells, ends, path):
+        return f"The end lies on it, exactly at lam = {path.steps[-1].lam:g}.", ends.radius[1], []
+    return "", None, [Gap(s, s, "no point of the curve was found at the target")]

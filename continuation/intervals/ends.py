@@ -1,0 +1,174 @@
+"""Lower and upper ends of intervals: the four operations, rounded outward.
+
+An end that is nan says that the operation has no value for some number of the interval. It stays nan through every
+later operation, and no comparison with it holds, so that nothing is ever proved from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+
+Mask = NDArray[np.bool_]
+
+EPS = 2.0**-52
+
+TINIEST = 2.0**-1074
+"""The smallest positive number: what underflow may cost one operation."""
+
+
+def down(x: Array) -> Array:
+    """The next number below: below every real number that rounds to x."""
+    return np.nextafter(x, -np.inf)
+
+
+def up(x: Array) -> Array:
+    """The next number above."""
+    return np.nextafter(x, np.inf)
+
+
+def up_sum(x: Array) -> Array:
+    """`up` of a sum. A sum that is zero is exact, as sums do not underflow; zeros are kept for the sake of speed."""
+    return np.where(x == 0.0, 0.0, np.nextafter(x, np.inf))
+
+
+@frozen(eq=False)
+class Ends:
+    """An array of intervals [lo, hi]."""
+
+    lo: Array
+    hi: Array
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of either array."""
+        return self.lo.shape
+
+    def __getitem__(self, key: Any) -> Ends:
+        return Ends(self.lo[key], self.hi[key])
+
+    def __neg__(self) -> Ends:
+        return Ends(-self.hi, -self.lo)
+
+    def __add__(self, other: Ends) -> Ends:
+        return Ends(-up_sum(-self.lo - other.lo), up_sum(self.hi + other.hi))
+
+    def __sub__(self, other: Ends) -> Ends:
+        return Ends(-up_sum(other.hi - self.lo), up_sum(self.hi - other.lo))
+
+    def __mul__(self, other: Ends) -> Ends:
+        a, b = self.lo * other.lo, self.lo * other.hi
+        c, d = self.hi * other.lo, self.hi * other.hi
+        lo, hi = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
+        # A product that is zero may have underflown, unless a factor is zero.
+        zero = ((self.lo == 0.0) & (self.hi == 0.0)) | ((other.lo == 0.0) & (other.hi == 0.0))
+        zero &= ~np.isnan(lo)
+        return Ends(np.where(zero, 0.0, down(lo)), np.where(zero, 0.0, up(hi)))
+
+    def __truediv__(self, other: Ends) -> Ends:
+        with np.errstate(all="ignore"):
+            a, b = self.lo / other.lo, self.lo / other.hi
+            c, d = self.hi / other.lo, self.hi / other.hi
+        lo, hi = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
+        defined = (other.lo > 0.0) | (other.hi < 0.0)
+        return Ends(np.where(defined, down(lo), np.nan), np.where(defined, up(hi), np.nan))
+
+    def where(self, condition: Mask) -> Ends:
+        """The same, without value (nan) where the condition does not hold."""
+        return Ends(np.where(condition, self.lo, np.nan), np.where(condition, self.hi, np.nan))
+
+    def middle(self) -> Array:
+        """A number inside, for finite ends."""
+        return 0.5 * self.lo + 0.5 * self.hi
+
+    def radius(self, middle: Array) -> Array:
+        """At least the distance of any number of the interval from `middle`."""
+        return np.maximum(up_sum(self.hi - middle), up_sum(middle - self.lo))
+
+    def magnitude(self) -> Array:
+        """The largest absolute value."""
+        return np.maximum(np.abs(self.lo), np.abs(self.hi))
+
+
+def thin(x: Array) -> Ends:
+    """Intervals of one number each."""
+    return Ends(x, x)
+
+
+def absolute(u: Ends) -> Ends:
+    """The range of |x|."""
+    inside = (u.lo < 0.0) & (u.hi > 0.0)
+    size = np.minimum(np.abs(u.lo), np.abs(u.hi))
+    return Ends(np.where(inside, 0.0, size), u.magnitude())
+
+
+def whole_power(u: Ends, n: int) -> Ends:
+    """The range of x**n, for n >= 0."""
+    if n == 0:
+        return thin(np.ones(u.shape)).where(~np.isnan(u.lo))
+    if n % 2 == 0:
+        return _nonnegative_power(absolute(u), n)
+    low, high = _nonnegative_power(thin(np.abs(u.lo)), n), _nonnegative_power(thin(np.abs(u.hi)), n)
+    return Ends(np.where(u.lo < 0.0, -low.hi, low.lo), np.where(u.hi < 0.0, -high.lo, high.hi))
+
+
+def _nonnegative_power(u: Ends, n: int) -> Ends:
+    """By repeated squaring, each product of its range."""
+    if n == 1:
+        return u
+    half = _nonnegative_power(u, n // 2)
+    square = half * half
+    square = Ends(np.maximum(square.lo, 0.0), square.hi)
+    product = square * u if n % 2 else square
+    return Ends(np.maximum(product.lo, 0.0), product.hi)
+
+
+def accumulated(count: float) -> float:
+    """Relative error of a sum of `count` products in any order, against the sum of their sizes.
+
+    gamma_n = n u / (1 - n u) of Higham, Accuracy and Stability of Numerical Algorithms (2002), Section 3.1; with room
+    for the rounding of the bound itself, which is computed by as many operations.
+    """
+    return float((2.0 * count + 8.0) * EPS)
+
+
+def bilinear(product: Callable[[Array, Array], Array], a: Ends, b: Ends) -> Ends:
+    """The range of sums of products, as of `matmul` or `einsum`: middle and radius, by the plain product.
+
+    Rump, BIT 39 (1999) 534-554: four products of matrices, and no change of the rounding mode.
+
+    Parameters
+    ----------
+    product : callable
+        Bilinear in two arrays, its entries sums of products of entries, each computed with an error below
+        `accumulated`: numpy's, in whatever order they add.
+    a, b : Ends
+    """
+    # Intervals of one number, made by `thin`, have no radius to be computed: of large matrices that is what costs.
+    ma, mb = (x.lo if x.lo is x.hi else x.middle() for x in (a, b))
+    ra, rb = (None if x.lo is x.hi else x.radius(m) for x, m in ((a, ma), (b, mb)))
+    size_a, size_b = np.abs(ma), np.abs(mb)
+    centre, sizes = product(ma, mb), product(size_a, size_b)
+    count = float(np.max(product(np.ones_like(ma[:1]), np.ones_like(mb[:1])), initial=1.0))
+    radius = accumulated(count) * sizes
+    if rb is not None and rb.any():
+        radius = radius + product(size_a, rb)
+    if ra is not None and ra.any():
+        radius = radius + product(ra, size_b if rb is None else size_b + rb)
+    radius = radius * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
+    radius = np.where(sizes + radius == 4.0 * count * TINIEST, 0.0, radius) if _exact_zeros(sizes, a, b) else radius
+    return Ends(-up_sum(radius - centre), up_sum(centre + radius))
+
+
+def _exact_zeros(sizes: Array, a: Ends, b: Ends) -> bool:
+    """Whether sums of sizes that are zero are sums of zeros: no product of two nonzero entries can underflow to it."""
+    if sizes.all():
+        return False
+    smallest = [np.min(s, where=s > 0.0, initial=np.inf) for s in (a.magnitude(), b.magnitude())]
+    return bool(float(smallest[0]) * float(smallest[1]) > 1e-290)

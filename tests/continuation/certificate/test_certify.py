@@ -1,0 +1,369 @@
+"""Proofs of paths: complete where the path is one, refused where it is not, and checked again from a file."""
+
+import sys
+from pathlib import Path as File
+
+import h5py
+import numpy as np
+import pytest
+from attrs import evolve
+
+import continuation
+from continuation import Budget, Path, Status, Step, certify, refine, trace
+from continuation.archive import ArchiveError, add_proof, open_archive, recheck
+from continuation.certificate import folds, links, second, tubes, verify
+from continuation.certificate.certifying import engines
+from continuation.certificate.certifying import recheck as checked_again
+from problems import paper
+from problems.bifurcation import Aircraft, Bratu1D, Circle, Cusp, ExponentialCosine, FreudensteinRoth, Pitchfork
+from problems.lcp import LCP, homotopies
+from problems.lcp.data.problem import MixedLCP
+
+sys.path.insert(0, str(File(__file__).parents[3] / "examples" / "benchmarks" / "proof"))
+
+import corrupted  # found by that line only
+
+EXAMPLES = [e for value in vars(paper).values() if isinstance(value, tuple) for e in value if hasattr(e, "true_class")]
+
+
+class Duffing:
+    target = 2.5
+
+    def start(self):
+        return np.array([0.3, 0.0]), 0.1
+
+    def residual(self, y, lam):
+        a, b = y[0], y[1]
+        stiffness = 1.0 - lam**2 + 0.75 * (a**2 + b**2)
+        return np.stack([stiffness * a + 0.1 * lam * b - 0.3, stiffness * b - 0.1 * lam * a])
+
+
+@pytest.mark.parametrize("k", range(10))
+def test_the_ten_examples_are_proved_with_a_box_a_step(k):
+    example = EXAMPLES[k]
+    homotopy = homotopies.KKTHomotopy(example.problem, example.x0)
+    path = trace(homotopy)
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    assert len(proof.turning_points) == len(path.turning_points)
+    if k == 6:  # its end is singular: proved up to there, and the solution by rational arithmetic
+        assert "rational" in proof.end
+        assert 0.0 < proof.cells.end[-1, -1] <= 1.001e-6
+    else:
+        assert proof.boxes <= 1.3 * len(path)
+        assert "exactly at lam = 0" in proof.end
+        assert (proof.end_radius < 1e-9).all()
+
+
+ACCEPTED = {
+    "freudenstein-roth": (FreudensteinRoth(), 200),
+    "cusp": (Cusp(), 200),
+    "circle": (Circle(), 200),
+    "aircraft": (Aircraft(), 60),
+    "duffing": (Duffing(), 200),
+    "bratu": (Bratu1D(16), 14),
+    **{f"exponential-cosine-{n}": (ExponentialCosine(n), 200) for n in (2, 3, 4)},
+}
+
+
+@pytest.mark.parametrize("name", ACCEPTED)
+def test_a_path_is_proved_with_all_its_turning_points(name):
+    homotopy, steps = ACCEPTED[name]
+    path = trace(homotopy, budget=Budget(steps=steps))
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    assert len(proof.turning_points) == len(path.turning_points)
+    assert all(
+        begin - 0.02 <= turn.arclength <= end + 0.02
+        for (begin, end), turn in zip(proof.turning_points, path.turning_points)
+    )
+
+
+def test_the_true_path_lies_in_the_tube():
+    homotopy = FreudensteinRoth()
+    path = trace(homotopy)
+    proof = certify(path, homotopy)
+    for s in np.linspace(0.0, path.arclength[-1], 60):
+        # The nearest parameter's point of the cubic may lie along the path from the refined one: across it counts.
+        u = refine(homotopy, path, float(s))
+        assert verify._place(proof.cells, evolve(path.events[0], u=u, arclength=float(s))) is not None
+
+
+class Scaled:
+    """The same homotopy in other units of y, of the parameter and of the equations."""
+
+    def __init__(self, homotopy, seed):
+        rng = np.random.default_rng(seed)
+        self.inner, n = homotopy, len(homotopy.start()[0])
+        self.D, self.E = 2.0 ** rng.integers(-20, 20, n), 2.0 ** rng.integers(-20, 20, n)
+        self.a = 2.0 ** float(rng.integers(-20, 20))
+        self.target = None if homotopy.target is None else homotopy.target * self.a
+
+    def start(self):
+        y, lam = self.inner.start()
+        return y * self.D, lam * self.a
+
+    def residual(self, y, lam):
+        return self.E * self.inner.residual(y / self.D, lam / self.a)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_units_do_not_matter(seed):
+    for inner in (FreudensteinRoth(), ExponentialCosine(3)):
+        homotopy = Scaled(inner, seed)
+        path = trace(homotopy)
+        proof = certify(path, homotopy)
+        assert proof.complete, str(proof)
+        assert len(proof.turning_points) == len(trace(inner).turning_points)
+
+
+# --- what is no path --------------------------------------------------------------------------------------
+
+
+def test_no_corrupted_path_is_proved():
+    found = corrupted.campaign(28, seed=3)
+    assert sum(found.values()) == 28
+    assert {verdict for _, verdict in found} == {"refused"}
+
+
+def _accepting(fault, subject=0, seeds=6):
+    homotopy, path, proof = corrupted.subjects()[subject]
+    for seed in range(seeds):
+        wrong = fault(path, proof, np.random.default_rng(seed))
+        if wrong is not None and certify(wrong, homotopy).complete:
+            return True
+    return False
+
+
+def test_without_the_comparison_of_turning_points_a_dropped_one_would_pass(monkeypatch):
+    assert not _accepting(corrupted.unlisted)
+    monkeypatch.setattr(verify, "_turning", lambda *found: ((), []))
+    assert _accepting(corrupted.unlisted)
+
+
+def test_without_the_direction_at_nodes_a_reversed_run_would_pass(monkeypatch):
+    homotopy = ExponentialCosine(2)
+    path = trace(homotopy)
+    steps = list(path.steps)
+    steps[2:5] = steps[2:5][::-1]
+    wrong = corrupted.numbered(path, steps, path.events)
+    assert not certify(wrong, homotopy).complete
+
+    def undirected(left, at, right):
+        held = (links.reach(right, np.zeros(len(right)), at.radius) <= right.radius).all(axis=1)
+        return held & (at.radius <= left.radius).all(axis=1)
+
+    monkeypatch.setattr(verify, "linked", undirected)
+    assert certify(wrong, homotopy).complete
+
+
+def test_without_the_spread_of_derivatives_wide_tubes_would_pass(monkeypatch):
+    homotopy, _, proof = corrupted.subjects()[0]
+    engine, _ = engines(homotopy)
+    wide = proof.cells.with_tubes(30.0 * proof.cells.radius, proof.cells.slabs)
+    assert tubes.check(engine, proof.cells).all()
+    assert not tubes.check(engine, wide).all()
+    monkeypatch.setattr(tubes, "holds", lambda slabs, judged, radius: (judged.misfit < radius).all(axis=1))
+    assert tubes.check(engine, wide).all()
+
+
+def test_a_branch_point_is_a_gap_with_its_reason():
+    path = trace(Pitchfork(), events=[continuation.BranchPoint()])
+    proof = certify(path, Pitchfork())
+    assert not proof.complete
+    assert any(gap.begin <= 0.0 + path.arclength[-1] and gap.reason for gap in proof.gaps)
+    assert "Not proved from s" in str(proof)
+
+
+def test_a_kink_is_crossed_by_one_lipschitz_curve():
+    class Kink:
+        target = 1.0
+
+        def start(self):
+            return np.array([1.0]), -1.0
+
+        def residual(self, y, lam):
+            return y - np.abs(lam) * (1.0 + 0.1 * y)
+
+    def point(k, lam):
+        y = abs(lam) / (1.0 - 0.1 * abs(lam))
+        slope = np.sign(lam) / (1.0 - 0.1 * abs(lam)) ** 2
+        return Step(k, np.array([y, lam]), np.array([slope, 1.0]), arclength=1.0 + lam)
+
+    lams = [-1.0, -0.6, -0.3, -0.1, 0.1, 0.4, 1.0]
+    path = Path(steps=[point(k, lam) for k, lam in enumerate(lams)], status=Status.REACHED_TARGET)
+    proof = certify(path, Kink())
+    assert proof.complete, str(proof)
+
+
+# --- the form of quadratic homotopies ---------------------------------------------------------------------
+
+MATRIX = np.array([[2.0, -1.0, 0.3], [0.7, 1.0, -0.2], [0.1, 0.4, 3.0]])
+PROBLEM = LCP(MATRIX, np.array([-1.0, 0.5, -2.0]))
+BOXED = MixedLCP(MATRIX, np.array([-1.0, 0.5, -2.0]), lower=[0.0, -1.0, -np.inf], upper=[1.0, np.inf, 2.0])
+FORMS = {
+    "kkt": homotopies.KKTHomotopy(PROBLEM),
+    **{
+        name: getattr(homotopies, name)(PROBLEM)
+        for name in ("YuHomotopy", "WangHomotopy", "XuHomotopy", "ZhaoHomotopy")
+    },
+    **{f"{name}-boxed": getattr(homotopies, name)(BOXED) for name in ("YuHomotopy", "WangHomotopy")},
+    "kmm": homotopies.KojimaMegiddoMizunoHomotopy(PROBLEM),
+    "kmm-boxed": homotopies.KojimaMegiddoMizunoHomotopy(BOXED),
+}
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_the_products_are_the_residual(name):
+    homotopy, rng = FORMS[name], np.random.default_rng(1)
+    form = homotopy.quadratic()
+    size = len(homotopy.start()[0]) + 1
+    for _ in range(5):
+        u = rng.normal(size=size)
+        plain, first, second_ = (part.constant + part.matrix @ u for part in (form.plain, form.first, form.second))
+        np.testing.assert_allclose(plain + first * second_, homotopy.residual(u[:-1], u[-1]), rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_both_engines_prove_it(name):
+    homotopy = FORMS[name]
+    path = trace(homotopy)
+    proof = certify(path, homotopy)
+
+    class Plain:
+        target, metric = homotopy.target, homotopy.metric
+        start, residual, bordered = homotopy.start, homotopy.residual, homotopy.bordered
+        differential, max_step = homotopy.differential, homotopy.max_step
+
+    slow = certify(path, Plain())
+    assert proof.complete, str(proof)
+    assert slow.complete or "exactly" not in proof.end, str(slow)
+    assert len(slow.turning_points) == len(proof.turning_points)
+
+
+# --- tracing with a proof, archives -----------------------------------------------------------------------
+
+
+def test_a_certified_trace_is_the_same_trace_where_that_is_proved(tmp_path):
+    file = tmp_path / "proved.h5"
+    path = trace(FreudensteinRoth(), certified=True, archive=file)
+    plain = trace(FreudensteinRoth())
+    assert path.proof.complete
+    assert "Proved" in path.message
+    np.testing.assert_array_equal(path.u, plain.u)
+    assert plain.proof is None
+    (again,) = recheck(file)
+    assert again.complete
+    assert len(again.turning_points) == 2
+    with open_archive(file) as archive:
+        stored = archive[0]
+    np.testing.assert_array_equal(stored.u, path.u)
+    assert np.isnan(stored.tangents).any()  # computed again where a file has none
+    assert certify(stored, FreudensteinRoth()).complete
+
+
+def test_a_changed_certificate_proves_nothing(tmp_path):
+    homotopy = FreudensteinRoth()
+    path = trace(homotopy)
+    proof = certify(path, homotopy)
+    assert checked_again(proof.cells, path, homotopy).complete
+    for radius in (1e-9 * proof.cells.radius, 30.0 * proof.cells.radius):
+        changed = proof.cells.with_tubes(radius, proof.cells.slabs)
+        assert not checked_again(changed, path, homotopy).complete
+    assert not checked_again(proof.cells.take(np.arange(3, len(proof.cells))), path, homotopy).complete
+    assert not checked_again(proof.cells.take(np.delete(np.arange(len(proof.cells)), 5)), path, homotopy).complete
+    shifted = evolve(proof.cells, begin=proof.cells.begin + 1e-3)
+    assert not checked_again(shifted, path, homotopy).complete
+    assert not checked_again(proof.cells, path, Scaled(homotopy, 1)).complete
+
+
+def test_a_damaged_or_foreign_certificate_is_an_error(tmp_path):
+    file = tmp_path / "path.h5"
+    path = trace(FreudensteinRoth(), archive=file)
+    (nothing,) = recheck(file)
+    assert not nothing.complete
+    assert "no certificate" in str(nothing)
+    proof = certify(path, FreudensteinRoth())
+    add_proof(file, proof)
+    add_proof(file, proof)
+    assert recheck(file)[0].complete
+    for damage in (_bit, _shape, _text):
+        copy = tmp_path / f"{damage.__name__}.h5"
+        copy.write_bytes(file.read_bytes())
+        with h5py.File(copy, "r+") as opened:
+            damage(opened["certificate/0"])
+        with pytest.raises(ArchiveError, match="certificate of path 0 is damaged"):
+            recheck(copy)
+
+
+def _bit(group):
+    group["radius"][3, 1] *= 1.0000001
+
+
+def _shape(group):
+    values = group["radius"][:, :2]
+    del group["radius"]
+    group["radius"] = values
+
+
+def _text(group):
+    del group["chart"]
+    group["chart"] = "not numbers"
+
+
+def test_the_shell_checks_again(tmp_path, capsys):
+    from continuation.cli import main
+
+    file = tmp_path / "proved.h5"
+    trace(FreudensteinRoth(), certified=True, archive=file)
+    assert main(["recheck", str(file)]) == 0
+    assert "path 0: Proved" in capsys.readouterr().out
+    trace(FreudensteinRoth(), archive=tmp_path / "plain.h5")
+    assert main(["recheck", str(tmp_path / "plain.h5")]) == 1
+    if not second.available():
+        assert main(["recheck", str(file), "--second"]) == 2
+        assert "python-flint" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not second.available(), reason="python-flint is not installed")
+@pytest.mark.parametrize("name", ["freudenstein-roth", "duffing", "cusp"])
+def test_python_flint_confirms_every_tube(name):
+    homotopy, steps = ACCEPTED[name]
+    proof = certify(trace(homotopy, budget=Budget(steps=steps)), homotopy)
+    assert all(second.confirmed(homotopy.residual, proof.cells))
+    thin = proof.cells.with_tubes(1e-9 * proof.cells.radius, proof.cells.slabs)
+    assert not any(second.confirmed(homotopy.residual, thin))
+
+
+# --- the door ---------------------------------------------------------------------------------------------
+
+
+def test_bad_input_is_named():
+    path = trace(FreudensteinRoth())
+    with pytest.raises(ValueError, match="at least two points, found 1"):
+        certify(Path(steps=path.steps[:1]), FreudensteinRoth())
+    with pytest.raises(ValueError, match="expected points of"):
+        certify(path, ExponentialCosine(5))
+
+    class Sorted:
+        target = 1.0
+
+        def start(self):
+            return np.zeros(2), 0.0
+
+        def residual(self, y, lam):
+            return np.sort(y) - lam
+
+    with pytest.raises(TypeError, match=r"numpy\.sort"):
+        certify(path, Sorted())
+
+
+def test_a_picture_and_the_radius(tmp_path):
+    path = trace(FreudensteinRoth())
+    proof = certify(path, FreudensteinRoth())
+    axes = proof.plot()
+    assert axes.get_title() == "complete"
+    assert (proof.radius(1.0) > 0.0).all()
+    assert np.isnan(proof.radius(1e9)).all()
+    assert "Proved" in repr(proof)
+    assert folds.turns([]) == ([], [])

@@ -1,0 +1,160 @@
+"""Interval arrays: no value outside, numpy's functions as jets have them, and what is not defined stays undefined."""
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+from continuation import intervals, jets
+from continuation.intervals import Interval, UndecidedError, enclose, jacobian
+
+sys.path.insert(0, str(Path(__file__).parents[3] / "examples" / "benchmarks" / "proof"))
+
+import functions as campaign  # ruff's isort sees the folder only here
+
+RNG = np.random.default_rng(5)
+X = RNG.normal(size=6)
+M = RNG.normal(size=(6, 6))
+
+
+@pytest.mark.parametrize("name", [*campaign.ONE, *campaign.TWO])
+def test_no_value_lies_outside_of_its_interval(name):
+    outside, told = campaign.violations(name, 600, seed=1)
+    assert outside == 0
+    assert told > (0.2 if name in ("tan", "divide", "reciprocal", "log1p", "cbrt", "arctan2") else 0.6)
+
+
+@pytest.mark.parametrize("name", campaign.ONE)
+def test_no_derivative_lies_outside_of_its_interval(name):
+    assert campaign.slopes_outside(name, 100, seed=2) == 0
+
+
+RESIDUALS = {
+    "elementwise": lambda y: np.exp(-y) * np.sin(y) - y**3 / (2.0 + np.cos(y)) + np.arctan2(y, 1.0 + y * y),
+    "matmul": lambda y: M @ y + (y @ M) * y,
+    "sparse": lambda y: sp.csr_array(M) @ y - y @ sp.csr_array(M),
+    "list": lambda y: [y[0] * y[1], np.sum(y), y[2:4] @ y[4:], np.prod(y[:3]), y.sum() ** 2, np.mean(y)],
+    "assembly": lambda y: np.concatenate([np.roll(y, 1)[:3], np.append(y[1:3], 0.5)]) * np.diff(np.append(y, 1.0)),
+    "assigned": lambda y: _assigned(y),
+    "einsum": lambda y: np.einsum("ij,j->i", np.outer(y, y), y),
+    "where": lambda y: np.where(y > 0.0, y, 2.0 * y) + np.maximum(y, 5.0) + np.minimum(y * y, y - 9.0) + np.abs(y),
+    "norm": lambda y: y / np.linalg.norm(y) + np.tensordot(np.outer(y, y), y, 1) + np.cumsum(y),
+    "powers": lambda y: (y**2) ** 1.5 + (1.0 + y**2) ** -2.0 + 2.0**y + (y**2) ** np.array([1.0, 2, 3, 0.5, -1, 0]),
+}
+
+
+def _assigned(y):
+    out = np.zeros_like(y)
+    out[1:] = y[:-1] ** 2
+    out[0] += y[5]
+    out[np.array([0, 2])] -= 1.0
+    return out
+
+
+@pytest.mark.parametrize("name", RESIDUALS)
+def test_a_residual_in_plain_numpy_runs_on_boxes_as_on_jets(name):
+    f = RESIDUALS[name]
+    exact, slopes = np.asarray(f(X), dtype=float), jets.jacobian(f, X)
+    for radius in (0.0, 1e-9, 1e-3):
+        value, slope = enclose(f, X - radius, X + radius), jacobian(f, X - radius, X + radius)
+        slack = 1e-14 * (1.0 + np.abs(exact))  # of the plain evaluation and of the jets, which round
+        assert (value.lo <= exact + slack).all()
+        assert (exact - slack <= value.hi).all()
+        assert (value.hi - value.lo <= 2e3 * radius + 1e-12).all()
+        room = 1e-12 * (1.0 + np.abs(slopes))
+        assert (slope.lo <= slopes + room).all()
+        assert (slopes - room <= slope.hi).all()
+        assert (slope.hi - slope.lo <= 2e4 * radius + 1e-11).all()
+
+
+def test_a_box_holds_every_point_of_it():
+    for f in RESIDUALS.values():
+        value = enclose(f, X - 0.01, X + 0.01)
+        slope = jacobian(f, X - 0.01, X + 0.01)
+        for _ in range(20):
+            x = X + 0.01 * RNG.uniform(-1.0, 1.0, 6)
+            image, matrix = np.asarray(f(x), dtype=float), jets.jacobian(f, x)
+            assert ((value.lo <= image) & (image <= value.hi)).all()
+            assert ((slope.lo <= matrix) & (matrix <= slope.hi)).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_sums_and_products_of_matrices_hold_the_exact_ones(seed):
+    rng = np.random.default_rng(seed)
+    a, x = rng.normal(size=(4, 30)) * 10.0 ** rng.uniform(-9, 9, (4, 30)), rng.normal(size=30)
+    a[:, 15:] = -a[:, :15] * (1.0 + 1e-15 * rng.normal(size=(4, 15)))  # cancels
+    exact = [sum((Fraction(p) * Fraction(q) for p, q in zip(row, x.tolist())), Fraction(0)) for row in a.tolist()]
+    for image in (a @ Interval(x), sp.csr_array(a) @ Interval(x), np.einsum("ij,j->i", a, Interval(x))):
+        ends = zip(image.lo.tolist(), exact, image.hi.tolist())
+        assert all(Fraction(lo) <= value <= Fraction(hi) for lo, value, hi in ends)
+    total = np.sum(Interval(a), axis=1)
+    assert all(Fraction(lo) <= campaign.exact_sum(row) <= Fraction(hi) for lo, row, hi in zip(total.lo, a, total.hi))
+
+
+def test_extrema_inside_and_arguments_far_away():
+    assert np.sin(Interval(1.0, 2.0)).hi == 1.0
+    assert np.cos(Interval(3.0, 3.3)).lo == -1.0
+    assert np.cos(Interval(-0.1, 0.2)).hi == 1.0
+    far = np.sin(Interval(1e17))
+    assert (far.lo, far.hi) == (-1.0, 1.0)
+    assert np.cosh(Interval(-1.0, 2.0)).lo == 1.0
+    square = Interval(-1.0, 2.0) ** 2
+    assert square.lo == 0.0
+    y = Interval(-1.0, 2.0)
+    assert (y * y).lo == 0.0
+    cube = y**3
+    assert cube.lo <= -1.0 <= 8.0 <= cube.hi < 8.1
+
+
+UNDEFINED = {
+    "division": lambda y: 1.0 / y,
+    "logarithm": np.log,
+    "root": np.sqrt,
+    "pole": lambda y: np.tan(y + np.pi / 2),
+    "power": lambda y: y**0.5,
+    "negative power": lambda y: y**-2,
+    "overflow": lambda y: np.exp(1e6 * (y + 2.0)),
+}
+
+
+@pytest.mark.parametrize("name", UNDEFINED)
+def test_what_is_not_defined_on_a_box_says_nothing_and_stays_so(name):
+    box = Interval(-0.5, 0.5)
+    image = UNDEFINED[name](box)
+    for later in (
+        image,
+        np.arctan(image),
+        image * 0.0,
+        np.maximum(image, 1.0),
+        image**0,
+        np.tanh(image),
+        image - image,
+    ):
+        assert np.isnan(later.lo) or np.isnan(later.hi)
+        assert np.isnan(later)
+
+
+def test_a_kink_has_the_slopes_of_both_sides():
+    slope = jacobian(lambda y: np.abs(y) + np.maximum(y, 0.0), np.array([-1.0]), np.array([1.0]))
+    assert slope.lo[0, 0] <= -1.0
+    assert 2.0 <= slope.hi[0, 0] < 2.1
+    with pytest.raises(UndecidedError, match="not decided"):
+        enclose(lambda y: np.where(y > 0.0, y, 0.0), np.array([-1.0]), np.array([1.0]))
+
+
+def test_what_cannot_be_done_says_so():
+    y = Interval(np.zeros(2), np.ones(2))
+    with pytest.raises(TypeError, match=r"numpy\.floor"):
+        np.floor(y)
+    with pytest.raises(TypeError, match=r"numpy\.sort"):
+        np.sort(y)
+    with pytest.raises(TypeError, match="drop its width"):
+        np.asarray(y)
+    with pytest.raises(TypeError, match="drop its width"):
+        float(y[0])
+    with pytest.raises(ValueError, match="lo <= hi"):
+        Interval(1.0, 0.0)
+    assert intervals.__all__ == ["Interval", "UndecidedError", "enclose", "jacobian"]
