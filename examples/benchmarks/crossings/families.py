@@ -77,7 +77,7 @@ class Crossed:
 
     @property
     def resolution(self) -> float:
-        """What round-off in y leaves of a crossing's place: more where zero is far off and the branches nearly touch."""
+        """What round-off in y leaves of a crossing's place: more where zero is far off and branches nearly touch."""
         return 100.0 * float(np.finfo(float).eps * np.abs(self.origin / self.units).max()) / self.angle
 
     def start(self) -> tuple[Array, float]:
