@@ -16,6 +16,7 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events import Event, Monitor, TargetValue, TurningPoint
 from continuation.events.branch_point import BranchPoint
 from continuation.homotopy import Homotopy
+from continuation.interrupted import Interrupted
 from continuation.metric import Automatic, Euclidean, Metric
 from continuation.path import LocatedEvent, Path, Step
 from continuation.predictors import Predictor
@@ -43,6 +44,7 @@ __all__ = [
     "EvaluationError",
     "Event",
     "Homotopy",
+    "Interrupted",
     "Kind",
     "LocatedEvent",
     "Metric",

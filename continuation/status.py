@@ -21,6 +21,8 @@ class Status(IntEnum):
     INTERRUPTED = 10
     START_NOT_ON_PATH = 11
     PREDICTOR_FAILED = 12
+    ABANDONED = 13
+    RAISED = 14
 
     def __str__(self) -> str:
         return _SENTENCES[self]
@@ -50,9 +52,11 @@ _SENTENCES = {
     Status.LEFT_DOMAIN: "The path left the set on which the homotopy can be evaluated; check the formulas there.",
     Status.SINGULAR_START: "The Jacobian [H_y, H_lam] has no full rank at the start; start elsewhere.",
     Status.BUDGET_EXHAUSTED: "The budget is used up; raise `budget`, or resume from the archive.",
-    Status.INTERRUPTED: "The trace was interrupted; all accepted points are kept and it can be resumed.",
+    Status.INTERRUPTED: "The trace was interrupted by hand; all accepted points are kept and it can be resumed.",
     Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
     Status.PREDICTOR_FAILED: "The predictor found no curve to follow from the last point; take another `predictor`.",
+    Status.ABANDONED: "The trace was left before the path ended; all accepted points are kept and it can be resumed.",
+    Status.RAISED: "An exception ended the trace; all accepted points are kept, and it can be resumed once that is mended.",
 }
 
 

@@ -49,6 +49,8 @@ def trace(
     ------
     TypeError, ValueError
         For bad input: a homotopy without the methods needed, a start that is not finite, an unknown option.
+    Interrupted
+        After Ctrl-C: a KeyboardInterrupt with the path so far, ``interrupt.path``; the archive is closed and has it too.
     """
     each("observers", observers, OBSERVER)
     watching = list(observers)
@@ -58,10 +60,7 @@ def trace(
         from continuation.progress import Progress
 
         watching.append(Progress())
-    tracer = Tracer(homotopy, observers=watching, state=state, **options)
-    for _ in tracer:
-        pass
-    return tracer.path
+    return Tracer(homotopy, observers=watching, state=state, **options).run()
 
 
 def _log(archive: str | PathLike[str] | Observer) -> Observer:

@@ -17,6 +17,7 @@ from continuation.checks import complain
 from continuation.path import Path
 from continuation.status import Kind, Status
 
+UNFINISHED = Status.INTERRUPTED, Status.TRACING, Status.ABANDONED, Status.RAISED
 _DETAILED = 3
 _LISTED = 12
 _SHOWN = 4
@@ -197,7 +198,7 @@ def _many_paths(archive: Archive) -> str:
 
 def _failures(archive: Archive) -> list[str]:
     """Paths that ended by an error, with its text."""
-    rows = np.flatnonzero(np.isin(archive.paths["status"], [int(Status.INTERRUPTED), int(Status.TRACING)]))
+    rows = np.flatnonzero(np.isin(archive.paths["status"], [int(status) for status in UNFINISHED]))
     lines = ["", "Not finished", "------------"] if rows.size else []
     for row in rows[:_LISTED]:
         message = archive.paths["message"][row].decode() or "still being traced, or its writer was killed"

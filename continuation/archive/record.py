@@ -13,6 +13,7 @@ from continuation.archive.provenance import scalars
 from continuation.archive.schema import COUNT_NAMES, TEXT, Layout, text
 from continuation.path import Path
 from continuation.status import Status
+from continuation.step.verdict import sentence
 
 counted = attrgetter(*COUNT_NAMES)
 """The counters of `Counts` as a tuple, in the order of `COUNT_NAMES`."""
@@ -38,13 +39,8 @@ def of_path(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Record:
 
 def of_failure(homotopy: Any, error: BaseException) -> Record:
     """A path that could not begin."""
-    path = Path(status=Status.INTERRUPTED, message=sentence(error))
+    path = Path(status=Status.RAISED, message=sentence(error))
     return {**of_path(path, homotopy, ()), "n_points": 0}
-
-
-def sentence(error: BaseException) -> str:
-    """An exception in one line."""
-    return f"{type(error).__name__}: {error}".replace("\n", " ")
 
 
 def to_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
     Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,
-    Status.PREDICTOR_FAILED,
+    Status.PREDICTOR_FAILED, Status.ABANDONED, Status.RAISED,
 )
 
 
@@ -116,7 +116,7 @@ def resume(
         _run(tracer, checkpoint)
     finally:
         log.close()
-    tracer.path.seconds += checkpoint.seconds
+        tracer.path.seconds += checkpoint.seconds
     return tracer.path
 
 

@@ -190,7 +190,7 @@ class PathLog:
         path, found, state = self._path(tracer), tracer.path, tracer.state
         row = record.of_path(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
-        refused = self._store is None and found.status is Status.INTERRUPTED
+        refused = self._store is None and found.status in (Status.INTERRUPTED, Status.RAISED)
         if self._many or not refused:
             self._finish(row, path.number, path.rows)
         self._open = None

@@ -51,7 +51,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         # The reader (head, a pager) has enough; without this, Python complains once more while it shuts down.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return SUCCESS
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
+        kept = getattr(arguments, "archive", None) or getattr(arguments, "grows", None)
+        where = f"; what was traced is in {kept}" if kept is not None and os.path.exists(kept) else ""
+        print(f"continuation: {str(interrupt) or 'interrupted'}{where}", file=sys.stderr)
         return INTERRUPTED
     except OSError as error:
         from continuation.archive.errors import ArchiveError

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Iterator, Sequence
 from typing import Any, Protocol, Unpack
 
@@ -14,6 +15,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events.scan import monitored
 from continuation.homotopy import SupportsObserve
+from continuation.interrupted import Interrupted
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.linearization import Anchor, Linearization
 from continuation.point.projection import PathSolver
@@ -26,7 +28,16 @@ from continuation.step.record import StepRecorder
 from continuation.step.settings import complete_settings
 from continuation.step.start import StartError, first_point, point_from_tangent
 from continuation.step.state import State
-from continuation.step.verdict import INTERRUPTED, Verdict, budget_spent, finished, refused_start, start_on_target
+from continuation.step.verdict import (
+    INTERRUPTED,
+    Verdict,
+    abandoned,
+    budget_spent,
+    finished,
+    raised,
+    refused_start,
+    start_on_target,
+)
 
 
 class Observer(Protocol):
@@ -121,6 +132,7 @@ class Tracer:
         self._check = asked["check_jacobian"]
         self._clock: float | None = None
         self._handed = 0
+        self._reason = ""
 
     @property
     def seconds(self) -> float:
@@ -140,21 +152,48 @@ class Tracer:
         ------
         RuntimeError
             If another loop over this tracer has not ended.
+        Interrupted
+            After Ctrl-C: a KeyboardInterrupt with the path so far.
         """
         if self._clock is not None:
             raise RuntimeError("the tracer is being iterated already; leave that loop first")
-        if self.path.status not in (Status.TRACING, Status.INTERRUPTED):
+        if self.path.status not in (Status.TRACING, Status.INTERRUPTED, Status.ABANDONED, Status.RAISED):
             return
         self._clock = time.perf_counter() - self.path.seconds
         self.path.status, self.path.message = Status.TRACING, ""
         try:
             yield from self._run()
-        except KeyboardInterrupt:
-            self._end(INTERRUPTED)
-        finally:
-            # A consumer that stops iterating, or an exception of the plug-in's own, leaves a consistent path behind.
+        except KeyboardInterrupt as interrupt:
             if self.path.status is Status.TRACING:
                 self._end(INTERRUPTED)
+            raise Interrupted(self.path) from interrupt
+        except BaseException as error:
+            # A consumer that stops iterating, or an exception of the plug-in's own, leaves a consistent path behind.
+            if self.path.status is Status.TRACING:
+                self._end(abandoned(self._reason) if isinstance(error, GeneratorExit) else raised(error))
+            raise
+
+    def run(self) -> Path:
+        """Trace to the end of the path.
+
+        Raises
+        ------
+        Interrupted
+            After Ctrl-C: a KeyboardInterrupt with the path so far.
+        """
+        # In C, so that Ctrl-C is met within the tracer, which knows what to do.
+        deque(self, maxlen=0)
+        return self.path
+
+    def give_up(self, reason: str) -> None:
+        """Say why the loop over the steps will be left now; the path's message, also in archives, has the reason.
+
+        Parameters
+        ----------
+        reason : str
+            A sentence without its full stop.
+        """
+        self._reason = reason
 
     def _run(self) -> Iterator[Step]:
         try:

@@ -41,8 +41,22 @@ class Verdict:
 
 
 INTERRUPTED = Verdict(Status.INTERRUPTED)
-"""Ctrl-C, an exception of the plug-in's own, or a consumer that stopped iterating."""
+"""Ctrl-C."""
 
+
+def abandoned(reason: str) -> Verdict:
+    """Whoever asks for the steps has asked for no more."""
+    return Verdict(Status.ABANDONED, f"Given up: {reason}." if reason else "")
+
+
+def raised(error: BaseException) -> Verdict:
+    """An exception of the plug-in's own, or of an observer."""
+    return Verdict(Status.RAISED, f"It says: {sentence(error)}")
+
+
+def sentence(error: BaseException) -> str:
+    """An exception in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())
 
 
 def refused_start(error: StartError) -> Verdict:

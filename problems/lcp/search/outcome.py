@@ -189,6 +189,6 @@ class Solution:
             return self.paths[self.best]
         x = self.x if self.x is not None else np.zeros(self.problem.n)
         u = np.append(x, 0.0)
-        status = Status.REACHED_TARGET if self.solved else Status.INTERRUPTED
+        status = Status.REACHED_TARGET if self.solved else Status.ABANDONED
         alone = Step(0, u, np.zeros_like(u), 0.0, kind=Kind.TARGET)
         return Path([alone], status=status, message="No path was traced.")

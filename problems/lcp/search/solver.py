@@ -256,7 +256,7 @@ def _archive_without_path(search: Search, found: Solution) -> None:
     """
     problem = found.problem
     homotopy = KKTHomotopy(problem) if isinstance(problem, LCP) else WangHomotopy(problem)
-    path = Path(status=Status.INTERRUPTED, message=f"No path was traced. {found.message}")
+    path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate
     if end is not None:
         x, w = end.x, np.maximum(end.w, 0.0)
