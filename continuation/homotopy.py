@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from continuation.arrays import Array, Matrix
@@ -215,6 +215,17 @@ class SupportsObserve(Protocol):
         dict of str to float
         """
         ...
+
+
+@runtime_checkable
+class SupportsNames(Protocol):
+    """What the parameter and the unknowns are called: for axes, tables and archives. Each of the three may be absent."""
+
+    parameter_name: str
+    names: Sequence[str]
+    """One an unknown."""
+    units: Mapping[str, str]
+    """By name: of the parameter, the unknowns, and what is observed."""
 
 
 @runtime_checkable

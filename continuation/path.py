@@ -12,6 +12,7 @@ from attrs import define, field, frozen
 from continuation.arrays import Array
 from continuation.checks import real_vector
 from continuation.counts import Counts
+from continuation.labels import Labels
 from continuation.point.segment import Segment, parameter_at
 from continuation.rejection import Rejected
 from continuation.status import Kind, Status
@@ -99,6 +100,8 @@ class LocatedEvent:
         Index of the step in which it lies (from step - 1 to step).
     ends_step : bool
         Whether it is that step's own point.
+    observed : mapping
+        Extra scalars of the homotopy, at u.
     """
 
     name: str
@@ -111,6 +114,7 @@ class LocatedEvent:
     orientation: int
     step: int
     ends_step: bool = False
+    observed: Mapping[str, float] = field(factory=dict)
 
     @property
     def y(self) -> Array:
@@ -147,6 +151,8 @@ class Path:
         There: the path is a power series in |lam - target|^(1 / winding_number).
     rejected : tuple of Rejected
         The attempts that failed at the last point, where the path ended for want of a step.
+    labels : Labels
+        Names and units of the homotopy.
     """
 
     steps: list[Step] = field(factory=list)
@@ -159,6 +165,7 @@ class Path:
     end_error: float | None = None
     winding_number: int | None = None
     rejected: tuple[Rejected, ...] = ()
+    labels: Labels = field(factory=Labels)
 
     def __len__(self) -> int:
         return len(self.steps)

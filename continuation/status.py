@@ -56,7 +56,7 @@ _SENTENCES = {
     Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
     Status.PREDICTOR_FAILED: "The predictor found no curve to follow from the last point; take another `predictor`.",
     Status.ABANDONED: "The trace was left before the path ended; all accepted points are kept and it can be resumed.",
-    Status.RAISED: "An exception ended the trace; all accepted points are kept, and it can be resumed once that is mended.",
+    Status.RAISED: "An exception ended the trace; all accepted points are kept, mend that and resume.",
 }
 
 

@@ -50,7 +50,7 @@ def trace(
     TypeError, ValueError
         For bad input: a homotopy without the methods needed, a start that is not finite, an unknown option.
     Interrupted
-        After Ctrl-C: a KeyboardInterrupt with the path so far, ``interrupt.path``; the archive is closed and has it too.
+        After Ctrl-C: a KeyboardInterrupt with the path so far, ``interrupt.path``; the archive has it too.
     """
     each("observers", observers, OBSERVER)
     watching = list(observers)

@@ -24,6 +24,7 @@ from continuation.archive.tables import Table
 from continuation.checks import complain
 from continuation.citation import entries
 from continuation.counts import Counts
+from continuation.labels import Labels
 from continuation.path import Path
 from continuation.status import Status
 
@@ -148,6 +149,7 @@ class Archive(Sequence[Path]):
             references=entries(str(self.attributes.get("references", ""))),
             end_error=None if math.isnan(end_error) else end_error,
             winding_number=winding or None,
+            labels=Labels.from_attributes(self.attributes),
         )
 
     def __iter__(self) -> Iterator[Path]:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from continuation.archive.provenance import scalars
-from continuation.archive.schema import COUNT_NAMES, TEXT, Layout, text
+from continuation.archive.provenance import class_path, scalars
+from continuation.archive.schema import COUNT_NAMES, Layout, text
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.verdict import sentence
@@ -34,6 +34,8 @@ def of_path(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Record:
         "winding_number": path.winding_number or 0,
         "controller_state": controller,
         "scalars": scalars(homotopy),
+        "homotopy": "" if homotopy is None else class_path(homotopy),
+        "source": "",
     }
 
 
@@ -57,7 +59,7 @@ def to_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
             block[column.name] = np.array([value])
         else:
             value = record[column.name]
-            block[column.name] = np.array([text(value, TEXT) if column.length else value], dtype=column.storage)
+            block[column.name] = np.array([text(value, column.length) if column.length else value], dtype=column.storage)
     return block
 
 

@@ -110,7 +110,7 @@ def resume(
     else:
         tracer.path.steps = _stored(store.file, checkpoint, every)
     tracer.path.events[:] = [event for event in before.events if event.step <= checkpoint.state.index]
-    log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer, every)
+    log = PathLog.continued(store, rows, checkpoint, tracer, every, source.attributes.get("identifier", ""))
     tracer.observers = (log, *observers)
     try:
         _run(tracer, checkpoint)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
@@ -80,8 +80,10 @@ class PathLog:
     durable : bool
         Wait for the disk at each commit: survives a power cut, not only a kill.
     tangents : bool
-        Store the unit tangents as well.
+        Store the unit tangents, so that a path that is read is a curve; without them a file is half as large.
     title : str
+    parameters : mapping, optional
+        What the homotopies were made with, where their attributes do not say it: for `continuation resume`.
     limits : Limits
         When to commit.
     keep : str
@@ -106,8 +108,9 @@ class PathLog:
         file: str | PathLike[str],
         *,
         durable: bool = False,
-        tangents: bool = False,
+        tangents: bool = True,
         title: str = "",
+        parameters: Mapping[str, Any] | None = None,
         limits: Limits | None = None,
         keep: str = "all",
     ) -> None:
@@ -116,6 +119,7 @@ class PathLog:
             raise complain(TypeError, "limits", "Limits(...)", limits)
         check_new(as_file("file", file))
         self._begin(File(file), durable, tangents, title, limits, kept_every(keep))
+        self._parameters = dict(parameters or {})
 
     def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
         self.file, self._every = file, every
@@ -126,6 +130,8 @@ class PathLog:
         self._open: _Open | None = None
         self._buffer = _Buffer(0)
         self._paths = self._sequence = 0
+        self._parameters: dict[str, Any] = {}
+        self._identifier = ""
         self._known: tuple[Any, Any] = (None, None)
         self._early: list[Record] = []
         self._witness: Tracer | None = None
@@ -133,7 +139,7 @@ class PathLog:
 
     @classmethod
     def continued(
-        cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer, every: int
+        cls, store: Store, points: int, checkpoint: Checkpoint, tracer: Tracer, every: int, identifier: str
     ) -> PathLog:
         """A log that goes on with a path of which the file holds the beginning; for `resume`.
 
@@ -141,16 +147,20 @@ class PathLog:
         ----------
         store : Store
             The file, open for writing.
-        points, paths : int
-            Rows and ended paths that it holds.
+        points : int
+            Rows that it holds.
         checkpoint : Checkpoint
         tracer : Tracer
         every : int
             Which steps stay in memory.
+        identifier : str
+            Of the file that the path was begun in.
         """
+        paths = checkpoint.path
         log = cls.__new__(cls)
         log._begin(store.file, store.durable, store.layout.tangents, "", Limits(), every)
         log._store, log._buffer, log._paths, log._sequence = store, _Buffer(points), paths, checkpoint.sequence
+        log._identifier = str(identifier)
         log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
         mark = _Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
         log._open = _Open(tracer, paths, checkpoint.rows, checkpoint.seconds, None, mark, mark)
@@ -276,7 +286,10 @@ class PathLog:
         if self._store is None:
             self._early.append(row)
         else:
-            self._commit(row)
+            self._commit(self._sourced(row))
+
+    def _sourced(self, row: Record) -> Record:
+        return {**row, "source": f"{self._identifier} {row['path']} {self.file.name}"}
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> None:
         """Make the file, and write the rows of paths that ended before there was one."""
@@ -287,13 +300,14 @@ class PathLog:
         layout = Layout(unknowns, max(len(state), CONTROLLER_STATE), observed, tuple(sorted(names)), self._tangents)
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
-        attributes = root_attributes(tracer, self._title)
+        attributes = root_attributes(tracer, self._title, self._parameters)
+        self._identifier = attributes["identifier"]
         self._store = create(self.file, layout, attributes, problem, durable=self._durable)
         for event in tracer.settings.events if tracer is not None else ():
             self._store.name_event(event.name)
         self._store.commit()
         for row in self._early:
-            self._commit(row)
+            self._commit(self._sourced(row))
         self._early = []
 
     def _commit(self, row: Record | None = None) -> None:

@@ -16,6 +16,7 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events.scan import monitored
 from continuation.homotopy import SupportsObserve
 from continuation.interrupted import Interrupted
+from continuation.labels import Labels
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.linearization import Anchor, Linearization
 from continuation.point.projection import PathSolver
@@ -117,7 +118,7 @@ class Tracer:
         asked = checked(options)
         each("observers", observers, OBSERVER)
         self.homotopy = homotopy
-        self.path = Path()
+        self.path = Path(labels=Labels.of(homotopy))
         self.counts: Counts = self.path.counts
         self._evaluator = Evaluator(homotopy, self.counts)
         self.settings = complete_settings(homotopy, asked)
@@ -296,7 +297,7 @@ class Tracer:
         else:
             point, state = found.point, found.state
             self.counts.accepted += 1
-            self._record(found.step, state, found.events)
+            self._record(found.step, state, self._recorder.observing(found.events))
             y = self._finish(point.y, point.lam) if verdict is None and self._finish is not None else None
             if y is not None:
                 end = np.append(y, self.settings.target if self.settings.target is not None else point.lam)

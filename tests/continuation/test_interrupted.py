@@ -22,10 +22,14 @@ class Pressed(Cusp):
 
 def test_a_loop_of_traces_ends_at_the_first(tmp_path):
     begun = []
-    with pytest.raises(KeyboardInterrupt) as interrupt:
+
+    def loop():
         for k in range(6):
             begun.append(k)
             trace(Pressed(), archive=tmp_path / f"{k}.h5")
+
+    with pytest.raises(KeyboardInterrupt) as interrupt:
+        loop()
     assert begun == [0]
     path = interrupt.value.path
     assert path.status is Status.INTERRUPTED

@@ -164,7 +164,7 @@ def solve(
         Finish(Faces(structure), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
-        None if archive is None else PathLog(as_file("archive", archive)),
+        None if archive is None else PathLog(as_file("archive", archive), title=_title(problem)),
         progress,
         dict(options),
     )
@@ -182,6 +182,12 @@ def solve(
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)
         return found
+
+
+def _title(problem: MixedLCP) -> str:
+    """Of an archive: it holds paths of a problem, whatever homotopies they belong to."""
+    bounds = "" if problem.standard else " with bounds"
+    return f"Paths of a linear complementarity problem{bounds}, n = {problem.n}"
 
 
 def _unfixed(problem: MixedLCP) -> MixedLCP:
