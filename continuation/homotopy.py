@@ -7,6 +7,7 @@ from typing import Protocol, runtime_checkable
 
 from continuation.arrays import Array, Matrix
 from continuation.events import Event
+from continuation.events.box import Box
 from continuation.linear import BorderedSystem
 from continuation.metric import Metric
 
@@ -233,6 +234,13 @@ class SupportsEvents(Protocol):
     """Events that belong to the homotopy, added to those of the call."""
 
     events: Sequence[Event]
+
+
+@runtime_checkable
+class SupportsBox(Protocol):
+    """Where its path ends for those who say nothing of that: no target, no events, no box."""
+
+    box: Box
 
 
 @runtime_checkable

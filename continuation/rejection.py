@@ -24,6 +24,7 @@ class Rejection(Enum):
     CONTROLLER = "the controller refuses it, as it does the shortest step where the Jacobian is wrong"
     ORIENTATION = "the determinant changes its sign on the arc, and no branch point is found there"
     MIDPOINT = "the inside of the arc is not on the path"
+    RAISED = "the homotopy raised an exception of its own at a point that was tried"
     ARC = "the inside of the arc could not be evaluated"
 
     @property

@@ -10,6 +10,7 @@ import secrets
 import socket
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import lru_cache
 from importlib import metadata
@@ -23,7 +24,7 @@ import scipy
 from continuation.archive.checkpoint import OPTIONS
 from continuation.archive.codec import UnstorableError, encode, inline
 from continuation.archive.schema import SCHEMA
-from continuation.archive.trust import ENTRY_POINTS
+from continuation.archive.trust import ENTRY_POINTS, UnknownError, decode
 from continuation.step.tracer import Tracer
 from continuation.version import __version__
 
@@ -117,6 +118,33 @@ def scalars(homotopy: Any) -> dict[str, float]:
         for name, value in parameters(homotopy).items()
         if value is None or (isinstance(value, (bool, int, float, np.number)) and not isinstance(value, complex))
     }
+
+
+def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters that an archive holds as numbers, texts, lists and small arrays; what is larger is left out.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Of the archive.
+    """
+    try:
+        tree = json.loads(str(attributes.get("parameters", "{}")))
+    except ValueError:
+        return {}
+    if not isinstance(tree, dict):
+        return {}
+    found = {}
+    for name, value in tree.get("dict", tree).items():
+        with suppress(UnknownError):
+            found[str(name)] = decode(value, _values)
+    return found
+
+
+def _values(place: Any) -> Any:
+    if "values" not in place:
+        raise UnknownError("an array of which the file has the shape alone")
+    return np.array(place["values"], dtype=place["dtype"])
 
 
 def readable(value: Any) -> Any:

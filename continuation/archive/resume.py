@@ -187,7 +187,7 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
             raise UnknownError(tree["unstorable"])
         return decode(tree, fetch, known)
     except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
-        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy="
+        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy=, or --homotopy module:Class"
         raise ArchiveError(f"{source.file}: {reason}") from None
 
 
@@ -207,7 +207,7 @@ def _options(
         except (UnknownError, KeyError, TypeError) as error:
             reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
             raise ArchiveError(f"{source.file}: {reason}") from None
-    return {**stored, **given}
+    return {"box": None, **stored, **given}
 
 
 def _check_homotopy(homotopy: Any, checkpoint: Checkpoint, stored: float) -> None:

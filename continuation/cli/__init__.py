@@ -61,7 +61,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         if not isinstance(error, ArchiveError) and error.errno not in NO_ROOM:
             raise
-        name = error.filename or "a file"
+        name = error.filename or "the output"
         what = error if error.errno is None else f"{name}: could not be written ({os.strerror(error.errno)})"
         print(f"continuation: {what}", file=sys.stderr)
         return BAD_INPUT

@@ -8,6 +8,7 @@ import json
 import math
 import os
 import sys
+import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,12 @@ if TYPE_CHECKING:
 PRESETS = ("fast", "default", "conservative", "series")
 
 CHART_TOLERANCES = (1e-3, 1e-6, 1e-9)
+
+DOOR = (
+    "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
+    "parameter_name", "names", "units",
+)  # fmt: skip
+"""What a complaint about a homotopy begins with."""
 
 MOST_PRINTED = 10
 """Unknowns printed; --json prints all."""
@@ -126,13 +133,13 @@ def _trace(arguments: argparse.Namespace) -> int:
     from continuation.archive import PathLog
     from continuation.tracing import trace
 
-    homotopy, values = _homotopy(arguments)
+    homotopy, values = homotopy_of(arguments.name, arguments.options)
     if arguments.plot is not None:
         from continuation.cli.figures import check_picture
 
         check_picture("--plot", arguments.plot)
     with complaints("--archive", new="--archive"):
-        log = None if arguments.archive is None else PathLog(arguments.archive)
+        log = None if arguments.archive is None else PathLog(arguments.archive, parameters=values)
     folder = None
     if arguments.chart is not None:
         from continuation.cli.charts import new_folder
@@ -234,8 +241,9 @@ def _as_json(title: str, path: Path) -> dict[str, Any]:
 def _check(arguments: argparse.Namespace) -> int:
     from continuation.testing import run_checks
 
-    homotopy, _ = _homotopy(arguments)
-    results = run_checks(homotopy, steps=arguments.steps)
+    homotopy, _ = homotopy_of(arguments.name, arguments.options)
+    with _refused(arguments.name):
+        results = run_checks(homotopy, steps=arguments.steps)
     for result in results:
         print(_line(result))
     failed = sum(result.outcome != "passed" for result in results)
@@ -250,21 +258,46 @@ def _line(result: Result) -> str:
 # -- a homotopy out of its name and options -------------------------------------------------------------------
 
 
-def _homotopy(arguments: argparse.Namespace) -> tuple[Any, Mapping[str, Any]]:
-    """The homotopy that NAME KEY=VALUE ... stand for, and the options read."""
-    # A program started by its script does not see modules in the directory that it is called from.
-    if ":" in arguments.name and os.getcwd() not in sys.path:
+def importable(name: str) -> None:
+    """Let ``module:object`` be found in the working directory, which a program started by its script does not see."""
+    if ":" in name and os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
-    with _unknown(arguments.name):
-        factory = plugins.find(arguments.name)
+
+
+def homotopy_of(
+    name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None
+) -> tuple[Any, Mapping[str, Any]]:
+    """The homotopy that NAME KEY=VALUE ... stand for, and the options read.
+
+    Parameters
+    ----------
+    name : str
+        As `continuation.plugins.find` takes it.
+    texts : sequence of str
+        ``KEY=VALUE``.
+    known : mapping, optional
+        Options that hold where no text says otherwise.
+
+    Raises
+    ------
+    UsageError
+        Naming the homotopy or the option.
+    """
+    importable(name)
+    with _unknown(name):
+        factory = plugins.find(name)
     written = {option.name: option.annotation for option in plugins.options(factory)}
-    values = _values(arguments.options, written)
+    values = {**(known or {}), **_values(texts, written)}
     try:
-        return plugins.make(arguments.name, values), values
-    except (TypeError, ValueError) as error:
+        with _refused(name):
+            return plugins.make(name, values), values
+    except UsageError as refused:
+        error = refused.__cause__
+        if not isinstance(error, (TypeError, ValueError)):
+            raise
         key, _, complaint = str(error).partition(": ")
         # Any other error of the plug-in concerns the homotopy as a whole.
-        raise UsageError(*((key, complaint) if key in {*values, *written} else (arguments.name, error))) from error
+        raise UsageError(*((key, complaint) if key in {*values, *written} else (name, error))) from error
 
 
 def _values(texts: Sequence[str], annotations: Mapping[str, str]) -> dict[str, Any]:
@@ -297,13 +330,17 @@ def _unknown(name: str) -> Iterator[None]:
 
 @contextmanager
 def _refused(name: str) -> Iterator[None]:
-    """Report as a usage error what a trace refuses; an error inside the plug-in is raised as it is."""
+    """Report as a usage error what a trace refuses, and what the plug-in raises, with its place in the source."""
     try:
         yield
-    except (TypeError, ValueError) as error:
-        if str(error).partition(":")[0] not in ("homotopy", "start", "residual", "target", "max_step", "finish"):
-            raise
-        raise UsageError(name, error) from error
+    except (UsageError, OSError):
+        raise
+    except Exception as error:
+        if isinstance(error, (TypeError, ValueError)) and str(error).partition(":")[0] in DOOR:
+            raise UsageError(name, error) from error
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{os.path.basename(place.filename)}, line {place.lineno}"
+        raise UsageError(name, f"{type(error).__name__}: {error} ({where})") from error
 
 
 def _number_or_none(text: str) -> float:

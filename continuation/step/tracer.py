@@ -9,6 +9,7 @@ from typing import Any, Protocol, Unpack
 
 import numpy as np
 
+from continuation.arrays import Array
 from continuation.citation import references_of, unique
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -27,7 +28,14 @@ from continuation.step.capabilities import finish_of, max_step_of
 from continuation.step.options import OBSERVER, Options, checked, documented, each
 from continuation.step.record import StepRecorder
 from continuation.step.settings import complete_settings
-from continuation.step.start import StartError, first_point, point_from_tangent
+from continuation.step.start import (
+    StartError,
+    first_point,
+    guessed,
+    is_guess,
+    point_and_direction,
+    point_from_tangent,
+)
 from continuation.step.state import State
 from continuation.step.verdict import (
     INTERRUPTED,
@@ -121,15 +129,17 @@ class Tracer:
         self.path = Path(labels=Labels.of(homotopy))
         self.counts: Counts = self.path.counts
         self._evaluator = Evaluator(homotopy, self.counts)
-        self.settings = complete_settings(homotopy, asked)
-        self.observers = tuple(observers)
         self.state: State | None = state
+        given = asked["start"]
+        self._guess = guessed(given) if is_guess(given) else None
+        self._start = given if self._guess is None else None
+        self.settings = complete_settings(homotopy, asked, self._beginning)
+        self.observers = tuple(observers)
         self._finish = finish_of(homotopy, asked["finish"])
         self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy))
         observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._recorder = StepRecorder(self._evaluator, observe)
         self._advance = Advance(self._solver, self.settings, self._recorder, self._spent)
-        self._start = asked["start"]
         self._check = asked["check_jacobian"]
         self._clock: float | None = None
         self._handed = 0
@@ -221,13 +231,26 @@ class Tracer:
             point = following
 
     def _spent(self) -> str:
-        return self.settings.budget.spent(self.counts, self.seconds)
+        arclength = 0.0 if self.state is None else self.state.here.arclength
+        return self.settings.budget.spent(self.counts, self.seconds, arclength)
+
+    def _beginning(self) -> Array:
+        """Where the path begins, or nearly so."""
+        if self._start is not None:
+            return point_and_direction(self._start)[0]
+        if self.state is not None:
+            return self.state.origin.u
+        return self._guess if self._guess is not None else self._evaluator.start()
 
     # -- beginning and end ------------------------------------------------------------------------------------
 
     def _first(self) -> Linearization:
         settings = self.settings
         u0 = self._evaluator.start()
+        if self._guess is not None:
+            if self._guess.size != u0.size:
+                raise ValueError(f"start: expected {u0.size - 1} unknowns, found {self._guess.size - 1}")
+            u0 = self._guess
         if self._check:
             report = check_jacobian(self.homotopy)
             if not report.correct:

@@ -11,7 +11,7 @@ from attrs import frozen
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import ArcEnd, EndsAt
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.rejection import Rejected
+from continuation.rejection import Rejected, Rejection
 from continuation.status import Status
 from continuation.step.start import SingularStartError, StartError
 
@@ -99,6 +99,8 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
     if h >= minimum:
         return None
     last = rejected[-1]
+    if last.reason is Rejection.RAISED:
+        return Verdict(Status.RAISED, f"It says: {last.detail}.", rejected=rejected)
     status = Status.LEFT_DOMAIN if last.reason.leaves_domain else Status.STEP_TOO_SMALL
     return Verdict(status, f"Last reason: {last}.", rejected=rejected)
 

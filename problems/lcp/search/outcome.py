@@ -135,6 +135,9 @@ class Solution:
         found = "no point" if self.certificate is None else f"residual {self.residual:.1e}"
         return f"<Solution {self.outcome.name}: n = {self.problem.n}, {found}, {len(self.paths)} paths>"
 
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def success(self) -> bool:
         """Whether the outcome is SOLVED or SOLVED_TO_PRECISION."""
