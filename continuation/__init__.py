@@ -26,7 +26,7 @@ from continuation.step.options import Options
 from continuation.step.settings import Settings
 from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance
-from continuation.tracing import trace
+from continuation.tracing import solve_at, trace, trace_both
 from continuation.version import __version__
 
 __all__ = [
@@ -69,6 +69,8 @@ __all__ = [
     "cite",
     "from_functions",
     "refine",
+    "solve_at",
     "switch_branch",
     "trace",
+    "trace_both",
 ]

@@ -220,7 +220,7 @@ class SupportsObserve(Protocol):
 
 @runtime_checkable
 class SupportsNames(Protocol):
-    """What the parameter and the unknowns are called: for axes, tables and archives. Each of the three may be absent."""
+    """What the parameter and the unknowns are called: for axes, tables and archives. Each of the three is optional."""
 
     parameter_name: str
     names: Sequence[str]

@@ -8,7 +8,16 @@ from os import PathLike
 from pathlib import Path as File
 
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.copies import Share, check_level, everything, interrupt, leading, put, with_origins, write_copy
+from continuation.archive.copies import (
+    Share,
+    check_level,
+    everything,
+    interrupt,
+    leading,
+    put,
+    with_origins,
+    write_copy,
+)
 from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive

@@ -24,6 +24,7 @@ from continuation.archive.tables import Table
 from continuation.checks import complain
 from continuation.citation import entries
 from continuation.counts import Counts
+from continuation.html import archive_page
 from continuation.labels import Labels
 from continuation.path import Path
 from continuation.status import Status
@@ -163,6 +164,9 @@ class Archive(Sequence[Path]):
         state = "" if self.closed_by_writer else ", not closed by its writer"
         size = f"{len(self)} paths, {self.points.size} points of {self.layout.unknowns} unknowns"
         return f"<Archive {self.file}: {size}{state}>"
+
+    def _repr_html_(self) -> str:
+        return archive_page(self)
 
     def rows(self, index: int) -> slice:
         """Where the path's rows are in the point table.

@@ -187,7 +187,7 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
             raise UnknownError(tree["unstorable"])
         return decode(tree, fetch, known)
     except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
-        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy=, or --homotopy module:Class"
+        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy= or --homotopy"
         raise ArchiveError(f"{source.file}: {reason}") from None
 
 

@@ -10,7 +10,6 @@ from pathlib import Path as File
 from types import TracebackType
 from typing import Any
 
-import numpy as np
 from attrs import define, field, frozen
 
 from continuation.archive import record
@@ -22,7 +21,7 @@ from continuation.archive.live import create
 from continuation.archive.problem import problem_data
 from continuation.archive.provenance import root_attributes, scalars
 from continuation.archive.reader import open_archive
-from continuation.archive.record import Record, counted
+from continuation.archive.record import Record, counted, unknowns_of
 from continuation.archive.rows import Row, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
 from continuation.archive.store import Store
@@ -87,8 +86,7 @@ class PathLog:
     limits : Limits
         When to commit.
     keep : str
-        Which steps the path keeps in memory: ``"all"``, ``"ends"`` (the first and the last) or ``"every k"``. The
-        others are read from the file when they are asked for.
+        Which steps stay in memory: ``"all"``, ``"ends"`` or ``"every k"``; the others are read when asked for.
 
     Attributes
     ----------
@@ -118,10 +116,12 @@ class PathLog:
         if not isinstance(limits, Limits):
             raise complain(TypeError, "limits", "Limits(...)", limits)
         check_new(as_file("file", file))
-        self._begin(File(file), durable, tangents, title, limits, kept_every(keep))
-        self._parameters = dict(parameters or {})
+        self._begin(File(file), durable, tangents, title, limits, kept_every(keep), parameters)
 
-    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
+    def _begin(
+        self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
         self.file, self._every = file, every
         self.member: int | None = None
         self._durable, self._tangents, self._title, self._limits = durable, tangents, title, limits
@@ -130,7 +130,7 @@ class PathLog:
         self._open: _Open | None = None
         self._buffer = _Buffer(0)
         self._paths = self._sequence = 0
-        self._parameters: dict[str, Any] = {}
+        self._parameters = dict(parameters or {})
         self._identifier = ""
         self._known: tuple[Any, Any] = (None, None)
         self._early: list[Record] = []
@@ -146,15 +146,14 @@ class PathLog:
         Parameters
         ----------
         store : Store
-            The file, open for writing.
         points : int
-            Rows that it holds.
+            Rows that the file holds.
         checkpoint : Checkpoint
         tracer : Tracer
         every : int
             Which steps stay in memory.
         identifier : str
-            Of the file that the path was begun in.
+            Of the file in which the path began.
         """
         paths = checkpoint.path
         log = cls.__new__(cls)
@@ -223,7 +222,7 @@ class PathLog:
         if self._closed:
             return
         if self._store is None and self._early:
-            self._make(self._witness, _unknowns(self._witness), ())
+            self._make(self._witness, unknowns_of(self._witness), ())
         if self._store is not None:
             if self._buffer.rows and self._store.ours:
                 self._commit()
@@ -350,11 +349,3 @@ class PathLog:
         counts = dict(zip(COUNT_NAMES, mark.counts))
         seconds = path.seconds + path.tracer.seconds
         return pack(Checkpoint(self._sequence + 1, path.number, mark.rows, mark.state, counts, seconds, {}), path.run)
-
-
-def _unknowns(tracer: Tracer | None) -> int:
-    """N, asked of the homotopy itself; 1 where it does not even have a start, since then nothing depends on it."""
-    try:
-        return 1 if tracer is None else int(np.size(tracer.homotopy.start()[0]))
-    except Exception:
-        return 1

@@ -90,7 +90,7 @@ def _given(arguments: argparse.Namespace) -> Any:
     from continuation import plugins
     from continuation.archive import open_archive
     from continuation.archive.provenance import stored_parameters
-    from continuation.cli.homotopies import homotopy_of, importable
+    from continuation.cli.making import homotopy_of, importable
 
     with complaints("FILE"), open_archive(arguments.file) as archive:
         stored = stored_parameters(archive.attributes)

@@ -77,7 +77,7 @@ def check_picture(option: str, file: str) -> None:
         with TemporaryFile(dir=path.parent):
             pass
     except OSError as error:
-        raise UsageError(option, f"expected a place that can be written to, found {file!r} ({error.strerror})") from error
+        raise UsageError(option, f"expected a place to write to, found {file!r} ({error.strerror})") from error
     try:
         require_matplotlib()
     except ImportError as error:

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import ast
 import json
 import math
-import os
 import sys
-import traceback
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from continuation import plugins
 from continuation.cli.archives import complaints
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, parsed, positive
+from continuation.cli.making import homotopy_of, refused, unknown
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, parsed, positive
 
 if TYPE_CHECKING:
     from continuation.budget import Budget
@@ -25,12 +22,6 @@ if TYPE_CHECKING:
 PRESETS = ("fast", "default", "conservative", "series")
 
 CHART_TOLERANCES = (1e-3, 1e-6, 1e-9)
-
-DOOR = (
-    "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
-    "parameter_name", "names", "units",
-)  # fmt: skip
-"""What a complaint about a homotopy begins with."""
 
 MOST_PRINTED = 10
 """Unknowns printed; --json prints all."""
@@ -91,7 +82,7 @@ def _add_homotopy(parser: argparse.ArgumentParser) -> None:
 def _list(arguments: argparse.Namespace) -> int:
     known = plugins.available()
     if arguments.name is not None:
-        with _unknown(arguments.name):
+        with unknown(arguments.name):
             factory = plugins.find(arguments.name)
         described = plugins.describe(factory)
         origin = known[arguments.name].origin if arguments.name in known else arguments.name
@@ -147,7 +138,7 @@ def _trace(arguments: argparse.Namespace) -> int:
         folder = new_folder("--chart", arguments.chart)
     course, budget = _course(arguments), _budget(arguments)
     preset = getattr(presets, arguments.preset.upper())
-    with _refused(arguments.name), complaints("--archive", new="--archive"):
+    with refused(arguments.name), complaints("--archive", new="--archive"):
         path = trace(
             homotopy,
             archive=log,
@@ -242,7 +233,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from continuation.testing import run_checks
 
     homotopy, _ = homotopy_of(arguments.name, arguments.options)
-    with _refused(arguments.name):
+    with refused(arguments.name):
         results = run_checks(homotopy, steps=arguments.steps)
     for result in results:
         print(_line(result))
@@ -253,94 +244,6 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _line(result: Result) -> str:
     return f"{result.outcome:8} {result.name}" + (f"\n         {result.message}" if result.message else "")
-
-
-# -- a homotopy out of its name and options -------------------------------------------------------------------
-
-
-def importable(name: str) -> None:
-    """Let ``module:object`` be found in the working directory, which a program started by its script does not see."""
-    if ":" in name and os.getcwd() not in sys.path:
-        sys.path.insert(0, os.getcwd())
-
-
-def homotopy_of(
-    name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None
-) -> tuple[Any, Mapping[str, Any]]:
-    """The homotopy that NAME KEY=VALUE ... stand for, and the options read.
-
-    Parameters
-    ----------
-    name : str
-        As `continuation.plugins.find` takes it.
-    texts : sequence of str
-        ``KEY=VALUE``.
-    known : mapping, optional
-        Options that hold where no text says otherwise.
-
-    Raises
-    ------
-    UsageError
-        Naming the homotopy or the option.
-    """
-    importable(name)
-    with _unknown(name):
-        factory = plugins.find(name)
-    written = {option.name: option.annotation for option in plugins.options(factory)}
-    values = {**(known or {}), **_values(texts, written)}
-    try:
-        with _refused(name):
-            return plugins.make(name, values), values
-    except UsageError as refused:
-        error = refused.__cause__
-        if not isinstance(error, (TypeError, ValueError)):
-            raise
-        key, _, complaint = str(error).partition(": ")
-        # Any other error of the plug-in concerns the homotopy as a whole.
-        raise UsageError(*((key, complaint) if key in {*values, *written} else (name, error))) from error
-
-
-def _values(texts: Sequence[str], annotations: Mapping[str, str]) -> dict[str, Any]:
-    values: dict[str, Any] = {}
-    for text in texts:
-        key, equals, value = text.partition("=")
-        if not equals or not key.isidentifier():
-            raise UsageError("KEY=VALUE", f"expected an option like n=10, found {text!r}")
-        if key in values:
-            raise UsageError(key, "expected one value, found two")
-        values[key] = value if annotations.get(key, "").startswith("str") else _literal(value)
-    return values
-
-
-def _literal(text: str) -> Any:
-    """A number, None, True, a list ...; any other text is itself."""
-    try:
-        return ast.literal_eval({"none": "None", "true": "True", "false": "False"}.get(text, text))
-    except (ValueError, SyntaxError):
-        return text
-
-
-@contextmanager
-def _unknown(name: str) -> Iterator[None]:
-    try:
-        yield
-    except plugins.PluginError as error:
-        raise UsageError(name, str(error).removeprefix(f"{name}: ")) from error
-
-
-@contextmanager
-def _refused(name: str) -> Iterator[None]:
-    """Report as a usage error what a trace refuses, and what the plug-in raises, with its place in the source."""
-    try:
-        yield
-    except (UsageError, OSError):
-        raise
-    except Exception as error:
-        if isinstance(error, (TypeError, ValueError)) and str(error).partition(":")[0] in DOOR:
-            raise UsageError(name, error) from error
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        where = f"{os.path.basename(place.filename)}, line {place.lineno}"
-        raise UsageError(name, f"{type(error).__name__}: {error} ({where})") from error
 
 
 def _number_or_none(text: str) -> float:

@@ -15,7 +15,7 @@ from continuation.labels import Labels
 from continuation.status import Kind
 
 Box = Mapping[str | int, tuple[float | None, float | None]]
-"""What to (low, high), of which one may be None: ``"lam"``, ``"y"`` (all the unknowns), one of them by number or name."""
+"""What to (low, high), one of them perhaps None: ``"lam"``, ``"y"`` (all unknowns), one unknown by number or name."""
 
 
 @frozen

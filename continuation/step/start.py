@@ -12,7 +12,7 @@ from continuation.arrays import Array
 from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import Metric, SupportsExtent, norm
+from continuation.metric import Automatic, Metric, SupportsExtent, norm
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.step.extent import FIRST, initial_extent
@@ -82,6 +82,29 @@ def first_point(
     if point.tangent[-1] * wanted < 0:
         point = evolve(point, tangent=-point.tangent, orientation=-point.orientation)
     return point, FIRST * norm(point.weights, extent)
+
+
+def at_parameter(solver: PathSolver, u: Array) -> Array:
+    """The point of the path at the parameter value of a guess.
+
+    Raises
+    ------
+    StartError
+        If Newton's method does not come to one.
+    """
+    evaluator = solver.evaluator
+    unit = np.zeros_like(u)
+    unit[-1] = 1.0
+    try:
+        residual = evaluator.residual(u)
+        point, _ = measured(solver, _regular(evaluator, u, unit), Automatic(), None, residual)
+        for corrector in (CORRECTING, PATIENT):
+            correction = corrector.correct(evaluator, point, u, unit, solver.tolerance)
+            if correction.converged:
+                return correction.u
+    except EvaluationError as error:
+        raise StartError(f"At the guess {error}.") from error
+    raise StartError(f"Newton's method at lam = {u[-1]:g} says: {correction.rejected(0.0)}.")
 
 
 def measured(

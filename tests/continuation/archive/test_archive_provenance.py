@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -20,7 +21,7 @@ class Line:
     target = 1.0
     parameter_name = "load"
     names = ("left", "right")
-    units = {"load": "N", "left": "mm", "size": "mm"}
+    units: ClassVar = {"load": "N", "left": "mm", "size": "mm"}
     events = (Monitor(lambda u, v: u[0] - 0.5, "half way"),)
 
     def start(self):
@@ -116,7 +117,8 @@ def test_eight_points_of_a_hundred_unknowns_take_less_than_100_kilobytes(tmp_pat
         def observe(self, y, lam):
             return {"size": float(y[-1])}
 
-    path = trace(Wide(), archive=tmp_path / "run.h5", target=None, controller=Fixed(Bounds(initial=0.1)), budget=Budget(steps=7))
+    options = {"target": None, "controller": Fixed(Bounds(initial=0.1)), "budget": Budget(steps=7)}
+    path = trace(Wide(), archive=tmp_path / "run.h5", **options)
     assert len(path) == 8
     assert os.path.getsize(tmp_path / "run.h5") < 100_000
 
