@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from continuation.arrays import Array, Mask
+from continuation.arrays import Array
 from continuation.drawing import (
     Axes,
     Drawing,
@@ -23,6 +23,8 @@ from continuation.drawing import (
     tidy,
 )
 from continuation.path import Path
+
+Mask: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
 
 Value: TypeAlias = int | str | Callable[[Array, float], float] | None
 """A component, the name of an unknown or of an observed scalar, a function of (y, lam), or the maximum norm."""

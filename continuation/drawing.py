@@ -115,7 +115,7 @@ def require_matplotlib() -> None:
     try:
         import matplotlib.pyplot  # noqa: F401
     except ImportError as error:
-        raise ImportError("pictures need matplotlib: pip install 'continuation[plot]'") from error
+        raise ImportError("pictures need matplotlib: pip install 'pseudoarclength[plot]'") from error
 
 
 AGAINST = ("lam", "arclength")

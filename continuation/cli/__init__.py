@@ -6,10 +6,10 @@ import errno
 import os
 import sys
 from collections.abc import Sequence
-from importlib.metadata import PackageNotFoundError, version
 
 from continuation.cli.commands import register
 from continuation.cli.parser import BAD_INPUT, FAILURE, SUCCESS, Parser, Run, Subparsers, UsageError
+from continuation.version import __version__
 
 __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError", "main"]
 
@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         0 done (solved), 1 not solved, 2 bad input, after one line on stderr that names the argument.
     """
     parser = Parser(prog="continuation", description="Trace paths of solutions; inspect, plot and resume them.")
-    parser.add_argument("--version", action="version", version=f"continuation {_version()}")
+    parser.add_argument("--version", action="version", version=f"continuation {__version__}")
     register(parser.add_subparsers(title="commands", metavar="COMMAND", required=True))
     try:
         arguments = parser.parse_args(argv)
@@ -46,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
     except UsageError as error:
         print(f"continuation: {error}", file=sys.stderr)
-        return BAD_INPUT
+        return error.status
     except BrokenPipeError:
         # The reader (head, a pager) has enough; without this, Python complains once more while it shuts down.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -66,10 +66,3 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"continuation: {what}", file=sys.stderr)
         return BAD_INPUT
     return status
-
-
-def _version() -> str:
-    try:
-        return version("continuation")
-    except PackageNotFoundError:
-        return "(not installed)"

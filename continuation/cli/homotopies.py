@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from continuation import plugins
 from continuation.cli.archives import complaints
 from continuation.cli.making import homotopy_of, refused, unknown
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, parsed, positive
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, paint, parsed, positive
 
 if TYPE_CHECKING:
     from continuation.budget import Budget
@@ -197,7 +197,7 @@ def _budget(arguments: argparse.Namespace) -> Budget:
 
 def _as_text(title: str, path: Path) -> Iterator[str]:
     yield f"homotopy   {title}"
-    yield f"status     {path.status.name}"
+    yield f"status     {paint(path.status.name, path.success)}"
     yield f"           {path.message}"
     for event in path.events:
         yield f"event      {event.name}: lam = {event.lam:.12g}, arclength {event.arclength:.6g}"
@@ -243,7 +243,8 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _line(result: Result) -> str:
-    return f"{result.outcome:8} {result.name}" + (f"\n         {result.message}" if result.message else "")
+    outcome = paint(f"{result.outcome:8}", result.outcome == "passed")
+    return f"{outcome} {result.name}" + (f"\n         {result.message}" if result.message else "")
 
 
 def _number_or_none(text: str) -> float:

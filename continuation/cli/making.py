@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from continuation import plugins
-from continuation.cli.parser import UsageError
+from continuation.cli.parser import PlugInError, UsageError
 
 DOOR = (
     "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
@@ -119,4 +119,4 @@ def refused(name: str) -> Iterator[None]:
             raise UsageError(name, error) from error
         place = traceback.extract_tb(error.__traceback__)[-1]
         where = f"{os.path.basename(place.filename)}, line {place.lineno}"
-        raise UsageError(name, f"{type(error).__name__}: {error} ({where})") from error
+        raise PlugInError(name, f"{type(error).__name__}: {error} ({where})") from error

@@ -258,7 +258,8 @@ class Tracer:
         if self._start is None:
             point, h = first_point(self._solver, u0, settings.metric, settings.direction, settings.target)
         else:
-            point, h = point_from_tangent(self._solver, point_and_direction(self._start), u0.size, settings.metric, settings.target)
+            start = point_and_direction(self._start)
+            point, h = point_from_tangent(self._solver, start, u0.size, settings.metric, settings.target)
         here, bounds = Knot(0.0, point.u, point.tangent), settings.controller.bounds
         state = State(
             history=(here,),
