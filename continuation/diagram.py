@@ -85,7 +85,9 @@ def plot_bifurcation(
         drawing = Drawing.of(one)
         horizontal, heights = across(against, drawing), values_along(one, drawing, wanted)
         label = names[k] if names is not None else None
-        _draw(axes, horizontal, heights, _solid(one, drawing, stable), line_style(k), label)
+        # Dashes mean one thing in a picture: with stability they are not for telling paths apart.
+        looks = line_style(k) if stable is None else {**line_style(k), "linestyle": "-"}
+        _draw(axes, horizontal, heights, _solid(one, drawing, stable), looks, label)
         places = [
             (event, event.lam if against == "lam" else event.arclength, _at_event(event, one, wanted))
             for event in one.events
@@ -169,7 +171,6 @@ def _solid(path: Path, drawing: Drawing, stable: Stable) -> Mask:
 def _draw(axes: Axes, x: Array, y: Array, solid: Mask, looks: dict[str, Any], label: str | None) -> None:
     """Pieces of one stability each; the piece after a change begins where the one before ends."""
     edges = [0, *(np.flatnonzero(np.diff(solid)) + 1), len(x)]
-    looks = looks if solid.all() else {**looks, "linestyle": "-"}
     for start, stop in pairwise(edges):
         style = looks if solid[start] else {**looks, "linestyle": "--"}
         part = slice(max(start - 1, 0), stop)

@@ -30,6 +30,7 @@ from continuation.path import Path
 
 __all__ = [
     "MOST_COMPONENTS",
+    "TURN",
     "Drawing",
     "plot_bifurcation",
     "plot_components",

@@ -199,6 +199,7 @@ def test_several_branches_with_their_stability_and_their_points(branches, axes):
     styles = {(line.get_color(), line.get_linestyle()) for line in lines(axes)}
     assert len({color for color, _ in styles}) == 2
     assert {style for _, style in styles} == {"-", "--"}
+    assert {style for color, style in styles if color != lines(axes)[0].get_color()} == {"-"}
     texts = [text.get_text() for text in axes.get_legend().get_texts()]
     assert texts == ["0", "branch point", "x"]
     assert axes.get_ylabel() == "amplitude"
