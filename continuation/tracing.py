@@ -28,6 +28,7 @@ def trace(
     homotopy: Any,
     *,
     archive: str | PathLike[str] | Observer | None = None,
+    save_every: int = 1,
     progress: bool = False,
     observers: Sequence[Observer] = (),
     state: State | None = None,
@@ -41,6 +42,8 @@ def trace(
         An object with `start` and `residual`, and whatever other capability it has (`continuation.homotopy`).
     archive : path or PathLog, default None
         An HDF5 file to write the path to; must not exist.
+    save_every : int, default 1
+        Of the steps only so many are written to it: 10 for every tenth, the ends and the events besides.
     progress : bool, default False
         Show a progress bar (needs tqdm).
     observers : sequence of Observer, default ()
@@ -65,7 +68,9 @@ def trace(
     each("observers", observers, OBSERVER)
     watching = list(observers)
     if archive is not None:
-        watching.append(_log(archive))
+        watching.append(_log(archive, save_every))
+    elif save_every != 1:
+        raise ValueError(f"save_every: expected none without an archive, found {save_every!r}")
     if progress:
         from continuation.progress import Progress
 
@@ -160,10 +165,12 @@ def _many(archive: str | PathLike[str]) -> Any:
     return PathLog(archive)
 
 
-def _log(archive: str | PathLike[str] | Observer) -> Observer:
+def _log(archive: str | PathLike[str] | Observer, save_every: int) -> Observer:
     if isinstance(archive, (str, PathLike)):
         from continuation.archive import PathLog
 
-        return PathLog(archive)
+        return PathLog(archive, save_every=save_every)
+    if save_every != 1:
+        raise ValueError("save_every: expected none with a log of your own; it is an option of PathLog")
     instance_with("archive", archive, OBSERVER.attributes, "a path or a PathLog")
     return archive

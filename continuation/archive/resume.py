@@ -21,6 +21,7 @@ from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own
+from continuation.archive.schema import ACCEPTED
 from continuation.archive.store import Store
 from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
@@ -103,13 +104,16 @@ def resume(
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         residual = source.points.some("residual_norm", slice(rows - 1, rows))
         _check_homotopy(tracer.homotopy, checkpoint, float(residual[0]))
+        roles = source.points.some("role", slice(source.rows(checkpoint.path).start, rows))
         before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
         store = _beginning(source, checkpoint, rows, target, archive is None)
+    # As many as the file has up to there: with `save_every` these are fewer than were taken.
+    written = int(np.count_nonzero(roles == ACCEPTED))
     if every == 1:
-        tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
+        tracer.path.steps[:] = before.steps[:written]
     else:
         tracer.path.steps = _stored(store.file, checkpoint, every)
-    tracer.path.events[:] = [event for event in before.events if event.step <= checkpoint.state.index]
+    tracer.path.events[:] = [event for event in before.events if event.step < written]
     log = PathLog.continued(store, rows, checkpoint, tracer, every, source.attributes.get("identifier", ""))
     tracer.observers = (log, *observers)
     try:

@@ -75,7 +75,8 @@ def draw_profile(results: Results, work: str) -> Figure:
     """
     results.check(work=work)
     found = {family: ratios(results, work, family) for family in results.families}
-    groups = [range(k, min(k + MOST_LINES, len(results.methods))) for k in range(0, len(results.methods), MOST_LINES)]
+    count = len(results.methods)
+    groups = np.array_split(np.arange(count), -(-count // MOST_LINES))
     figure, axes = panels(len(found) * len(groups), most_across=max(len(groups), 3 // len(groups) * len(groups)))
     everything = np.concatenate([values for lines in found.values() for values in lines.values()])
     # To the power of ten at which all that is ever solved is solved.
