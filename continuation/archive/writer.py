@@ -89,12 +89,11 @@ class PathLog:
         if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
             raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
         check_new(as_file("file", file))
-        self._begin(File(file), durable, tangents, title, limits, kept_every(keep), parameters)
-        self._save_every = int(save_every)
+        self._begin(File(file), durable, tangents, title, limits, kept_every(keep), parameters, int(save_every))
 
     def _begin(
         self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int,
-        parameters: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None, save_every: int = 1,
     ) -> None:
         self.file, self._every = file, every
         self.member: int | None = None
@@ -104,7 +103,7 @@ class PathLog:
         self._open: OpenPath | None = None
         self._buffer = Buffer(0)
         self._paths = self._sequence = 0
-        self._save_every: int = 1
+        self._save_every = save_every
         self._parameters = dict(parameters or {})
         self._identifier = ""
         self._known: tuple[Any, Any] = (None, None)

@@ -86,8 +86,8 @@ class Options(PartOptions, total=False):
     max_step : float, default None
         No step is longer, in arclength: for a picture with many points, or where a path is to be followed closely.
     box : mapping or None, default "homotopy"
-        The path ends where it leaves it: a mapping from ``"lam"``, the number or the name of an
-        unknown, or ``"y"`` for all unknowns, to (low, high), one of them perhaps None. By default the homotopy's own, if it has one; None for none.
+        The path ends where it leaves it. From ``"lam"``, the number or the name of an unknown, or ``"y"`` for all
+        unknowns, to (low, high), one of them perhaps None. By default the homotopy's own, if it has one; None for none.
     """
 
     tolerance: float | Tolerance

@@ -194,7 +194,7 @@ def point_and_direction(start: Any) -> tuple[Array, Array]:
     """Copies of the two vectors of a start; ValueError if it is no pair of a finite point and a direction."""
     if not isinstance(start, tuple | list) or len(start) != 2:
         found = f"{len(start)} of them" if isinstance(start, tuple | list) else repr(start)
-        raise ValueError(f"start: expected a pair (u, v) of vectors, or (y, lam), found {found}")
+        raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}; a guess is (y, lam)")
     u, v = (real_vector("start", part) for part in start)
     if u.ndim != 1 or u.shape != v.shape:
         raise ValueError(f"start: expected (u, v), vectors of one size, found shapes {u.shape} and {v.shape}")
