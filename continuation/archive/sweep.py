@@ -25,7 +25,6 @@ from continuation.archive.writer import PathLog
 from continuation.checks import complain, instance_with, is_number
 from continuation.interrupted import Interrupted
 from continuation.path import Path
-from continuation.progress import SweepProgress
 from continuation.status import Status
 from continuation.step.options import Options, check_names
 
@@ -41,7 +40,7 @@ def trace_many(
     executor: Executor | None = None,
     archive: str | PathLike[str] | None = None,
     *,
-    progress: Progress | bool | None = None,
+    progress: Progress | None = None,
     timeout: float | None = None,
     **options: Unpack[Options],
 ) -> Sequence[Path]:
@@ -61,8 +60,8 @@ def trace_many(
     archive : path, optional
         One file with all paths. Workers write files of their own, ``name.sweep-xxxxxxxx.0001.h5``, ..., which are
         merged into it and removed. If this process is killed they stay, to be merged, and the sweep can be run again.
-    progress : callable or bool, optional
-        ``progress(done, total)``, called in this process; True for `continuation.progress.SweepProgress`.
+    progress : callable, optional
+        ``progress(done, total)``, called in this process; `continuation.progress.SweepProgress` shows it on stderr.
     timeout : float, optional
         Seconds that one homotopy may take with a process pool, whose processes are ended then. (`Budget.seconds` is
         looked at between steps, and so never where a homotopy does not come back.)
@@ -90,13 +89,13 @@ def trace_many(
         raise complain(TypeError, "homotopies", "several, as in a list", homotopies)
     if executor is not None:
         instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
-    if not callable(progress) and not (progress is None or isinstance(progress, bool)):
-        raise complain(TypeError, "progress", "a function of (done, total), or True", progress)
+    if progress is not None and not callable(progress):
+        raise complain(TypeError, "progress", "a function of (done, total)", progress)
     tasks = list(homotopies)
     target = None if archive is None else as_file("archive", archive)
     if target is not None:
         check_new(target)
-    report = progress if callable(progress) else SweepProgress() if progress else _silent
+    report = progress or _silent
     if executor is None:
         result = work(Batch(tasks, 0, target, None, options), lambda done: report(done, len(tasks)))
         if result.stopped:
