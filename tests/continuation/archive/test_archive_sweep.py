@@ -179,7 +179,7 @@ def test_ctrl_c_within_a_path(tmp_path):
 
 
 def test_misspelt_options_are_refused_at_the_door(tmp_path):
-    with pytest.raises(TypeError, match=r"predicter: expected one of the options budget, .*; did you mean predictor\?"):
+    with pytest.raises(TypeError, match=r"predicter: expected one of the options box, budget, .*; did you mean predictor\?"):
         trace_many(HOMOTOPIES, archive=tmp_path / "run.h5", predicter=None)
     assert not list(tmp_path.iterdir())
 
