@@ -17,6 +17,7 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.events.branch_point import BranchPoint
 from continuation.homotopy import Homotopy
+from continuation.interrupted import Interrupted
 from continuation.kinks.start import kink_rays
 from continuation.metric import Automatic, Euclidean, Metric
 from continuation.path import LocatedEvent, Path, Step
@@ -27,7 +28,7 @@ from continuation.step.options import Options
 from continuation.step.settings import Settings
 from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance
-from continuation.tracing import trace
+from continuation.tracing import solve_at, trace, trace_both
 from continuation.version import __version__
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "EvaluationError",
     "Event",
     "Homotopy",
+    "Interrupted",
     "Kind",
     "KinkPoint",
     "LocatedEvent",
@@ -73,6 +75,8 @@ __all__ = [
     "from_functions",
     "kink_rays",
     "refine",
+    "solve_at",
     "switch_branch",
     "trace",
+    "trace_both",
 ]

@@ -302,7 +302,7 @@ def _turns(tracer: Tracer, end: Knot, tolerance: Tolerance) -> int:
 def _missed(path: Path, k: int, retraced: Path) -> str:
     step = path.steps[k]
     where = f"step {k} (arclength {step.arclength:.6g}, lam = {step.lam:.6g})"
-    ended = retraced.status not in (Status.TRACING, Status.INTERRUPTED)
+    ended = retraced.status not in (Status.TRACING, Status.ABANDONED)
     return f"The retrace does not pass through {where}." + (f" It ended: {retraced.message}" if ended else "")
 
 

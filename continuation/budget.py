@@ -12,13 +12,14 @@ from continuation.counts import Counts
 
 @frozen
 class Budget:
-    """Limits on accepted steps, wall-clock seconds and factorisations; reaching one ends as BUDGET_EXHAUSTED."""
+    """Limits on accepted steps, seconds, factorisations and arclength; reaching one ends as BUDGET_EXHAUSTED."""
 
     steps: float = field(default=10_000, validator=POSITIVE)
     seconds: float = field(default=math.inf, validator=POSITIVE)
     factorizations: float = field(default=math.inf, validator=POSITIVE)
+    arclength: float = field(default=math.inf, validator=POSITIVE)
 
-    def spent(self, counts: Counts, seconds: float) -> str:
+    def spent(self, counts: Counts, seconds: float, arclength: float = 0.0) -> str:
         """Which limit is reached, as text; empty if none is.
 
         Parameters
@@ -27,6 +28,8 @@ class Budget:
             Of the path so far.
         seconds : float
             Since its first step was asked for.
+        arclength : float
+            Of the path so far, in the metric of the trace.
 
         Returns
         -------
@@ -38,4 +41,6 @@ class Budget:
             return f"{self.factorizations:g} factorisations"
         if seconds >= self.seconds:
             return f"{self.seconds:g} seconds"
+        if arclength >= self.arclength:
+            return f"{self.arclength:g} of arclength"
         return ""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 from continuation.arrays import Array, Matrix
 from continuation.events import Event
+from continuation.events.box import Box
 from continuation.linear import BorderedSystem
 from continuation.metric import Metric
 
@@ -218,6 +219,17 @@ class SupportsObserve(Protocol):
 
 
 @runtime_checkable
+class SupportsNames(Protocol):
+    """What the parameter and the unknowns are called: for axes, tables and archives. Each of the three is optional."""
+
+    parameter_name: str
+    names: Sequence[str]
+    """One an unknown."""
+    units: Mapping[str, str]
+    """By name: of the parameter, the unknowns, and what is observed."""
+
+
+@runtime_checkable
 class SupportsEvents(Protocol):
     """Events that belong to the homotopy, added to those of the call."""
 
@@ -256,6 +268,10 @@ class SupportsPieces(Protocol):
             If such signs cannot hold together anywhere: then there is no such piece.
         """
         ...
+class SupportsBox(Protocol):
+    """Where its path ends for those who say nothing of that: no target, no events, no box."""
+
+    box: Box
 
 
 @runtime_checkable

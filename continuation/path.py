@@ -5,7 +5,8 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from itertools import pairwise
-from typing import Any
+from os import PathLike
+from typing import Any, overload
 
 import numpy as np
 from attrs import define, field, frozen
@@ -14,12 +15,20 @@ from scipy.optimize import brentq
 from continuation.arrays import Array
 from continuation.checks import real_vector
 from continuation.counts import Counts
+from continuation.labels import Labels
+from continuation.late import late
 from continuation.point.segment import Segment, parameter_at
 from continuation.rejection import Rejected
 from continuation.status import Kind, Status
 
 
-@frozen(eq=False)
+def _one_line(name: str, point: Any) -> str:
+    shown = ", ".join(f"{value:.6g}" for value in point.y[:3])
+    more = ", ..." if point.y.size > 3 else ""
+    return f"<{name}: arclength {point.arclength:.6g}, lam = {point.lam:.6g}, y = ({shown}{more})>"
+
+
+@frozen(eq=False, repr=False)
 class Step:
     """One accepted point of the path and how it was reached.
 
@@ -71,6 +80,9 @@ class Step:
     rejected: tuple[Rejected, ...] = ()
     observed: Mapping[str, float] = field(factory=dict)
 
+    def __repr__(self) -> str:
+        return _one_line(f"Step {self.index}, {self.kind.flag.replace('_', ' ')}", self)
+
     @property
     def y(self) -> Array:
         """The unknowns, shape (N,)."""
@@ -82,7 +94,7 @@ class Step:
         return float(self.u[-1])
 
 
-@frozen(eq=False)
+@frozen(eq=False, repr=False)
 class LocatedEvent:
     """A point of the path at which a monitor vanishes, corrected onto the path and polished.
 
@@ -106,6 +118,8 @@ class LocatedEvent:
     rays : ndarray, shape (k, N + 1), or None
         At a kink: the directions of all branches that meet there, of unit length in the metric, each pointing away
         from it. The first leads back to where the path came from, the second, if any, is the one the path goes on in.
+    observed : mapping
+        Extra scalars of the homotopy, at u.
     """
 
     name: str
@@ -120,6 +134,10 @@ class LocatedEvent:
     ends_step: bool = False
     switches: tuple[int, ...] = ()
     rays: Array | None = None
+    observed: Mapping[str, float] = field(factory=dict)
+
+    def __repr__(self) -> str:
+        return _one_line(f"LocatedEvent {self.name}", self)
 
     @property
     def y(self) -> Array:
@@ -158,6 +176,8 @@ class Path:
         The attempts that failed at the last point, where the path ended for want of a step.
     proof : Proof or None
         That it is one path, where that was asked for (`continuation.certify`).
+    labels : Labels
+        Names and units of the homotopy.
     """
 
     steps: list[Step] = field(factory=list)
@@ -171,9 +191,20 @@ class Path:
     winding_number: int | None = None
     rejected: tuple[Rejected, ...] = ()
     proof: Any = None
+    labels: Labels = field(factory=Labels)
 
     def __len__(self) -> int:
         return len(self.steps)
+
+    @overload
+    def __getitem__(self, index: int) -> Step: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Path: ...
+
+    def __getitem__(self, index: int | slice) -> Step | Path:
+        """A step, or the part of the path between two steps; arclengths stay what they are."""
+        return late("parts", "part_of")(self, index) if isinstance(index, slice) else self.steps[index]
 
     def __repr__(self) -> str:
         end = f", lam {self.steps[0].lam:g} -> {self.steps[-1].lam:g}" if self.steps else ""
@@ -292,6 +323,71 @@ class Path:
             return (1 - fraction) * self.steps[i - 1].u + fraction * self.steps[i].u
         # An archive keeps no metric: there the fraction itself serves, right at the knots and smooth in between.
         return segment.at(fraction if weights is None else parameter_at(segment, weights, fraction))
+
+    def reversed(self) -> Path:
+        """The same path from its end to its start; arclength counts from there."""
+        path: Path = late("parts", "turned_round")(self)
+        return path
+
+    def join(self, other: Path) -> Path:
+        """Put another path, which begins where this one ends, behind it.
+
+        Parameters
+        ----------
+        other : Path
+
+        Raises
+        ------
+        ValueError
+            If it begins elsewhere.
+        """
+        path: Path = late("parts", "joined")(self, other)
+        return path
+
+    def refined(self, homotopy: Any, accuracy: float = 1e-3) -> Path:
+        """The path with more points, corrected onto it, until it is a curve to the accuracy: see `refined_path`.
+
+        Parameters
+        ----------
+        homotopy : Homotopy
+        accuracy : float, default 1e-3
+        """
+        path: Path = late("refining", "refined_path")(homotopy, self, accuracy)
+        return path
+
+    def plot(self, axes: Any = None, **options: Any) -> Any:
+        """Draw it: the unknowns, or with ``value=...`` a diagram of one number (`continuation.plot`).
+
+        Parameters
+        ----------
+        axes : matplotlib Axes, optional
+        **options
+            As for `continuation.plot.plot_components`; with `value`, for `plot_bifurcation`.
+        """
+        return late("plot", "plot_bifurcation" if "value" in options else "plot_components")(self, axes, **options)
+
+    def to_xarray(self) -> Any:
+        """The points, located events among them, as an `xarray.Dataset`: that of `Archive.to_xarray`."""
+        return late("archive.memory", "dataset_of")(self)
+
+    def to_dataframe(self) -> Any:
+        """The points, located events among them, as a `pandas.DataFrame`, with the homotopy's names for columns."""
+        return late("archive.memory", "dataframe_of")(self)
+
+    def save(self, file: str | PathLike[str], title: str = "") -> None:
+        """Write it to a new archive, from which it is read again as it is; only ``trace(archive=...)`` can be resumed.
+
+        Parameters
+        ----------
+        file : path
+            Must not exist.
+        title : str
+        """
+        late("archive.memory", "save")(self, file, title)
+
+    def _repr_html_(self) -> str:
+        html: str = late("html", "path_page")(self)
+        return html
 
     def summary(self) -> dict[str, Any]:
         """The end in numbers, for tables and logs."""

@@ -83,3 +83,33 @@ def _tqdm(stream: TextIO, label: str) -> Any:
     except ImportError:
         return None
     return tqdm(desc=label, unit=" steps", file=stream, bar_format="{desc}: {n_fmt} steps [{elapsed}]{postfix}")
+
+
+class SweepProgress:
+    """Shows how many paths of a sweep are done: ``trace_many(..., progress=SweepProgress())``.
+
+    Parameters
+    ----------
+    stream : text stream, optional
+        stderr by default.
+    """
+
+    def __init__(self, stream: TextIO | None = None) -> None:
+        self.stream = sys.stderr if stream is None else stream
+        self._live, self._begun, self._shown = self.stream.isatty(), time.monotonic(), -PLAIN_SECONDS
+
+    def __call__(self, done: int, total: int) -> None:
+        """Show it, unless it was shown a moment ago.
+
+        Parameters
+        ----------
+        done, total : int
+        """
+        now = time.monotonic()
+        if done < total and now - self._shown < (LIVE_SECONDS if self._live else PLAIN_SECONDS):
+            return
+        self._shown = now
+        text = f"sweep: {done} of {total} paths, {now - self._begun:.1f} s"
+        end = "\n" if done == total or not self._live else ""
+        self.stream.write(("\r" if self._live else "") + text + end)
+        self.stream.flush()

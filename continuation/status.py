@@ -23,6 +23,8 @@ class Status(IntEnum):
     PREDICTOR_FAILED = 12
     DEAD_END = 13
     UNRESOLVED_KINK = 14
+    ABANDONED = 15
+    RAISED = 16
 
     def __str__(self) -> str:
         return _SENTENCES[self]
@@ -52,11 +54,13 @@ _SENTENCES = {
     Status.LEFT_DOMAIN: "The path left the set on which the homotopy can be evaluated; check the formulas there.",
     Status.SINGULAR_START: "The Jacobian [H_y, H_lam] has no full rank at the start; start elsewhere.",
     Status.BUDGET_EXHAUSTED: "The budget is used up; raise `budget`, or resume from the archive.",
-    Status.INTERRUPTED: "The trace was interrupted; all accepted points are kept and it can be resumed.",
+    Status.INTERRUPTED: "The trace was interrupted by hand; all accepted points are kept and it can be resumed.",
     Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
     Status.PREDICTOR_FAILED: "The predictor found no curve to follow from the last point; take another `predictor`.",
     Status.DEAD_END: "No branch leaves the kink at which the path ends, but the one it came on.",
     Status.UNRESOLVED_KINK: "The path ends at a kink whose branches could not be told; see the message.",
+    Status.ABANDONED: "The trace was left before the path ended; all accepted points are kept and it can be resumed.",
+    Status.RAISED: "An exception ended the trace; all accepted points are kept, mend that and resume.",
 }
 
 

@@ -1,16 +1,26 @@
-"""`trace`: the loop that most people call."""
+"""`trace`: the loop that most people call; both directions of a path; one point of it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from os import PathLike
 from typing import Any, Unpack
 
+import numpy as np
+
+from continuation.arrays import Array
 from continuation.checks import instance_with
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
+from continuation.point.projection import PathSolver
+from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
+from continuation.step.start import at_parameter, guessed
 from continuation.step.state import State
 from continuation.step.tracer import Observer, Tracer
+from continuation.tolerance import Tolerance, as_tolerance
 
 
 @documented
@@ -18,6 +28,7 @@ def trace(
     homotopy: Any,
     *,
     archive: str | PathLike[str] | Observer | None = None,
+    save_every: int = 1,
     progress: bool = False,
     certified: bool = False,
     observers: Sequence[Observer] = (),
@@ -32,6 +43,8 @@ def trace(
         An object with `start` and `residual`, and whatever other capability it has (`continuation.homotopy`).
     archive : path or PathLog, default None
         An HDF5 file to write the path to; must not exist.
+    save_every : int, default 1
+        Of the steps only so many are written to it: 10 for every tenth, the ends and the events besides.
     progress : bool, default False
         Show a progress bar (needs tqdm).
     certified : bool, default False
@@ -53,6 +66,8 @@ def trace(
     ------
     TypeError, ValueError
         For bad input: a homotopy without the methods needed, a start that is not finite, an unknown option.
+    Interrupted
+        After Ctrl-C: a KeyboardInterrupt with the path so far, ``interrupt.path``; the archive has it too.
     """
     each("observers", observers, OBSERVER)
     proof = None
@@ -62,28 +77,117 @@ def trace(
         options, proof = provable(homotopy, options)
     watching = list(observers)
     if archive is not None:
-        watching.append(_log(archive))
+        watching.append(_log(archive, save_every))
+    elif save_every != 1:
+        raise ValueError(f"save_every: expected none without an archive, found {save_every!r}")
     if progress:
         from continuation.progress import Progress
 
         watching.append(Progress())
-    tracer = Tracer(homotopy, observers=watching, state=state, **options)
-    for _ in tracer:
-        pass
+    path = Tracer(homotopy, observers=watching, state=state, **options).run()
     if proof is not None:
-        tracer.path.proof = proof
-        tracer.path.message = f"{tracer.path.message} {proof}"
+        path.proof = proof
+        path.message = f"{path.message} {proof}"
         if isinstance(archive, (str, PathLike)):
             from continuation.archive import add_proof
 
             add_proof(archive, proof)
-    return tracer.path
+    return path
 
 
-def _log(archive: str | PathLike[str] | Observer) -> Observer:
+@documented
+def trace_both(
+    homotopy: Any,
+    *,
+    archive: str | PathLike[str] | None = None,
+    progress: bool = False,
+    **options: Unpack[Options],
+) -> Path:
+    """Trace the path from its start in both directions, as one path: from the end behind, over the start, to the end.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    archive : path, default None
+        A new HDF5 file, which gets the two halves as two paths, each from the start.
+    progress : bool, default False
+    {options}
+
+    Returns
+    -------
+    Path
+        With the status and the message of the half that was traced in the direction of a growing parameter; a closed
+        curve is traced once.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As for `trace`; for `direction`, which is both.
+    """
+    if options.get("direction"):
+        raise ValueError(f"direction: expected none, since both are traced, found {options['direction']!r}")
+    ahead: dict[str, Any] = {**options, "direction": 1}
+    behind: dict[str, Any] = {**options, "direction": -1}
+    given = options.get("start")
+    if given is not None and np.ndim(given[1]):
+        ahead, behind = {**options}, {**options, "start": (given[0], -np.asarray(given[1], dtype=float))}
+    log = nullcontext() if archive is None else _many(archive)
+    with log as kept:
+        forward = trace(homotopy, archive=kept, progress=progress, **ahead)
+        if forward.status is Status.CLOSED or not len(forward):
+            return forward
+        backward = trace(homotopy, archive=kept, progress=progress, **behind)
+    path = backward.reversed().join(forward)
+    path.message = f"{forward.message} The other way: {backward.message}"
+    return path
+
+
+def solve_at(
+    homotopy: Any, lam: float, guess: Any = None, tolerance: float | Tolerance = 1e-8
+) -> Array:
+    """The unknowns at a value of the parameter, by Newton's method from a guess: H(y, lam) = 0.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    lam : float
+    guess : array_like, shape (N,), optional
+        The homotopy's start by default.
+    tolerance : float or Tolerance, default 1e-8
+
+    Returns
+    -------
+    ndarray, shape (N,)
+
+    Raises
+    ------
+    ArithmeticError
+        If Newton's method does not converge from there; the sentence says why.
+    ValueError
+        If the guess has another size than the homotopy's start.
+    """
+    evaluator = Evaluator(homotopy, Counts())
+    start = evaluator.start()
+    u = start if guess is None else guessed((np.atleast_1d(guess), 0.0))
+    if u.size != start.size:
+        raise ValueError(f"guess: expected {start.size - 1} numbers, found {u.size - 1}")
+    u[-1] = float(lam)
+    with np.errstate(all="ignore"):
+        return at_parameter(PathSolver(evaluator, as_tolerance(tolerance)), u)[:-1]
+
+
+def _many(archive: str | PathLike[str]) -> Any:
+    from continuation.archive import PathLog
+
+    return PathLog(archive)
+
+
+def _log(archive: str | PathLike[str] | Observer, save_every: int) -> Observer:
     if isinstance(archive, (str, PathLike)):
         from continuation.archive import PathLog
 
-        return PathLog(archive)
+        return PathLog(archive, save_every=save_every)
+    if save_every != 1:
+        raise ValueError("save_every: expected none with a log of your own; it is an option of PathLog")
     instance_with("archive", archive, OBSERVER.attributes, "a path or a PathLog")
     return archive

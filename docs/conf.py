@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 
 import attrs
+from docutils import nodes
+from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx import addnodes
 
 HERE = Path(__file__).parent
@@ -22,7 +24,6 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "sphinx.ext.mathjax",
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
 ]
@@ -44,6 +45,7 @@ sphinx_gallery_conf = {
 }
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
+html_math_renderer = "mathml"
 html_theme = "furo"
 html_title = "continuation"
 html_static_path = ["static"]
@@ -52,7 +54,8 @@ html_copy_source = False
 html_show_copyright = False
 default_role = "code"
 autodoc_member_order = "bysource"
-autodoc_typehints = "none"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 autodoc_default_options = {"members": True}
 napoleon_google_docstring = False
@@ -124,8 +127,21 @@ def words_are_words(app, doctree):
             node.replace_self(node.children)
 
 
+def formula(self, node):
+    """A formula in a line, as MathML: browsers draw that themselves, with no script and no network."""
+    self.body.append(tex2mathml(node.astext()))
+    raise nodes.SkipNode
+
+
+def displayed_formula(self, node):
+    """A formula of its own."""
+    self.body.append(f'<div class="math">{tex2mathml(node.astext(), as_block=True)}</div>')
+    raise nodes.SkipNode
+
+
 def setup(app):
     """Connect the functions above; Sphinx calls it."""
+    app.add_html_math_renderer("mathml", (formula, None), (displayed_formula, None))
     app.connect("source-read", show_results)
     app.connect("autodoc-process-docstring", whole_sentences, priority=800)
     app.connect("autodoc-process-docstring", plain_signs, priority=900)

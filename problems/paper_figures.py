@@ -6,8 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
+from continuation.drawing import TURN, require_matplotlib
 from continuation.path import Path
-from continuation.plot import TURN, plot_components, require_matplotlib
+from continuation.plot import plot_components
 from problems.paper import Example
 
 ZOOM = (0.1, 0.2, 0.5, 0.5)

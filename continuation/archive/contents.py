@@ -30,7 +30,14 @@ from continuation.archive.files import FAULTS, PATIENCE, open_for_reading
 from continuation.archive.locks import is_held
 from continuation.archive.problem import GROUP as PROBLEM
 from continuation.archive.problem import read_problem
-from continuation.archive.schema import EVENT_NAME, KINK_COLUMNS, TANGENT_COLUMNS, Column, Layout
+from continuation.archive.schema import (
+    EVENT_NAME,
+    KINK_COLUMNS,
+    ORIGIN_COLUMNS,
+    TANGENT_COLUMNS,
+    Column,
+    Layout,
+)
 from continuation.archive.structure import RESUME, SLOTS
 
 Array = np.ndarray[Any, Any]
@@ -300,4 +307,5 @@ def _layout(file: Any, limit: int) -> Layout:
         scalars=named("homotopy_"),
         tangents=all(column.name in present for column in TANGENT_COLUMNS),
         pieces=all(column.name in present for column in KINK_COLUMNS),
+        origins=all(column.name in present for column in ORIGIN_COLUMNS),
     )

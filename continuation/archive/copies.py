@@ -14,8 +14,9 @@ from continuation.archive.atomic import beside, like, publish
 from continuation.archive.contents import Contents
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
-from continuation.archive.schema import TEXT, Layout, text
+from continuation.archive.schema import ORIGIN_COLUMNS, TEXT, Layout, text
 from continuation.archive.store import Store
+from continuation.archive.tables import Table
 from continuation.status import Status
 
 _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
@@ -56,7 +57,27 @@ def check_level(compression: Any) -> None:
 
 def leading_paths(archive: Archive, paths: int, points: int) -> Share:
     """The first paths of an archive, and so many points."""
-    return Share(archive.contents, archive.paths.block(slice(0, paths)), slice(0, points))
+    return Share(archive.contents, with_origins(archive.contents, slice(0, paths), archive.paths), slice(0, points))
+
+
+def with_origins(contents: Contents, numbers: slice, table: Table) -> dict[str, Any]:
+    """The rows of some paths, each with its homotopy and its source: those of the file, where the rows do not say."""
+    paths, about = table.block(numbers), contents.attributes
+    if len(paths["path"]) == 0:
+        return paths
+    # Of files without an identifier the time, the process and the name must do.
+    unnamed = f"{about.get('created', '')}/{about.get('process', '')}/{contents.file.name}".replace(" ", "_")
+    identifier = about.get("identifier", unnamed)
+    count = len(paths["path"])
+    said = {
+        "homotopy": [about.get("homotopy", "")] * count,
+        "source": [f"{identifier} {numbers.start + k} {contents.file.name}" for k in range(count)],
+    }
+    for column in ORIGIN_COLUMNS:
+        own = paths.get(column.name, np.zeros(count, dtype=column.storage))
+        filled = np.array([text(str(value), column.length) for value in said[column.name]], dtype=column.storage)
+        paths[column.name] = np.where(own == b"", filled, own)
+    return paths
 
 
 def everything(archive: Archive) -> Share:
@@ -123,6 +144,7 @@ def _joint(sources: Sequence[Contents]) -> Layout:
         scalars=tuple(sorted({name for layout in layouts for name in layout.scalars})),
         tangents=any(layout.tangents for layout in layouts),
         pieces=any(layout.pieces for layout in layouts),
+        origins=any(layout.origins for layout in layouts) or len(layouts) > 1,
     )
 
 

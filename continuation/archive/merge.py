@@ -8,9 +8,19 @@ from os import PathLike
 from pathlib import Path as File
 
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.copies import Share, check_level, everything, interrupt, leading, put, write_copy
+from continuation.archive.copies import (
+    Share,
+    check_level,
+    everything,
+    interrupt,
+    leading,
+    put,
+    with_origins,
+    write_copy,
+)
+from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import history, process
-from continuation.archive.reader import open_archive
+from continuation.archive.reader import Archive, open_archive
 from continuation.checks import complain
 from continuation.status import Status
 
@@ -20,8 +30,9 @@ def merge(
 ) -> File:
     """Concatenate archives, in the order given: paths are numbered anew, everything else stays as it is.
 
-    Files of killed writers count with what was committed. The settings and the problem of the first file are those of
-    the new one; it cannot be resumed.
+    Files of killed writers count with what was committed. Each path keeps its homotopy and its source, the columns
+    ``homotopy`` and ``source`` of the path table; the settings and the problem of the first file are those of the new
+    one, which cannot be resumed.
 
     Parameters
     ----------
@@ -37,7 +48,8 @@ def merge(
     ValueError
         If there are no files, or gzip does not know the level.
     ArchiveError
-        If one is no archive, has another number of unknowns than the first, or `target` exists.
+        If one is no archive, has another number of unknowns than the first, or a path that another has too, or if
+        `target` exists.
     """
     if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
         raise complain(TypeError, "files", "names of archives, in a list", files)
@@ -55,8 +67,21 @@ def merge(
         if title:
             attributes["title"] = title
         shares = [everything(archive) for archive in archives]
+        _refuse_duplicates(archives, shares)
         put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
     return whole
+
+
+def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
+    """A path that is in two of the files would count twice in every average."""
+    known: dict[bytes, str] = {}
+    for archive, share in zip(archives, shares):
+        for k, source in enumerate(share.paths["source"]):
+            # The identifier and the number; the name of the file may have been changed since.
+            key = b" ".join(source.split(b" ", 2)[:2])
+            if key in known:
+                raise ArchiveError(f"{archive.file}: its path {k} is {known[key]} as well; expected each path once")
+            known[key] = f"path {k} of {archive.file}"
 
 
 def gather(files: Sequence[File], target: File, *, finished: bool = False) -> None:
@@ -85,7 +110,7 @@ def gather(files: Sequence[File], target: File, *, finished: bool = False) -> No
         for first, last in _runs([chosen[member][1:] for member in sorted(chosen)]):
             archive = archives[first[0]]
             rows = slice(archive.rows(first[1]).start, archive.rows(last[1]).stop)
-            paths = archive.paths.block(slice(first[1], last[1] + 1))
+            paths = with_origins(archive.contents, slice(first[1], last[1] + 1), archive.paths)
             interrupt(paths)
             shares.append(Share(archive.contents, paths, rows, first[1]))
         if not shares:

@@ -9,14 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from continuation.archive.checkpoint import Checkpoint
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES
+from continuation.archive.trust import is_registered, registry
 from continuation.checks import complain
 from continuation.path import Path
 from continuation.status import Kind, Status
 
+UNFINISHED = Status.INTERRUPTED, Status.TRACING, Status.ABANDONED, Status.RAISED
 _DETAILED = 3
 _LISTED = 12
 _SHOWN = 4
@@ -197,7 +200,7 @@ def _many_paths(archive: Archive) -> str:
 
 def _failures(archive: Archive) -> list[str]:
     """Paths that ended by an error, with its text."""
-    rows = np.flatnonzero(np.isin(archive.paths["status"], [int(Status.INTERRUPTED), int(Status.TRACING)]))
+    rows = np.flatnonzero(np.isin(archive.paths["status"], [int(status) for status in UNFINISHED]))
     lines = ["", "Not finished", "------------"] if rows.size else []
     for row in rows[:_LISTED]:
         message = archive.paths["message"][row].decode() or "still being traced, or its writer was killed"
@@ -213,9 +216,26 @@ def _hint(archive: Archive) -> str:
     if checkpoint is None or checkpoint.path != last:
         return ""
     status = Status(int(archive.paths["status"][last]))
+    if status not in RESUMABLE:
+        return ""
+    name = str(archive.attributes.get("homotopy", ""))
+    if name.startswith("__main__:"):
+        name = f"MODULE:{name.partition(':')[2]}"
+    command = f"continuation resume {archive.file}" + ("" if _makeable(archive, checkpoint) else f" --homotopy {name}")
     if status is Status.BUDGET_EXHAUSTED:
-        return f"Path {last} can be resumed with more steps: `continuation resume {archive.file} --steps N`."
-    return f"Path {last} can be resumed: `continuation resume {archive.file}`." if status in RESUMABLE else ""
+        return f"Path {last} can be resumed with more steps: `{command} --steps N`."
+    return f"Path {last} can be resumed: `{command}`."
+
+
+def _makeable(archive: Archive, checkpoint: Checkpoint) -> bool:
+    """Whether `resume` makes the homotopy without being told its class; nothing is made here."""
+    described: Any = checkpoint.run.get("homotopy", {})
+    if described.get("problem"):
+        described = json.loads(archive.problem()[0])
+    known = registry()
+    return isinstance(described, dict) and "class" in described and (
+        described["class"] in known or is_registered(described["class"])
+    )
 
 
 # -- words ----------------------------------------------------------------------------------------------------

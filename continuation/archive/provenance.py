@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import platform
+import secrets
 import socket
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import lru_cache
 from importlib import metadata
@@ -21,7 +24,7 @@ import scipy
 from continuation.archive.checkpoint import OPTIONS
 from continuation.archive.codec import UnstorableError, encode, inline
 from continuation.archive.schema import SCHEMA
-from continuation.archive.trust import ENTRY_POINTS
+from continuation.archive.trust import ENTRY_POINTS, UnknownError, decode
 from continuation.step.tracer import Tracer
 from continuation.version import __version__
 
@@ -90,16 +93,58 @@ def class_path(thing: Any) -> str:
     return f"{type(thing).__module__}:{type(thing).__qualname__}"
 
 
+def parameters(homotopy: Any) -> dict[str, Any]:
+    """What a homotopy was made with, as its class says: fields of attrs or a dataclass, else its own attributes.
+
+    Private names, which begin with an underscore, are left out.
+    """
+    cls = type(homotopy)
+    if attrs.has(cls):
+        names = [a.name for a in attrs.fields(cls)]
+    elif dataclasses.is_dataclass(cls):
+        names = [a.name for a in dataclasses.fields(cls)]
+    else:
+        slots = (getattr(c, "__slots__", ()) for c in cls.__mro__)
+        names = [*(name for own in slots for name in ((own,) if isinstance(own, str) else own))]
+        names += [name for name in getattr(homotopy, "__dict__", {}) if name.isidentifier()]
+    public = (name for name in dict.fromkeys(names) if not name.startswith("_"))
+    return {name: getattr(homotopy, name) for name in public if hasattr(homotopy, name)}
+
+
 def scalars(homotopy: Any) -> dict[str, float]:
-    """The homotopy's numeric parameters: its public attrs fields that are numbers (None reads NaN)."""
-    if not attrs.has(type(homotopy)):
+    """The homotopy's numeric parameters (None reads NaN)."""
+    return {
+        name: np.nan if value is None else float(value)
+        for name, value in parameters(homotopy).items()
+        if value is None or (isinstance(value, (bool, int, float, np.number)) and not isinstance(value, complex))
+    }
+
+
+def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters that an archive holds as numbers, texts, lists and small arrays; what is larger is left out.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Of the archive.
+    """
+    try:
+        tree = json.loads(str(attributes.get("parameters", "{}")))
+    except ValueError:
+        return {}
+    if not isinstance(tree, dict):
         return {}
     found = {}
-    for a in attrs.fields(type(homotopy)):
-        value = getattr(homotopy, a.name)
-        if not a.name.startswith("_") and (value is None or isinstance(value, (bool, int, float, np.number))):
-            found[a.name] = np.nan if value is None else float(value)
+    for name, value in tree.get("dict", tree).items():
+        with suppress(UnknownError):
+            found[str(name)] = decode(value, _values)
     return found
+
+
+def _values(place: Any) -> Any:
+    if "values" not in place:
+        raise UnknownError("an array of which the file has the shape alone")
+    return np.array(place["values"], dtype=place["dtype"])
 
 
 def readable(value: Any) -> Any:
@@ -110,13 +155,22 @@ def readable(value: Any) -> Any:
         return repr(value)
 
 
-def root_attributes(tracer: Tracer | None, title: str) -> dict[str, Any]:
-    """The attributes of a new archive; without a tracer (no path ever began) those of the library alone."""
+def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, Any]) -> dict[str, Any]:
+    """The attributes of a new archive; without a tracer (no path ever began) those of the library alone.
+
+    Parameters
+    ----------
+    tracer : Tracer or None
+    title : str
+    made_with : mapping
+        Parameters of the homotopy, where its attributes do not say them.
+    """
     attributes: dict[str, Any] = {
         "Conventions": "CF-1.11",
         "featureType": "trajectory",
         "schema": SCHEMA,
         "title": title,
+        "identifier": secrets.token_hex(8),
         **process(),
         "command": " ".join(sys.argv)[:1000],
         **history({}, "created"),
@@ -126,13 +180,16 @@ def root_attributes(tracer: Tracer | None, title: str) -> dict[str, Any]:
     homotopy = tracer.homotopy
     path = class_path(homotopy)
     point = _entry_point(path)
+    own = {**parameters(homotopy), **made_with}
     described = readable(homotopy)
+    fields = described.get("fields", described.get("data")) if isinstance(described, dict) and not made_with else None
     attributes |= {
         "title": title or f"Paths of {type(homotopy).__name__}",
         "homotopy": path,
         "homotopy_entry_point": point.name if point is not None else "",
         "homotopy_distribution": _distribution(path),
-        "parameters": json.dumps(described.get("fields", described.get("data")) if isinstance(described, dict) else {}),
+        "parameters": json.dumps({name: readable(value) for name, value in own.items()} if fields is None else fields),
+        **tracer.path.labels.attributes(),
         "settings": json.dumps({name: readable(getattr(tracer.settings, name)) for name in OPTIONS}),
         "references": "\n\n".join(tracer.references),
     }

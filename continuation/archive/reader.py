@@ -24,6 +24,8 @@ from continuation.archive.tables import Table
 from continuation.checks import complain
 from continuation.citation import entries
 from continuation.counts import Counts
+from continuation.html import archive_page
+from continuation.labels import Labels
 from continuation.path import Path
 from continuation.status import Status
 
@@ -148,6 +150,7 @@ class Archive(Sequence[Path]):
             references=entries(str(self.attributes.get("references", ""))),
             end_error=None if math.isnan(end_error) else end_error,
             winding_number=winding or None,
+            labels=Labels.from_attributes(self.attributes),
         )
 
     def __iter__(self) -> Iterator[Path]:
@@ -161,6 +164,9 @@ class Archive(Sequence[Path]):
         state = "" if self.closed_by_writer else ", not closed by its writer"
         size = f"{len(self)} paths, {self.points.size} points of {self.layout.unknowns} unknowns"
         return f"<Archive {self.file}: {size}{state}>"
+
+    def _repr_html_(self) -> str:
+        return archive_page(self)
 
     def rows(self, index: int) -> slice:
         """Where the path's rows are in the point table.

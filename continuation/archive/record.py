@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from continuation.archive.provenance import scalars
-from continuation.archive.schema import COUNT_NAMES, TEXT, Layout, text
+from continuation.archive.provenance import class_path, scalars
+from continuation.archive.schema import COUNT_NAMES, Layout, text
 from continuation.path import Path
 from continuation.status import Status
+from continuation.step.tracer import Tracer
+from continuation.step.verdict import sentence
 
 counted = attrgetter(*COUNT_NAMES)
 """The counters of `Counts` as a tuple, in the order of `COUNT_NAMES`."""
@@ -33,18 +35,15 @@ def of_path(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Record:
         "winding_number": path.winding_number or 0,
         "controller_state": controller,
         "scalars": scalars(homotopy),
+        "homotopy": "" if homotopy is None else class_path(homotopy),
+        "source": "",
     }
 
 
 def of_failure(homotopy: Any, error: BaseException) -> Record:
     """A path that could not begin."""
-    path = Path(status=Status.INTERRUPTED, message=sentence(error))
+    path = Path(status=Status.RAISED, message=sentence(error))
     return {**of_path(path, homotopy, ()), "n_points": 0}
-
-
-def sentence(error: BaseException) -> str:
-    """An exception in one line."""
-    return f"{type(error).__name__}: {error}".replace("\n", " ")
 
 
 def to_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
@@ -61,10 +60,19 @@ def to_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
             block[column.name] = np.array([value])
         else:
             value = record[column.name]
-            block[column.name] = np.array([text(value, TEXT) if column.length else value], dtype=column.storage)
+            cell = text(value, column.length) if column.length else value
+            block[column.name] = np.array([cell], dtype=column.storage)
     return block
 
 
 def _seed(homotopy: Any) -> int:
     seed = getattr(homotopy, "seed", None)
     return int(seed) if isinstance(seed, (int, np.integer)) and abs(int(seed)) < 2**63 else -1
+
+
+def unknowns_of(tracer: Tracer | None) -> int:
+    """N, asked of the homotopy itself; 1 where it does not even have a start, since then nothing depends on it."""
+    try:
+        return 1 if tracer is None else int(np.size(tracer.homotopy.start()[0]))
+    except Exception:
+        return 1

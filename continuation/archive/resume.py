@@ -21,6 +21,7 @@ from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own
+from continuation.archive.schema import ACCEPTED
 from continuation.archive.store import Store
 from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
@@ -32,7 +33,7 @@ from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
     Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,
-    Status.PREDICTOR_FAILED,
+    Status.PREDICTOR_FAILED, Status.ABANDONED, Status.RAISED,
 )
 
 
@@ -103,20 +104,23 @@ def resume(
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         residual = source.points.some("residual_norm", slice(rows - 1, rows))
         _check_homotopy(tracer.homotopy, checkpoint, float(residual[0]))
+        roles = source.points.some("role", slice(source.rows(checkpoint.path).start, rows))
         before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
         store = _beginning(source, checkpoint, rows, target, archive is None)
+    # As many as the file has up to there: with `save_every` these are fewer than were taken.
+    written = int(np.count_nonzero(roles == ACCEPTED))
     if every == 1:
-        tracer.path.steps[:] = before.steps[: checkpoint.state.index + 1]
+        tracer.path.steps[:] = before.steps[:written]
     else:
         tracer.path.steps = _stored(store.file, checkpoint, every)
-    tracer.path.events[:] = [event for event in before.events if event.step <= checkpoint.state.index]
-    log = PathLog.continued(store, rows, checkpoint.path, checkpoint, tracer, every)
+    tracer.path.events[:] = [event for event in before.events if event.step < written]
+    log = PathLog.continued(store, rows, checkpoint, tracer, every, source.attributes.get("identifier", ""))
     tracer.observers = (log, *observers)
     try:
         _run(tracer, checkpoint)
     finally:
         log.close()
-    tracer.path.seconds += checkpoint.seconds
+        tracer.path.seconds += checkpoint.seconds
     return tracer.path
 
 
@@ -187,7 +191,7 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
             raise UnknownError(tree["unstorable"])
         return decode(tree, fetch, known)
     except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
-        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy="
+        reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy= or --homotopy"
         raise ArchiveError(f"{source.file}: {reason}") from None
 
 
@@ -207,7 +211,7 @@ def _options(
         except (UnknownError, KeyError, TypeError) as error:
             reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
             raise ArchiveError(f"{source.file}: {reason}") from None
-    return {**stored, **given}
+    return {"box": None, **stored, **given}
 
 
 def _check_homotopy(homotopy: Any, checkpoint: Checkpoint, stored: float) -> None:

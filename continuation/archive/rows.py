@@ -114,7 +114,7 @@ def _values(row: Row, number: Callable[[str], int]) -> tuple[tuple[float, ...], 
 
 
 def _observed(row: Row, name: str) -> float:
-    return float(row.step.observed.get(name, _NAN)) if row.step is not None else _NAN
+    return float(row.point.observed.get(name, _NAN))
 
 
 def from_columns(
@@ -134,7 +134,8 @@ def from_columns(
     events: list[LocatedEvent] = []
     for i in range(len(points)):
         if cells["event_index"][i] != NO_EVENT:
-            events.append(_event(cells, i, points[i], tangents[i], names, first + len(steps)))
+            seen = {name: column[i] for name, column in extras.items()}
+            events.append(_event(cells, i, points[i], tangents[i], names, seen, first + len(steps)))
         if cells["role"][i] == ACCEPTED:
             seen = {name: column[i] for name, column in extras.items()}
             steps.append(_step(cells, i, points[i], tangents[i], seen, first + len(steps)))
@@ -164,11 +165,13 @@ def _with_part(event: LocatedEvent, switch: int, ray: Array) -> LocatedEvent:
     return event
 
 
-def _event(cells: Mapping[str, Any], i: int, u: Any, v: Any, names: Sequence[str], step: int) -> LocatedEvent:
+def _event(
+    cells: Mapping[str, Any], i: int, u: Any, v: Any, names: Sequence[str], observed: Mapping[str, float], step: int
+) -> LocatedEvent:
     return LocatedEvent(
         name=names[cells["event_index"][i]], kind=cells["kind"][i], arclength=cells["arclength"][i], u=u, tangent=v,
         residual_norm=cells["residual_norm"][i], monitor=cells["event_monitor"][i], orientation=cells["orientation"][i],
-        step=step,
+        step=step, observed=observed,
     )
 
 

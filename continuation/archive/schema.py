@@ -132,6 +132,13 @@ PATH_COLUMNS = (
     Column("controller_state", "f8", "1", "state of the step controller at the end", ("path", "controller")),
 )
 
+ORIGIN_COLUMNS = (
+    Column("homotopy", "utf8:160", "1", "class of the homotopy", ("path",)),
+    Column("source", "utf8:160", "1", "identifier of the file that the path was written to, its number there, and the "
+           "file's name then", ("path",)),
+)
+"""A merged file keeps them for each path; files of before have none."""
+
 EVENT_NAME = Column("event_name", f"utf8:{NAME}", "1", "name of the event", ("event",))
 COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component",))
 
@@ -153,6 +160,8 @@ class Layout:
     tangents : bool
     pieces : bool
         Whether kinks are held with their switches and rays.
+    origins : bool
+        Whether each path has its homotopy and its source.
     """
 
     unknowns: int
@@ -161,6 +170,7 @@ class Layout:
     scalars: tuple[str, ...] = ()
     tangents: bool = False
     pieces: bool = False
+    origins: bool = True
 
     @property
     def point_columns(self) -> tuple[Column, ...]:
@@ -174,7 +184,7 @@ class Layout:
     def path_columns(self) -> tuple[Column, ...]:
         """The columns of the path table."""
         own = (Column(f"homotopy_{s}", "f8", "1", f"parameter {s} of the homotopy", ("path",)) for s in self.scalars)
-        return (*PATH_COLUMNS, *own)
+        return (*PATH_COLUMNS, *(ORIGIN_COLUMNS if self.origins else ()), *own)
 
     def width(self, column: Column) -> tuple[int, ...]:
         """The lengths of the column's dimensions beyond the first."""

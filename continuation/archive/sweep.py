@@ -23,6 +23,7 @@ from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
 from continuation.archive.writer import PathLog
 from continuation.checks import complain, instance_with, is_number
+from continuation.interrupted import Interrupted
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import Options, check_names
@@ -46,7 +47,7 @@ def trace_many(
     """Trace many homotopies.
 
     A homotopy that raises, exits, ends its worker's process, takes longer than the timeout or cannot be sent to a
-    worker costs its own path only: that one has the status INTERRUPTED and the exception's text as its message. The
+    worker costs its own path only: that one has the status RAISED and the exception's text as its message. The
     order is that of the homotopies, whatever the order in which workers finish. Ctrl-C keeps the paths that are
     finished, and ends within about a second.
 
@@ -60,7 +61,7 @@ def trace_many(
         One file with all paths. Workers write files of their own, ``name.sweep-xxxxxxxx.0001.h5``, ..., which are
         merged into it and removed. If this process is killed they stay, to be merged, and the sweep can be run again.
     progress : callable, optional
-        ``progress(done, total)``, called in this process.
+        ``progress(done, total)``, called in this process; `continuation.progress.SweepProgress` shows it on stderr.
     timeout : float, optional
         Seconds that one homotopy may take with a process pool, whose processes are ended then. (`Budget.seconds` is
         looked at between steps, and so never where a homotopy does not come back.)
@@ -98,10 +99,15 @@ def trace_many(
     if executor is None:
         result = work(Batch(tasks, 0, target, None, options), lambda done: report(done, len(tasks)))
         if result.stopped:
-            raise KeyboardInterrupt
+            raise _interrupted(result.paths)
     else:
         result = _spread(executor, tasks, target, report, timeout, options)
     return result.paths if target is None else open_archive(target)
+
+
+def _interrupted(paths: Sequence[Path]) -> Interrupted:
+    """Ctrl-C, with what is not in a file."""
+    return Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
 
 
 def _silent(done: int, total: int) -> None:
@@ -136,7 +142,7 @@ def _spread(
     if target is not None:
         _collect(batches, run.errors(), target, token, stopped)
     if stopped:
-        raise KeyboardInterrupt
+        raise _interrupted([path for k in sorted(found) for path in getattr(found[k], "paths", ())])
     return Result([] if target is not None else run.paths())
 
 

@@ -21,11 +21,11 @@ import scipy.sparse as sp
 from continuation import budget, controllers, correctors, events, metric, predictors, tolerance
 from continuation.archive.codec import UnstorableError, path_of
 from continuation.evaluation import functions
-from continuation.events import branch_point
+from continuation.events import box, branch_point
 
 ENTRY_POINTS = "continuation.homotopies"
 
-_MODULES = (budget, controllers, correctors, events, branch_point, functions, metric, predictors, tolerance)
+_MODULES = (budget, controllers, correctors, events, box, branch_point, functions, metric, predictors, tolerance)
 _REAL = "fiub"
 
 
@@ -58,6 +58,17 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
         except UnstorableError as error:
             raise TypeError(f"trust: expected something that an archive can name; {error}") from None
     return found
+
+
+def is_registered(path: str) -> bool:
+    """Whether an installed package registers the class of a homotopy, so that it needs no trust of the caller's.
+
+    Parameters
+    ----------
+    path : str
+        ``module:class``.
+    """
+    return _registered(path) is not None
 
 
 @lru_cache

@@ -11,12 +11,13 @@ from typing import Any
 from attrs import define, frozen
 
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
-from continuation.archive.record import sentence
 from continuation.archive.writer import PathLog
+from continuation.interrupted import Interrupted
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Status
 from continuation.step.options import Options
 from continuation.step.tracer import Tracer
+from continuation.step.verdict import sentence
 
 _LOOK = 0.2
 """Seconds between two looks at the stop sign."""
@@ -140,9 +141,10 @@ def _one(homotopy: Any, log: PathLog | None, stop: File | None, options: Options
         return failed(error), False
     stopped = True
     try:
-        for _ in tracer:
-            pass
-        stopped = tracer.path.status is Status.INTERRUPTED
+        tracer.run()
+        stopped = False
+    except Interrupted:
+        pass
     except ArchiveError:
         # The disk's, not the path's.
         raise
@@ -156,4 +158,4 @@ def _one(homotopy: Any, log: PathLog | None, stop: File | None, options: Options
 
 def failed(error: BaseException) -> Path:
     """The path of a homotopy that could not be traced."""
-    return Path(status=Status.INTERRUPTED, message=sentence(error))
+    return Path(status=Status.RAISED, message=sentence(error))

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
 from typing import Any
 
-import numpy as np
-from attrs import define, field, frozen
-
 from continuation.archive import record
 from continuation.archive.atomic import as_file, check_new
+from continuation.archive.buffer import Buffer, Mark, OpenPath
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.errors import ArchiveError
 from continuation.archive.limits import Limits
@@ -22,7 +21,7 @@ from continuation.archive.live import create
 from continuation.archive.problem import problem_data
 from continuation.archive.provenance import root_attributes, scalars
 from continuation.archive.reader import open_archive
-from continuation.archive.record import Record, counted
+from continuation.archive.record import Record, counted, unknowns_of
 from continuation.archive.rows import Row, parts_of, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
 from continuation.archive.store import Store
@@ -31,40 +30,8 @@ from continuation.archive.structure import SLOTS
 from continuation.checks import complain
 from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Step
-from continuation.status import Status
-from continuation.step.state import State
+from continuation.status import Kind, Status
 from continuation.step.tracer import Tracer
-
-
-@frozen(eq=False)
-class _Mark:
-    """A point to resume from: the state, the counters there, and how many rows of the path come before it."""
-
-    state: State
-    counts: tuple[int, ...]
-    rows: int
-
-
-@define(eq=False)
-class _Buffer:
-    """Rows not yet committed, and the number of the first: one object, so that a commit is one assignment."""
-
-    start: int
-    rows: list[Row] = field(factory=list)
-    nbytes: int = 0
-
-
-@define(eq=False)
-class _Open:
-    """The path being written."""
-
-    tracer: Tracer
-    number: int
-    rows: int = 0
-    seconds: float = 0.0
-    run: bytes | None = None
-    last: _Mark | None = None
-    resume: _Mark | None = None
 
 
 class PathLog:
@@ -81,13 +48,17 @@ class PathLog:
     durable : bool
         Wait for the disk at each commit: survives a power cut, not only a kill.
     tangents : bool
-        Store the unit tangents as well; always done, with the rays of its kinks, where the homotopy has pieces.
+        Store the unit tangents as well, so that a path that is read is a curve; without them a file is half as large.
+        Always done, with the rays of its kinks, where the homotopy has pieces.
     title : str
+    parameters : mapping, optional
+        What the homotopies were made with, where their attributes do not say it: for `continuation resume`.
     limits : Limits
         When to commit.
     keep : str
-        Which steps the path keeps in memory: ``"all"``, ``"ends"`` (the first and the last) or ``"every k"``. The
-        others are read from the file when they are asked for.
+        Which steps stay in memory: ``"all"``, ``"ends"`` or ``"every k"``; the others are read when asked for.
+    save_every : int
+        Only every so many steps are written, with the first, the last and all events: for long paths.
 
     Attributes
     ----------
@@ -107,26 +78,36 @@ class PathLog:
         file: str | PathLike[str],
         *,
         durable: bool = False,
-        tangents: bool = False,
+        tangents: bool = True,
         title: str = "",
+        parameters: Mapping[str, Any] | None = None,
         limits: Limits | None = None,
         keep: str = "all",
+        save_every: int = 1,
     ) -> None:
         limits = Limits() if limits is None else limits
         if not isinstance(limits, Limits):
             raise complain(TypeError, "limits", "Limits(...)", limits)
+        if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
+            raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
         check_new(as_file("file", file))
-        self._begin(File(file), durable, tangents, title, limits, kept_every(keep))
+        self._begin(File(file), durable, tangents, title, limits, kept_every(keep), parameters, int(save_every))
 
-    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
+    def _begin(
+        self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int,
+        parameters: Mapping[str, Any] | None = None, save_every: int = 1,
+    ) -> None:
         self.file, self._every = file, every
         self.member: int | None = None
         self._durable, self._tangents, self._title, self._limits = durable, tangents, title, limits
         self._many = self._closed = False
         self._store: Store | None = None
-        self._open: _Open | None = None
-        self._buffer = _Buffer(0)
+        self._open: OpenPath | None = None
+        self._buffer = Buffer(0)
         self._paths = self._sequence = 0
+        self._save_every = save_every
+        self._parameters = dict(parameters or {})
+        self._identifier = ""
         self._known: tuple[Any, Any] = (None, None)
         self._early: list[Record] = []
         self._witness: Tracer | None = None
@@ -134,27 +115,30 @@ class PathLog:
 
     @classmethod
     def continued(
-        cls, store: Store, points: int, paths: int, checkpoint: Checkpoint, tracer: Tracer, every: int
+        cls, store: Store, points: int, checkpoint: Checkpoint, tracer: Tracer, every: int, identifier: str
     ) -> PathLog:
         """A log that goes on with a path of which the file holds the beginning; for `resume`.
 
         Parameters
         ----------
         store : Store
-            The file, open for writing.
-        points, paths : int
-            Rows and ended paths that it holds.
+        points : int
+            Rows that the file holds.
         checkpoint : Checkpoint
         tracer : Tracer
         every : int
             Which steps stay in memory.
+        identifier : str
+            Of the file in which the path began.
         """
+        paths = checkpoint.path
         log = cls.__new__(cls)
         log._begin(store.file, store.durable, store.layout.tangents, "", Limits(), every)
-        log._store, log._buffer, log._paths, log._sequence = store, _Buffer(points), paths, checkpoint.sequence
+        log._store, log._buffer, log._paths, log._sequence = store, Buffer(points), paths, checkpoint.sequence
+        log._identifier = str(identifier)
         log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
-        mark = _Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
-        log._open = _Open(tracer, paths, checkpoint.rows, checkpoint.seconds, None, mark, mark)
+        mark = Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
+        log._open = OpenPath(tracer, paths, checkpoint.rows, checkpoint.seconds, None, mark, mark)
         log._commit_at = time.monotonic() + log._limits.seconds
         return log
 
@@ -167,12 +151,16 @@ class PathLog:
             self._make(tracer, step.u.size - 1, tuple(step.observed))
         if self._every != 1 and not isinstance(tracer.path.steps, StoredSteps):
             tracer.path.steps = self._stored(path.number, tracer.path.steps)
+        path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
+        if path.skipped is not None:
+            # Not a point to resume from either: that is one whose row is there.
+            return
         self._add_step(path, step, tracer.path.events)
         state = tracer.state
         if state is not None and state.index == step.index:
             # Whether the path ends at this point is decided after it is written. So a resumed trace begins one point
             # earlier; only at the start there is nothing left to be decided.
-            mark = _Mark(state, counted(tracer.counts), path.rows)
+            mark = Mark(state, counted(tracer.counts), path.rows)
             path.resume = path.last if path.last is not None else mark
             path.last = mark
         buffer, limits = self._buffer, self._limits
@@ -189,9 +177,11 @@ class PathLog:
             # The disk is full, and has been told of; or a child was forked, whose copy of a path ends when it does.
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
+        if path.skipped is not None:
+            self._add(path, Row(path.skipped))
         row = record.of_path(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
-        refused = self._store is None and found.status is Status.INTERRUPTED
+        refused = self._store is None and found.status in (Status.INTERRUPTED, Status.RAISED)
         if self._many or not refused:
             self._finish(row, path.number, path.rows)
         self._open = None
@@ -214,7 +204,7 @@ class PathLog:
         if self._closed:
             return
         if self._store is None and self._early:
-            self._make(self._witness, _unknowns(self._witness), ())
+            self._make(self._witness, unknowns_of(self._witness), ())
         if self._store is not None:
             if self._buffer.rows and self._store.ours:
                 self._commit()
@@ -232,7 +222,7 @@ class PathLog:
 
     # -- within -----------------------------------------------------------------------------------------------
 
-    def _path(self, tracer: Tracer) -> _Open:
+    def _path(self, tracer: Tracer) -> OpenPath:
         path = self._open
         if path is not None:
             if path.tracer is tracer:
@@ -240,7 +230,7 @@ class PathLog:
             raise ArchiveError(f"{self.file}: a path is being written already; a log writes one path after another")
         self._check_open()
         self._witness = self._witness or tracer
-        self._open = path = _Open(tracer, self._paths)
+        self._open = path = OpenPath(tracer, self._paths)
         self._commit_at = time.monotonic() + self._limits.seconds
         return path
 
@@ -248,7 +238,7 @@ class PathLog:
         if self._closed:
             raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
 
-    def _add_step(self, path: _Open, step: Step, events: list[LocatedEvent]) -> None:
+    def _add_step(self, path: OpenPath, step: Step, events: list[LocatedEvent]) -> None:
         """The step, with the event on which the path ends; other events at the very same point get rows before it."""
         here: list[LocatedEvent] = []
         while len(here) < len(events) and (event := events[-1 - len(here)]).ends_step and event.step == step.index:
@@ -260,7 +250,7 @@ class PathLog:
         for row in (Row(step, last), *(parts_of(last) if kept else ())):
             self._add(path, row)
 
-    def _add(self, path: _Open, row: Row) -> None:
+    def _add(self, path: OpenPath, row: Row) -> None:
         u = row.point.u
         if self._store is not None and u.size - 1 != self._store.layout.unknowns:
             held = self._store.layout.unknowns
@@ -279,7 +269,10 @@ class PathLog:
         if self._store is None:
             self._early.append(row)
         else:
-            self._commit(row)
+            self._commit(self._sourced(row))
+
+    def _sourced(self, row: Record) -> Record:
+        return {**row, "source": f"{self._identifier} {row['path']} {self.file.name}"}
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> None:
         """Make the file, and write the rows of paths that ended before there was one."""
@@ -291,13 +284,14 @@ class PathLog:
         layout = Layout(unknowns, width, observed, tuple(sorted(names)), self._tangents or pieces, pieces)
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
-        attributes = root_attributes(tracer, self._title)
+        attributes = root_attributes(tracer, self._title, self._parameters)
+        self._identifier = attributes["identifier"]
         self._store = create(self.file, layout, attributes, problem, durable=self._durable)
         for event in tracer.settings.events if tracer is not None else ():
             self._store.name_event(event.name)
         self._store.commit()
         for row in self._early:
-            self._commit(row)
+            self._commit(self._sourced(row))
         self._early = []
 
     def _commit(self, row: Record | None = None) -> None:
@@ -320,7 +314,7 @@ class PathLog:
             self._closed = True
             store.close()
             raise
-        self._buffer = _Buffer(start + len(rows))
+        self._buffer = Buffer(start + len(rows))
         if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
             path.tracer.path.steps.committed()
         self._sequence += 1
@@ -332,7 +326,7 @@ class PathLog:
             stored.append(step)
         return stored
 
-    def _checkpoint(self, path: _Open, mark: _Mark) -> bytes:
+    def _checkpoint(self, path: OpenPath, mark: Mark) -> bytes:
         if path.run is None:
             homotopy, described = self._known
             known = described if homotopy is path.tracer.homotopy else None
@@ -340,11 +334,3 @@ class PathLog:
         counts = dict(zip(COUNT_NAMES, mark.counts))
         seconds = path.seconds + path.tracer.seconds
         return pack(Checkpoint(self._sequence + 1, path.number, mark.rows, mark.state, counts, seconds, {}), path.run)
-
-
-def _unknowns(tracer: Tracer | None) -> int:
-    """N, asked of the homotopy itself; 1 where it does not even have a start, since then nothing depends on it."""
-    try:
-        return 1 if tracer is None else int(np.size(tracer.homotopy.start()[0]))
-    except Exception:
-        return 1

@@ -14,6 +14,9 @@ from continuation.chart.style import Axes, Figure, few_ticks, label, legend_belo
 STRIP = 0.11
 """Width of the strip of failures, as a fraction of the panel."""
 
+PILED = 0.75
+"""Where so many of a panel's errors are round-off, errors tell nothing: time is on x instead."""
+
 _FRONT = ring(11)
 
 
@@ -28,8 +31,8 @@ def draw(
     """Draw error against work.
 
     Runs on the Pareto front have a black ring. Errors that are round-off (at most `FLOOR`), if there are any, are in a
-    grey band on the left. Failures have no place on x: they are in the strip on the right, at the work that they cost,
-    or on its lower edge where that is less or unknown.
+    grey band on the left; where most of a panel's are, the panel has seconds on x. Failures have no place on x: they
+    are in the strip on the right, at the work that they cost, or on its lower edge where that is less or unknown.
 
     Parameters
     ----------
@@ -55,11 +58,11 @@ def draw(
         if not wanted or not set(wanted) <= set(known):
             raise ValueError(f"{kind}: expected some of {', '.join(known)}, found {wanted}")
     figure, axes = panels(len(shown))
+    label(axes, results.errors[error], WORK[work].label)
     for name, ax in zip(shown, axes):
         rows = [row for row in results.of(problem=name) if row.method in names]
-        _panel(ax, rows, names, error, work)
+        (_time_panel if piled(rows, error, work) else _panel)(ax, rows, names, error, work)
         tidy(ax, name)
-    label(axes, results.errors[error], WORK[work].label)
     legend_below(figure, names, results.title if [results.title] != shown else "", {"Pareto front": _FRONT})
     return figure
 
@@ -79,6 +82,36 @@ class Precision:
     def draw(self, results: Results) -> Figure:
         """See `draw`."""
         return draw(results, self.error, self.work)
+
+
+def piled(rows: Sequence[Row], error: str, work: str) -> bool:
+    """Whether nearly all errors of a panel are round-off.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+    error, work : str
+        Names in `Row.errors` and `WORK`.
+    """
+    found = [point[0] for row in rows if (point := coordinates(row, error, work)) is not None]
+    return bool(found) and sum(e <= FLOOR for e in found) >= PILED * len(found)
+
+
+def _time_panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, work: str) -> None:
+    """Work against time, where the error is round-off whatever is done."""
+    failures = []
+    for k, name in enumerate(names):
+        own = [row for row in rows if row.method == name]
+        placed = [(row.seconds, row.work(work)) for row in own if coordinates(row, error, work) is not None]
+        if placed:
+            axes.plot(*zip(*placed), **{**line_style(k), "linestyle": "none"})
+        failures += [(k, inf if row.spared else row.work(work)) for row in own if row.failed]
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.margins(x=0.08, y=0.08)
+    few_ticks(axes.yaxis)
+    axes.set_xlabel("seconds (errors are round-off)", fontsize="small")
+    _failures(axes, failures, len(names))
 
 
 def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, work: str) -> None:

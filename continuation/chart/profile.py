@@ -12,8 +12,11 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.chart.results import WORK, Results
-from continuation.chart.style import Figure, label, legend_below, line_style, panels, tidy
+from continuation.chart.style import Axes, Figure, label, legend_below, line_style, panels, tidy
 from continuation.chart.table import Cell, Table
+
+MOST_LINES = 6
+"""Of one panel."""
 
 
 def ratios(results: Results, work: str, family: str | None = None) -> dict[str, Array]:
@@ -51,7 +54,9 @@ def profile_table(results: Results, work: str) -> Table:
 
 
 def draw_profile(results: Results, work: str) -> Figure:
-    """Draw the profiles, one panel a family: the fraction solved against the factor over the best work.
+    """Draw the profiles: the fraction solved against the factor over the best work.
+
+    One panel a family; where there are more than six methods, one for each six of them, which can be told apart.
 
     Parameters
     ----------
@@ -69,29 +74,37 @@ def draw_profile(results: Results, work: str) -> Figure:
         Without matplotlib; for an unknown work.
     """
     results.check(work=work)
-    figure, axes = panels(len(results.families))
     found = {family: ratios(results, work, family) for family in results.families}
+    count = len(results.methods)
+    groups = np.array_split(np.arange(count), -(-count // MOST_LINES))
+    figure, axes = panels(len(found) * len(groups), most_across=max(len(groups), 3 // len(groups) * len(groups)))
     everything = np.concatenate([values for lines in found.values() for values in lines.values()])
     # To the power of ten at which all that is ever solved is solved.
     widest = 10.0 ** max(1, np.ceil(np.log10(everything[np.isfinite(everything)].max(initial=1.0))))
-    for (family, lines), ax in zip(found.items(), axes):
-        for k, values in enumerate(lines.values()):
-            finite = np.sort(values[np.isfinite(values)])
-            # A step at every ratio, from (1, fraction of best) on; the line goes on to the edge of the panel.
-            x = np.concatenate(([1.0], finite, [widest]))
-            y = np.concatenate(([np.mean(values <= 1.0)], np.arange(1, finite.size + 1), [finite.size]))
-            y[1:] /= values.size
-            ax.step(x, y, where="post", **{**line_style(k), "marker": ""})
-            # Two markers a line, at places of its own, where lines run together.
-            places = widest ** (((k + 0.5) / len(results.methods) + np.array([0.0, 0.5])) % 1.0)
-            ax.plot(places, [np.mean(values <= place) for place in places], **{**line_style(k), "linestyle": "none"})
+    shown = [(family, list(lines.values()), group) for family, lines in found.items() for group in groups]
+    for (family, values_of, group), ax in zip(shown, axes):
+        for k in group:
+            _line(ax, values_of[k], k, (k - group[0] + 0.5) / len(group), widest)
         ax.set_xscale("log")
         ax.set_xlim(1.0, widest)
         ax.set_ylim(-0.03, 1.04)
-        tidy(ax, family)
+        part = f", methods {group[0] + 1} to {group[-1] + 1}" if len(groups) > 1 else ""
+        tidy(ax, f"{family}{part}")
     label(axes, f"{WORK[work].quantity},\nover the least of all methods", "fraction solved")
     legend_below(figure, results.methods, results.title)
     return figure
+
+
+def _line(ax: Axes, values: Array, k: int, place: float, widest: float) -> None:
+    finite = np.sort(values[np.isfinite(values)])
+    # A step at every ratio, from (1, fraction of best) on; the line goes on to the edge of the panel.
+    x = np.concatenate(([1.0], finite, [widest]))
+    y = np.concatenate(([np.mean(values <= 1.0)], np.arange(1, finite.size + 1), [finite.size]))
+    y[1:] /= values.size
+    ax.step(x, y, where="post", **{**line_style(k), "marker": ""})
+    # Two markers a line, at places of its own, where lines run together.
+    places = widest ** ((place + np.array([0.0, 0.5])) % 1.0)
+    ax.plot(places, [np.mean(values <= place) for place in places], **{**line_style(k), "linestyle": "none"})
 
 
 @frozen

@@ -6,10 +6,10 @@ import errno
 import os
 import sys
 from collections.abc import Sequence
-from importlib.metadata import PackageNotFoundError, version
 
 from continuation.cli.commands import register
 from continuation.cli.parser import BAD_INPUT, FAILURE, SUCCESS, Parser, Run, Subparsers, UsageError
+from continuation.version import __version__
 
 __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError", "main"]
 
@@ -34,7 +34,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         0 done (solved), 1 not solved, 2 bad input, after one line on stderr that names the argument.
     """
     parser = Parser(prog="continuation", description="Trace paths of solutions; inspect, plot and resume them.")
-    parser.add_argument("--version", action="version", version=f"continuation {_version()}")
+    parser.add_argument("--version", action="version", version=f"continuation {__version__}")
     register(parser.add_subparsers(title="commands", metavar="COMMAND", required=True))
     try:
         arguments = parser.parse_args(argv)
@@ -46,27 +46,23 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
     except UsageError as error:
         print(f"continuation: {error}", file=sys.stderr)
-        return BAD_INPUT
+        return error.status
     except BrokenPipeError:
         # The reader (head, a pager) has enough; without this, Python complains once more while it shuts down.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return SUCCESS
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
+        kept = getattr(arguments, "archive", None) or getattr(arguments, "grows", None)
+        where = f"; what was traced is in {kept}" if kept is not None and os.path.exists(kept) else ""
+        print(f"continuation: {str(interrupt) or 'interrupted'}{where}", file=sys.stderr)
         return INTERRUPTED
     except OSError as error:
         from continuation.archive.errors import ArchiveError
 
         if not isinstance(error, ArchiveError) and error.errno not in NO_ROOM:
             raise
-        name = error.filename or "a file"
+        name = error.filename or "the output"
         what = error if error.errno is None else f"{name}: could not be written ({os.strerror(error.errno)})"
         print(f"continuation: {what}", file=sys.stderr)
         return BAD_INPUT
     return status
-
-
-def _version() -> str:
-    try:
-        return version("continuation")
-    except PackageNotFoundError:
-        return "(not installed)"

@@ -23,6 +23,8 @@ def register(subparsers: Subparsers) -> None:
 
     parser = subparsers.add_parser("resume", help="go on with a path that was interrupted")
     parser.add_argument("file", metavar="FILE", help="an archive whose last path has not reached its end")
+    parser.add_argument("options", metavar="KEY=VALUE", nargs="*", help="of the homotopy; the file's own by default")
+    parser.add_argument("--homotopy", metavar="NAME", help="a name of `continuation plugins`, or module:object")
     parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
     parser.add_argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps")
     parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
@@ -80,13 +82,34 @@ def _resume(arguments: argparse.Namespace) -> int:
     limits = {name: getattr(arguments, name) for name in ("steps", "factorizations") if getattr(arguments, name)}
     options: Options = {"budget": Budget(**limits)} if limits else {}
     observers = (Progress(),) if arguments.progress else ()
+    homotopy = None if arguments.homotopy is None else _given(arguments)
+    if arguments.homotopy is None and arguments.options:
+        raise UsageError("KEY=VALUE", "expected no options without --homotopy")
+    arguments.grows = arguments.file
     with complaints("FILE", new="--archive"):
         path = resume(
-            arguments.file, archive=arguments.archive, observers=observers, trust=arguments.trust, **options
+            arguments.file, homotopy, archive=arguments.archive, observers=observers, trust=arguments.trust, **options
         )
     print(f"{path.status.name}: {path.message}")
     print(f"{len(path)} points, lam = {path.endpoint.lam:.6g}")
     return SUCCESS if path.success else FAILURE
+
+
+def _given(arguments: argparse.Namespace) -> Any:
+    """The homotopy that --homotopy names, made with the parameters in the file and, over those, KEY=VALUE ..."""
+    from continuation import plugins
+    from continuation.archive import open_archive
+    from continuation.archive.provenance import stored_parameters
+    from continuation.cli.making import homotopy_of, importable
+
+    with complaints("FILE"), open_archive(arguments.file) as archive:
+        stored = stored_parameters(archive.attributes)
+    importable(arguments.homotopy)
+    try:
+        takes = {option.name for option in plugins.options(plugins.find(arguments.homotopy))}
+    except plugins.PluginError as error:
+        raise UsageError("--homotopy", error) from error
+    return homotopy_of(arguments.homotopy, arguments.options, {k: v for k, v in stored.items() if k in takes})[0]
 
 
 def _named(path: str) -> Any:

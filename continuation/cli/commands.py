@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable, Sequence
 from importlib.metadata import EntryPoint, entry_points
 
-from continuation.cli import archives, charts, figures, homotopies
+from continuation.cli import archives, charts, completion, figures, homotopies
 from continuation.cli.parser import Subparsers, UsageError
 from continuation.plugins import grouped, owners
 
@@ -27,6 +27,7 @@ def register(subparsers: Subparsers) -> None:
     archives.register(subparsers)
     figures.register(subparsers)
     charts.register(subparsers)
+    completion.register(subparsers)
 
 
 def _loaded(name: str, points: Sequence[EntryPoint]) -> Register:

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from continuation.cli.parser import SUCCESS, Subparsers, UsageError, parsed
@@ -71,6 +72,12 @@ def check_picture(option: str, file: str) -> None:
         raise UsageError(option, f"expected a name in {', '.join(SUFFIXES)}, found {file!r}")
     if not path.parent.is_dir():
         raise UsageError(option, f"expected a file in an existing directory, found {file!r}")
+    try:
+        # Asked by doing it: rights say little of a full or a read-only file system.
+        with TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise UsageError(option, f"expected a place to write to, found {file!r} ({error.strerror})") from error
     try:
         require_matplotlib()
     except ImportError as error:

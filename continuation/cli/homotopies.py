@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import ast
 import json
 import math
-import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from continuation import plugins
 from continuation.cli.archives import complaints
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, parsed, positive
+from continuation.cli.making import homotopy_of, refused, unknown
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, paint, parsed, positive
 
 if TYPE_CHECKING:
     from continuation.budget import Budget
@@ -84,7 +82,7 @@ def _add_homotopy(parser: argparse.ArgumentParser) -> None:
 def _list(arguments: argparse.Namespace) -> int:
     known = plugins.available()
     if arguments.name is not None:
-        with _unknown(arguments.name):
+        with unknown(arguments.name):
             factory = plugins.find(arguments.name)
         described = plugins.describe(factory)
         origin = known[arguments.name].origin if arguments.name in known else arguments.name
@@ -126,13 +124,13 @@ def _trace(arguments: argparse.Namespace) -> int:
     from continuation.archive import PathLog
     from continuation.tracing import trace
 
-    homotopy, values = _homotopy(arguments)
+    homotopy, values = homotopy_of(arguments.name, arguments.options)
     if arguments.plot is not None:
         from continuation.cli.figures import check_picture
 
         check_picture("--plot", arguments.plot)
     with complaints("--archive", new="--archive"):
-        log = None if arguments.archive is None else PathLog(arguments.archive)
+        log = None if arguments.archive is None else PathLog(arguments.archive, parameters=values)
     folder = None
     if arguments.chart is not None:
         from continuation.cli.charts import new_folder
@@ -140,7 +138,7 @@ def _trace(arguments: argparse.Namespace) -> int:
         folder = new_folder("--chart", arguments.chart)
     course, budget = _course(arguments), _budget(arguments)
     preset = getattr(presets, arguments.preset.upper())
-    with _refused(arguments.name), complaints("--archive", new="--archive"):
+    with refused(arguments.name), complaints("--archive", new="--archive"):
         path = trace(
             homotopy,
             archive=log,
@@ -199,7 +197,7 @@ def _budget(arguments: argparse.Namespace) -> Budget:
 
 def _as_text(title: str, path: Path) -> Iterator[str]:
     yield f"homotopy   {title}"
-    yield f"status     {path.status.name}"
+    yield f"status     {paint(path.status.name, path.success)}"
     yield f"           {path.message}"
     for event in path.events:
         yield f"event      {event.name}: lam = {event.lam:.12g}, arclength {event.arclength:.6g}"
@@ -234,8 +232,9 @@ def _as_json(title: str, path: Path) -> dict[str, Any]:
 def _check(arguments: argparse.Namespace) -> int:
     from continuation.testing import run_checks
 
-    homotopy, _ = _homotopy(arguments)
-    results = run_checks(homotopy, steps=arguments.steps)
+    homotopy, _ = homotopy_of(arguments.name, arguments.options)
+    with refused(arguments.name):
+        results = run_checks(homotopy, steps=arguments.steps)
     for result in results:
         print(_line(result))
     failed = sum(result.outcome != "passed" for result in results)
@@ -244,66 +243,8 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _line(result: Result) -> str:
-    return f"{result.outcome:8} {result.name}" + (f"\n         {result.message}" if result.message else "")
-
-
-# -- a homotopy out of its name and options -------------------------------------------------------------------
-
-
-def _homotopy(arguments: argparse.Namespace) -> tuple[Any, Mapping[str, Any]]:
-    """The homotopy that NAME KEY=VALUE ... stand for, and the options read."""
-    # A program started by its script does not see modules in the directory that it is called from.
-    if ":" in arguments.name and os.getcwd() not in sys.path:
-        sys.path.insert(0, os.getcwd())
-    with _unknown(arguments.name):
-        factory = plugins.find(arguments.name)
-    written = {option.name: option.annotation for option in plugins.options(factory)}
-    values = _values(arguments.options, written)
-    try:
-        return plugins.make(arguments.name, values), values
-    except (TypeError, ValueError) as error:
-        key, _, complaint = str(error).partition(": ")
-        # Any other error of the plug-in concerns the homotopy as a whole.
-        raise UsageError(*((key, complaint) if key in {*values, *written} else (arguments.name, error))) from error
-
-
-def _values(texts: Sequence[str], annotations: Mapping[str, str]) -> dict[str, Any]:
-    values: dict[str, Any] = {}
-    for text in texts:
-        key, equals, value = text.partition("=")
-        if not equals or not key.isidentifier():
-            raise UsageError("KEY=VALUE", f"expected an option like n=10, found {text!r}")
-        if key in values:
-            raise UsageError(key, "expected one value, found two")
-        values[key] = value if annotations.get(key, "").startswith("str") else _literal(value)
-    return values
-
-
-def _literal(text: str) -> Any:
-    """A number, None, True, a list ...; any other text is itself."""
-    try:
-        return ast.literal_eval({"none": "None", "true": "True", "false": "False"}.get(text, text))
-    except (ValueError, SyntaxError):
-        return text
-
-
-@contextmanager
-def _unknown(name: str) -> Iterator[None]:
-    try:
-        yield
-    except plugins.PluginError as error:
-        raise UsageError(name, str(error).removeprefix(f"{name}: ")) from error
-
-
-@contextmanager
-def _refused(name: str) -> Iterator[None]:
-    """Report as a usage error what a trace refuses; an error inside the plug-in is raised as it is."""
-    try:
-        yield
-    except (TypeError, ValueError) as error:
-        if str(error).partition(":")[0] not in ("homotopy", "start", "residual", "target", "max_step", "finish"):
-            raise
-        raise UsageError(name, error) from error
+    outcome = paint(f"{result.outcome:8}", result.outcome == "passed")
+    return f"{outcome} {result.name}" + (f"\n         {result.message}" if result.message else "")
 
 
 def _number_or_none(text: str) -> float:

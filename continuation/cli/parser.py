@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import os
+import sys
 from collections.abc import Callable
-from typing import Any, NoReturn, Protocol, TypeVar
+from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 
 T = TypeVar("T")
 
@@ -26,10 +28,18 @@ class UsageError(ValueError):
         What was expected and what was found.
     """
 
+    status = BAD_INPUT
+
     def __init__(self, argument: str, complaint: object) -> None:
         self.argument = argument
         self.complaint = " ".join(str(complaint).split())
         super().__init__(f"{self.argument}: {self.complaint}")
+
+
+class PlugInError(UsageError):
+    """An exception of a plug-in's own: no bad input, so that the command ends with status 1, after one line."""
+
+    status = FAILURE
 
 
 class Parser(argparse.ArgumentParser):
@@ -54,6 +64,22 @@ class Subparsers(Protocol):
             As for `argparse.ArgumentParser`, and `help`, the line in the list of commands.
         """
         ...
+
+
+def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
+    """A word in green or red on a terminal; as it is elsewhere, and where NO_COLOR is set (https://no-color.org).
+
+    Parameters
+    ----------
+    text : str
+    good : bool
+    stream : text stream, optional
+        stdout by default.
+    """
+    stream = sys.stdout if stream is None else stream
+    if not stream.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return text
+    return f"\x1b[{32 if good else 31}m{text}\x1b[0m"
 
 
 def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], expected: str) -> T:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dis
 import math
+import os
 from collections.abc import Callable
 from typing import Any, ClassVar
 
@@ -35,6 +37,12 @@ class NotFiniteError(EvaluationError):
     """The homotopy has no finite value at a point: the edge of its domain, or an overflow."""
 
     rejection = Rejection.NO_VALUE
+
+
+class RaisedError(EvaluationError):
+    """The homotopy's own code says ``raise ValueError(...)`` at a point: the edge of its domain, or a mistake in it."""
+
+    rejection = Rejection.RAISED
 
 
 class SingularPointError(EvaluationError):
@@ -172,7 +180,7 @@ class Evaluator:
                 # A copy: a plug-in may well return the same array every time.
                 r: Array = np.array(self.called(u[:-1], float(u[-1])), dtype=float)
             except (ArithmeticError, ValueError) as error:
-                raise NotFiniteError(f"the residual could not be evaluated: {error}") from error
+                raise _unevaluated("residual", error) from error
         if not finite(r):
             raise NotFiniteError("the residual is not finite")
         return r
@@ -223,7 +231,7 @@ class Evaluator:
             with np.errstate(all="ignore"):
                 answer = self.derivative(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
-            raise NotFiniteError(f"the derivative could not be evaluated: {error}") from error
+            raise _unevaluated("derivative", error) from error
         if not self._checked:
             # Once: whoever gets it right at the start does so later on.
             check_derivative(answer, u.size - 1)
@@ -251,3 +259,17 @@ class Evaluator:
         except ArithmeticError as error:
             raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error
         return CountedSystem(system, self.counts)
+
+
+def _unevaluated(what: str, error: BaseException) -> EvaluationError:
+    """The error for a function that raised: of `math`, numpy and scipy it is the domain's edge, else its author's."""
+    place = error.__traceback__
+    while place is not None and place.tb_next is not None:
+        place = place.tb_next
+    if type(error) is not ValueError or place is None:
+        return NotFiniteError(f"the {what} could not be evaluated: {error}")
+    code, module = place.tb_frame.f_code, str(place.tb_frame.f_globals.get("__name__", ""))
+    written = code.co_code[place.tb_lasti] == dis.opmap["RAISE_VARARGS"]
+    if not written or module.partition(".")[0] in ("numpy", "scipy"):
+        return NotFiniteError(f"the {what} could not be evaluated: {error}")
+    return RaisedError(f"ValueError: {error} ({os.path.basename(code.co_filename)}, line {place.tb_lineno})")

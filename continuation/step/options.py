@@ -20,10 +20,11 @@ from continuation.checks import check_sign, complain, instance_with, is_number
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.events import Event
+from continuation.events.box import Box
 from continuation.metric import Metric
 from continuation.predictors import Predictor
 from continuation.presets import DEFAULT, Preset
-from continuation.step.start import point_and_direction
+from continuation.step.start import guessed, is_guess, point_and_direction
 from continuation.tolerance import Tolerance, as_tolerance
 
 Finish = Callable[[Array, float], Array | None]
@@ -77,18 +78,26 @@ class Options(PartOptions, total=False):
         target, and 0 where it has none.
     direction : int, default 0
         Sign of the parameter's first movement; 0 means towards the target.
-    start : tuple of (u, v), default None
-        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector, and the direction to leave in.
+    start : tuple of (u, v) or (y, lam), default None
+        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector, and the direction to leave in; or a
+        guess of y at a parameter value, which is corrected as the homotopy's own start is.
     finish : callable, default None
         ``(y, lam)`` to the end y or None, tried after each step in place of the homotopy's own; no archive holds it.
+    max_step : float, default None
+        No step is longer, in arclength: for a picture with many points, or where a path is to be followed closely.
+    box : mapping or None, default "homotopy"
+        The path ends where it leaves it. From ``"lam"``, the number or the name of an unknown, or ``"y"`` for all
+        unknowns, to (low, high), one of them perhaps None. By default the homotopy's own, if it has one; None for none.
     """
 
     tolerance: float | Tolerance
     budget: Budget | None
     target: float | str | None
     direction: int
-    start: tuple[Array, Array] | None
+    start: tuple[Array, Array | float] | None
     finish: Finish | None
+    max_step: float | None
+    box: Box | str | None
 
 
 DEFAULTS: Options = {
@@ -106,6 +115,8 @@ DEFAULTS: Options = {
     "direction": 0,
     "start": None,
     "finish": None,
+    "max_step": None,
+    "box": "homotopy",
 }
 """What is taken where nothing is said."""
 
@@ -187,12 +198,14 @@ def checked(options: Mapping[str, Any]) -> Options:
     if asked["finish"] is not None and not callable(asked["finish"]):
         raise complain(TypeError, "finish", "a function of (y, lam)", asked["finish"])
     if asked["start"] is not None:
-        point_and_direction(asked["start"])
+        (guessed if is_guess(asked["start"]) else point_and_direction)(asked["start"])
+    if asked["max_step"] is not None and not (is_number(asked["max_step"]) and asked["max_step"] > 0.0):
+        raise complain(ValueError, "max_step", "a positive number", asked["max_step"])
     return asked
 
 
 def names_homotopy(target: Any) -> bool:
-    """Whether the target asked for is the homotopy's own."""
+    """Whether the target, or the box, asked for is the homotopy's own."""
     return isinstance(target, str) and target == "homotopy"
 
 

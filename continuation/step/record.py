@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from attrs import evolve, frozen
@@ -11,7 +11,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm, share
-from continuation.path import Step
+from continuation.path import LocatedEvent, Step
 from continuation.point.linearization import Linearization
 from continuation.status import Kind
 from continuation.step.state import State
@@ -62,6 +62,17 @@ class StepRecorder:
             observed={} if self.observe is None else self.observe(point.y, point.lam),
             **how,
         )
+
+    def observing(self, events: Sequence[LocatedEvent]) -> Sequence[LocatedEvent]:
+        """Located events with the homotopy's extra scalars.
+
+        Parameters
+        ----------
+        events : sequence of LocatedEvent
+        """
+        if self.observe is None:
+            return events
+        return [evolve(event, observed=self.observe(event.y, event.lam)) for event in events]
 
     def end(self, point: Linearization, state: State, u: Array) -> Step:
         """The record of an end that was found otherwise than by a step, from the last point on the path."""

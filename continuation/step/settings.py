@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from attrs import frozen
+from attrs import evolve, frozen, has
 
+from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.checks import instance_with
+from continuation.checks import complain, instance_with
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.events import Event, KinkPoint, TurningPoint
+from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
 from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces
+from continuation.labels import Labels
 from continuation.metric import Automatic, Metric
 from continuation.predictors import Predictor
 from continuation.step.options import EVENT, PARTS, Options, checked_target, each, names_homotopy
@@ -63,8 +67,15 @@ class Settings:
         return next((i for i, event in enumerate(self.events) if isinstance(event, kind)), None)
 
 
-def complete_settings(homotopy: Any, asked: Options) -> Settings:
+def complete_settings(homotopy: Any, asked: Options, start: Callable[[], Array]) -> Settings:
     """Complete checked options from the homotopy.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    asked : Options
+    start : callable
+        Where the path begins, (y, lam); asked for where there is a box.
 
     Raises
     ------
@@ -78,15 +89,35 @@ def complete_settings(homotopy: Any, asked: Options) -> Settings:
     return Settings(
         predictor=_first(asked["predictor"], preset.predictor),
         corrector=_first(asked["corrector"], preset.corrector),
-        controller=_first(asked["controller"], preset.controller),
+        controller=_capped(_first(asked["controller"], preset.controller), asked["max_step"]),
         metric=_first(asked["metric"], own, Automatic()),
-        events=_events(homotopy, asked),
+        events=(*_events(homotopy, asked), *_box(homotopy, asked, start)),
         tolerance=as_tolerance(asked["tolerance"]),
         budget=_first(asked["budget"], Budget()),
         target=checked_target(getattr(homotopy, "target", 0.0) if names_homotopy(target) else target),
         direction=asked["direction"],
         examine=bool(asked["examine"]),
     )
+
+
+def _capped(controller: Any, longest: float | None) -> Any:
+    """The controller with a ceiling of its steps that is no higher than was asked for."""
+    if longest is None or longest >= controller.bounds.maximum:
+        return controller
+    bounds = controller.bounds
+    if longest < bounds.minimum or not has(type(controller)):
+        expected = f"at least the least step, {bounds.minimum:g}, and a controller of the library"
+        raise complain(ValueError, "max_step", expected, longest)
+    return evolve(controller, bounds=evolve(bounds, maximum=float(longest)))
+
+
+def _box(homotopy: Any, asked: Options, start: Callable[[], Array]) -> tuple[Event, ...]:
+    box: Any = asked["box"]
+    if names_homotopy(box):
+        # A box of its own is for those who say nothing of where the path ends.
+        said = asked["events"] or not names_homotopy(asked["target"])
+        box = None if said else getattr(homotopy, "box", None)
+    return () if box is None else faces(box, Labels.of(homotopy), start())
 
 
 def _first(*candidates: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from continuation.arrays import Array
 from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import Metric, SupportsExtent, norm
+from continuation.metric import Automatic, Metric, SupportsExtent, norm
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.step.extent import FIRST, initial_extent
@@ -33,6 +34,9 @@ STEEP = 1e-8
 
 RESOLVED = 4.0
 """Units in the last place that a correction at the tolerance is to be: fewer, and round-off keeps it from being met."""
+
+PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)
+"""From a guess Newton's increments may grow before they shrink: a start that it brings to the path is a start."""
 
 NEARBY = 1.0
 """A start that has no point of the path at its parameter may be brought to one at most an extent away: what is farther
@@ -80,6 +84,29 @@ def first_point(
     return point, FIRST * norm(point.weights, extent)
 
 
+def at_parameter(solver: PathSolver, u: Array) -> Array:
+    """The point of the path at the parameter value of a guess.
+
+    Raises
+    ------
+    StartError
+        If Newton's method does not come to one.
+    """
+    evaluator = solver.evaluator
+    unit = np.zeros_like(u)
+    unit[-1] = 1.0
+    try:
+        residual = evaluator.residual(u)
+        point, _ = measured(solver, _regular(evaluator, u, unit), Automatic(), None, residual)
+        for corrector in (CORRECTING, PATIENT):
+            correction = corrector.correct(evaluator, point, u, unit, solver.tolerance)
+            if correction.converged:
+                return correction.u
+    except EvaluationError as error:
+        raise StartError(f"At the guess {error}.") from error
+    raise StartError(f"Newton's method at lam = {u[-1]:g} says: {correction.rejected(0.0)}.")
+
+
 def measured(
     solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
 ) -> tuple[Linearization, Array]:
@@ -101,6 +128,9 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
         correction = CORRECTING.correct(solver.evaluator, point, u, border, solver.tolerance)
         if correction.converged and (border is unit or correction.distance <= NEARBY):
             return correction.u
+    patient = PATIENT.correct(solver.evaluator, point, u, unit, solver.tolerance)
+    if patient.converged:
+        return patient.u
     raise StartError(f"The corrector says: {correction.rejected(0.0)}.")
 
 
@@ -147,11 +177,25 @@ def _well_conditioned(point: Linearization) -> bool:
     return norm(np.ones_like(z), z) < NEAR_SINGULAR * image and abs(point.tangent[-1]) > STEEP
 
 
+def is_guess(start: Any) -> bool:
+    """Whether a start is a guess of y at a parameter value, and no point with a direction."""
+    return isinstance(start, tuple | list) and len(start) == 2 and np.ndim(start[1]) == 0 and np.ndim(start[0]) == 1
+
+
+def guessed(start: Any) -> Array:
+    """A start (y, lam) as one vector; ValueError if it is no such thing."""
+    y, lam = (real_vector("start", part) for part in start)
+    u: Array = np.append(y, lam)
+    if not np.isfinite(u).all():
+        raise ValueError("start: expected finite numbers, found NaN or infinity")
+    return u
+
+
 def point_and_direction(start: Any) -> tuple[Array, Array]:
     """Copies of the two vectors of a start; ValueError if it is no pair of a finite point and a direction."""
     if not isinstance(start, tuple | list) or len(start) != 2:
         found = f"{len(start)} of them" if isinstance(start, tuple | list) else repr(start)
-        raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}")
+        raise ValueError(f"start: expected a pair (u, v) of vectors, found {found}; a guess is (y, lam)")
     u, v = (real_vector("start", part) for part in start)
     if u.ndim != 1 or u.shape != v.shape:
         raise ValueError(f"start: expected (u, v), vectors of one size, found shapes {u.shape} and {v.shape}")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Any, Protocol, Unpack
 
 import numpy as np
 
+from continuation.arrays import Array
 from continuation.citation import references_of, unique
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -16,7 +18,9 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
 from continuation.homotopy import SupportsObserve, SupportsPieces
+from continuation.interrupted import Interrupted
 from continuation.kinks.start import begin
+from continuation.labels import Labels
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.linearization import Anchor, Linearization
 from continuation.point.projection import PathSolver
@@ -27,9 +31,25 @@ from continuation.step.capabilities import finish_of, max_step_of
 from continuation.step.options import OBSERVER, Options, checked, documented, each
 from continuation.step.record import StepRecorder
 from continuation.step.settings import complete_settings
-from continuation.step.start import StartError, first_point, point_from_tangent
+from continuation.step.start import (
+    StartError,
+    first_point,
+    guessed,
+    is_guess,
+    point_and_direction,
+    point_from_tangent,
+)
 from continuation.step.state import State
-from continuation.step.verdict import INTERRUPTED, Verdict, budget_spent, finished, refused_start, start_on_target
+from continuation.step.verdict import (
+    INTERRUPTED,
+    Verdict,
+    abandoned,
+    budget_spent,
+    finished,
+    raised,
+    refused_start,
+    start_on_target,
+)
 
 
 class Observer(Protocol):
@@ -109,24 +129,27 @@ class Tracer:
         asked = checked(options)
         each("observers", observers, OBSERVER)
         self.homotopy = homotopy
-        self.path = Path()
+        self.path = Path(labels=Labels.of(homotopy))
         self.counts: Counts = self.path.counts
         self._evaluator = Evaluator(homotopy, self.counts)
-        self.settings = complete_settings(homotopy, asked)
-        self.observers = tuple(observers)
         self.state: State | None = state
+        given = asked["start"]
+        self._guess = guessed(given) if is_guess(given) else None
+        self._start = given if self._guess is None else None
+        self.settings = complete_settings(homotopy, asked, self._beginning)
+        self.observers = tuple(observers)
         self._finish = finish_of(homotopy, asked["finish"])
         self._pieces = Pieces(homotopy) if isinstance(homotopy, SupportsPieces) else None
-        leaving = None if asked["start"] is None else np.asarray(asked["start"][1], dtype=float)
+        leaving = None if self._start is None else np.asarray(self._start[1], dtype=float)
         straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
         self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy), straight)
         observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
         self._recorder = StepRecorder(self._evaluator, observe)
         self._advance = Advance(self._solver, self.settings, self._recorder, self._spent, self._pieces)
-        self._start = asked["start"]
         self._check = asked["check_jacobian"]
         self._clock: float | None = None
         self._handed = 0
+        self._reason = ""
 
     @property
     def seconds(self) -> float:
@@ -146,21 +169,48 @@ class Tracer:
         ------
         RuntimeError
             If another loop over this tracer has not ended.
+        Interrupted
+            After Ctrl-C: a KeyboardInterrupt with the path so far.
         """
         if self._clock is not None:
             raise RuntimeError("the tracer is being iterated already; leave that loop first")
-        if self.path.status not in (Status.TRACING, Status.INTERRUPTED):
+        if self.path.status not in (Status.TRACING, Status.INTERRUPTED, Status.ABANDONED, Status.RAISED):
             return
         self._clock = time.perf_counter() - self.path.seconds
         self.path.status, self.path.message = Status.TRACING, ""
         try:
             yield from self._run()
-        except KeyboardInterrupt:
-            self._end(INTERRUPTED)
-        finally:
-            # A consumer that stops iterating, or an exception of the plug-in's own, leaves a consistent path behind.
+        except KeyboardInterrupt as interrupt:
             if self.path.status is Status.TRACING:
                 self._end(INTERRUPTED)
+            raise Interrupted(self.path) from interrupt
+        except BaseException as error:
+            # A consumer that stops iterating, or an exception of the plug-in's own, leaves a consistent path behind.
+            if self.path.status is Status.TRACING:
+                self._end(abandoned(self._reason) if isinstance(error, GeneratorExit) else raised(error))
+            raise
+
+    def run(self) -> Path:
+        """Trace to the end of the path.
+
+        Raises
+        ------
+        Interrupted
+            After Ctrl-C: a KeyboardInterrupt with the path so far.
+        """
+        # In C, so that Ctrl-C is met within the tracer, which knows what to do.
+        deque(self, maxlen=0)
+        return self.path
+
+    def give_up(self, reason: str) -> None:
+        """Say why the loop over the steps will be left now; the path's message, also in archives, has the reason.
+
+        Parameters
+        ----------
+        reason : str
+            A sentence without its full stop.
+        """
+        self._reason = reason
 
     def _run(self) -> Iterator[Step]:
         try:
@@ -187,26 +237,40 @@ class Tracer:
             point = following
 
     def _spent(self) -> str:
-        return self.settings.budget.spent(self.counts, self.seconds)
+        arclength = 0.0 if self.state is None else self.state.here.arclength
+        return self.settings.budget.spent(self.counts, self.seconds, arclength)
+
+    def _beginning(self) -> Array:
+        """Where the path begins, or nearly so."""
+        if self._start is not None:
+            return point_and_direction(self._start)[0]
+        if self.state is not None:
+            return self.state.origin.u
+        return self._guess if self._guess is not None else self._evaluator.start()
 
     # -- beginning and end ------------------------------------------------------------------------------------
 
     def _first(self) -> Linearization:
         settings = self.settings
         u0 = self._evaluator.start()
+        if self._guess is not None:
+            if self._guess.size != u0.size:
+                raise ValueError(f"start: expected {u0.size - 1} unknowns, found {self._guess.size - 1}")
+            u0 = self._guess
         if self._check:
             report = check_jacobian(self._evaluator.homotopy)
             if not report.correct:
                 raise ValueError(f"jacobian: {report}")
         signs: Signs = ()
+        leaving = None if self._start is None else point_and_direction(self._start)
         if self._pieces is not None:
             point, h, signs = begin(
-                self._solver, self._pieces, u0, self._start, settings.metric, settings.direction, settings.target
+                self._solver, self._pieces, u0, leaving, settings.metric, settings.direction, settings.target
             )
-        elif self._start is None:
+        elif leaving is None:
             point, h = first_point(self._solver, u0, settings.metric, settings.direction, settings.target)
         else:
-            point, h = point_from_tangent(self._solver, self._start, u0.size, settings.metric, settings.target)
+            point, h = point_from_tangent(self._solver, leaving, u0.size, settings.metric, settings.target)
         here, bounds = Knot(0.0, point.u, point.tangent), settings.controller.bounds
         state = State(
             history=(here,),
@@ -273,7 +337,7 @@ class Tracer:
         else:
             point, state = found.point, found.state
             self.counts.accepted += 1
-            self._record(found.step, state, found.events)
+            self._record(found.step, state, self._recorder.observing(found.events))
             y = self._finish(point.y, point.lam) if verdict is None and self._finish is not None else None
             if y is not None:
                 end = np.append(y, self.settings.target if self.settings.target is not None else point.lam)

@@ -15,7 +15,7 @@ from continuation.evaluation.evaluator import EvaluationError
 from continuation.kinks.crossing import Crossing
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
-from continuation.rejection import Rejected
+from continuation.rejection import Rejected, Rejection
 from continuation.status import Status
 from continuation.step.start import SingularStartError, StartError
 
@@ -45,8 +45,22 @@ class Verdict:
 
 
 INTERRUPTED = Verdict(Status.INTERRUPTED)
-"""Ctrl-C, an exception of the plug-in's own, or a consumer that stopped iterating."""
+"""Ctrl-C."""
 
+
+def abandoned(reason: str) -> Verdict:
+    """Whoever asks for the steps has asked for no more."""
+    return Verdict(Status.ABANDONED, f"Given up: {reason}." if reason else "")
+
+
+def raised(error: BaseException) -> Verdict:
+    """An exception of the plug-in's own, or of an observer."""
+    return Verdict(Status.RAISED, f"It says: {sentence(error)}")
+
+
+def sentence(error: BaseException) -> str:
+    """An exception in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())
 
 
 def refused_start(error: StartError) -> Verdict:
@@ -89,6 +103,8 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
     if h >= minimum:
         return None
     last = rejected[-1]
+    if last.reason is Rejection.RAISED:
+        return Verdict(Status.RAISED, f"It says: {last.detail}.", rejected=rejected)
     status = Status.LEFT_DOMAIN if last.reason.leaves_domain else Status.STEP_TOO_SMALL
     return Verdict(status, f"Last reason: {last}.", rejected=rejected)
 

@@ -167,7 +167,7 @@ class Subject:
         """The path from the start, or its first steps."""
         with called("trace", "from the start"):
             path = self.traced()
-        bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.INTERRUPTED, Status.PREDICTOR_FAILED)
+        bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.RAISED, Status.PREDICTOR_FAILED)
         if path.status in bad or len(path) < 2:
             fail(f"trace: the path ended after {max(len(path) - 1, 0)} steps, {path.status.name}: {path.message}")
         return path

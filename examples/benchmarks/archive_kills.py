@@ -66,7 +66,7 @@ class Campaign:
             "trace": (None, lambda: trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), **OPTIONS)),
             "resume": (self.half, lambda: resume(file, budget=Budget())),
             "recover": (self.left, lambda: recover(file)),
-            "merge": (self.whole, lambda: merge([file, file], target)),
+            "merge": (self.whole, lambda: merge([file], target)),
             "export": (self.whole, lambda: export(file, target)),
             "sweep": (None, lambda: trace_many(SWEEP, archive=file, **SHORT)),
             "pool": (None, lambda: _pooled(file)),

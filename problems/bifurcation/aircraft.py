@@ -8,6 +8,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array
+from continuation.events.box import Box
 from problems.bibliography import MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT
 from problems.options import finite, finite_or_none, quiet
 
@@ -66,6 +67,7 @@ class Aircraft:
 
     elevator: float = field(default=0.0, validator=finite)
     target: float | None = field(default=None, validator=finite_or_none)
+    box: ClassVar[Box] = {"lam": (-5.0, 5.0)}
     problem_class: ClassVar[str] = "equilibria of vehicles"
     references: ClassVar[tuple[str, ...]] = (MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT)
 

@@ -8,6 +8,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array
+from continuation.events.box import Box
 from continuation.linear import Banded
 from problems.bibliography import BRATU
 from problems.options import finite_or_none, positive_integer, quiet
@@ -27,7 +28,7 @@ class Bratu1D:
     n : int
         Number of interior points, and of unknowns.
     target : float or None
-        Where the path ends. The upper branch has no end: stop there by an event or a budget.
+        Where the path ends. The upper branch has no end: where nothing is said, the path stops at max u = 8.
 
     References
     ----------
@@ -36,6 +37,8 @@ class Bratu1D:
 
     n: int = field(default=100, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
+    box: ClassVar[Box] = {"y": (None, 8.0)}
+    parameter_name: ClassVar[str] = "lambda"
     problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
     references: ClassVar[tuple[str, ...]] = (BRATU,)
 

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from attrs import field, fields, frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.events.box import Box
 from problems.bibliography import BRATU
 from problems.options import finite_or_none, positive_integer, quiet
 
@@ -36,7 +37,7 @@ class Bratu2D:
     m : int
         Interior points a side; m^2 unknowns.
     target : float or None
-        Where the path ends. The upper branch has no end: stop there by an event or a budget.
+        Where the path ends. The upper branch has no end: where nothing is said, the path stops at max u = 8.
 
     References
     ----------
@@ -45,6 +46,8 @@ class Bratu2D:
 
     m: int = field(default=20, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
+    box: ClassVar[Box] = {"y": (None, 8.0)}
+    parameter_name: ClassVar[str] = "lambda"
     problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
     references: ClassVar[tuple[str, ...]] = (BRATU,)
     # The sparsity never changes along the path: it is worked out once, and H_y alters the diagonal's values alone.

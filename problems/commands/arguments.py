@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 
 from continuation.cli import UsageError
 
@@ -27,3 +30,28 @@ def named(arguments: Mapping[str, str]) -> Iterator[None]:
         if parameter not in arguments:
             raise
         raise UsageError(arguments[parameter], complaint) from error
+
+
+_BEGINNINGS = {b"PK": ".npz", b"\x93NUMPY": ".npy", b"\x89HDF": ".h5", b"%%MatrixMarket": ".mtx", b"MATLAB": ".mat"}
+"""By which a format is known; JSON begins with a brace, after blanks perhaps."""
+
+
+@contextmanager
+def file_of(name: str) -> Iterator[str]:
+    """The file of that name; for ``-`` one with what comes on stdin, in a format that its first bytes tell.
+
+    Parameters
+    ----------
+    name : str
+    """
+    if name != "-":
+        yield name
+        return
+    stream = getattr(sys.stdin, "buffer", None)
+    data = sys.stdin.read().encode() if stream is None else stream.read()
+    kinds = (suffix for beginning, suffix in _BEGINNINGS.items() if data.startswith(beginning))
+    suffix = ".json" if data.lstrip()[:1] in (b"{", b"[") else next(kinds, ".txt")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / f"stdin{suffix}"
+        file.write_bytes(data)
+        yield str(file)

@@ -13,7 +13,8 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from continuation.cli.archives import complaints
-from problems.commands.arguments import PROBLEM_FORMATS, named
+from continuation.cli.parser import paint, parsed
+from problems.commands.arguments import PROBLEM_FORMATS, file_of, named
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
@@ -22,7 +23,7 @@ MOST_ROWS = 60
 
 _ARGUMENTS = {
     "path": "FILE", "A": "FILE", "q": "--q", "x0": "--x0", "archive": "--archive", "homotopy": "--homotopy",
-    "seconds": "--budget-seconds",
+    "seconds": "--seconds",
 }  # fmt: skip
 
 
@@ -34,7 +35,8 @@ def register(subparsers: Subparsers) -> None:
         description="Find x >= 0 with w = A x + q >= 0 and x_i w_i = 0; with bounds in the file, x between them. "
         "Or minimise 1/2 x'P x + c'x under the constraints in the file. Exit status: 0 solved, 1 not, 2 bad input.",
     )
-    parser.add_argument("file", metavar="FILE", help=f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group")
+    formats = f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group; - for stdin"
+    parser.add_argument("file", metavar="FILE", help=formats)
     parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
     parser.add_argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto")
     parser.add_argument("--x0", metavar="FILE", help="the start: x0 > 0 with A x0 + q > 0, as in the paper")
@@ -42,8 +44,12 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--path", action="store_true", help="trace a path even where none is needed")
     parser.add_argument("--archive", metavar="FILE", help="write the paths to this HDF5 file, which must not exist")
     parser.add_argument("--plot", metavar="FILE", help="draw x against lambda (.png, .pdf, .svg); implies --path")
+    parser.add_argument("--tolerance", metavar="EPS", type=_tolerance, default=1e-8, help="default: 1e-8")
+    parser.add_argument("--restarts", metavar="N", type=_counted, help="random starts at most; default: 1000 with auto")
+    parser.add_argument("--seed", metavar="N", type=_counted, default=0, help="of the random starts; default: 0")
     parser.add_argument(
-        "--budget-seconds", metavar="S", type=float, help="wall-clock time; default: work that takes about a minute"
+        "--budget-seconds", "--seconds", dest="seconds", metavar="S", type=_positive,
+        help="wall-clock time; default: work that takes about a minute",
     )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
@@ -57,17 +63,20 @@ def run(arguments: argparse.Namespace) -> int:
     from problems.lcp.data.files import read_problem, read_program, read_vector
 
     _check_outputs(arguments)
-    with complaints("--archive", new="--archive"), named(_ARGUMENTS):
-        program = read_program(arguments.file) if arguments.q is None else None
-        problem = read_problem(arguments.file, arguments.q) if program is None else program.problem
+    with complaints("--archive", new="--archive"), named(_ARGUMENTS), file_of(arguments.file) as file:
+        program = read_program(file) if arguments.q is None else None
+        problem = read_problem(file, arguments.q) if program is None else program.problem
         x0 = None if arguments.x0 is None else read_vector("x0", arguments.x0, problem.n)
         if x0 is not None and problem.standard and not arguments.relaxed:
             _check_start(problem, x0)
-        budget = None if arguments.budget_seconds is None else Budget(math.inf, arguments.budget_seconds)
+        budget = None if arguments.seconds is None else Budget(math.inf, arguments.seconds)
         solution = lcp.solve(
             problem if program is None else program,
             homotopy=arguments.homotopy,
             x0=x0,
+            tolerance=arguments.tolerance,
+            restarts=arguments.restarts,
+            seed=arguments.seed,
             path=arguments.path or arguments.plot is not None,
             archive=arguments.archive,
             budget=budget,
@@ -77,6 +86,18 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot is not None:
         _draw(solution, problem.n, arguments.plot)
     return SUCCESS if solution.success else FAILURE
+
+
+def _tolerance(text: str) -> float:
+    return parsed(text, float, lambda value: 0.0 < value < 1.0, "a number between 0 and 1")
+
+
+def _positive(text: str) -> float:
+    return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
+
+
+def _counted(text: str) -> int:
+    return parsed(text, int, lambda value: value >= 0, "an integer, at least 0")
 
 
 def _check_start(problem: MixedLCP, x0: Array) -> None:
@@ -138,7 +159,7 @@ def _as_text(arguments: argparse.Namespace, problem: Any, solution: Any) -> str:
     lines = [
         f"problem    {arguments.file}, n = {problem.n}, {'sparse' if problem.sparse else 'dense'}",
         f"homotopy   {arguments.homotopy}",
-        f"outcome    {solution.outcome.name}",
+        f"outcome    {paint(solution.outcome.name, solution.success)}",
         f"           {solution.message}",
         f"residual   {solution.residual:.2e}, relative {solution.relative_residual:.2e}",
         f"work       {len(solution.paths)} paths, {counts}; {solution.seconds:.2g} s",

@@ -8,7 +8,8 @@ import pytest
 from attrs import evolve
 
 import continuation
-from continuation.plot import plot_bifurcation, plot_components, plot_steps
+from continuation.plot import plot_bifurcation, plot_components, plot_heat, plot_profiles, plot_steps
+from problems.bifurcation import Bratu1D, Pitchfork
 
 mpl.use("Agg")
 from matplotlib.figure import Figure
@@ -179,3 +180,64 @@ def test_bad_options_are_named(path, axes, options, message):
 def test_an_empty_path_is_refused(plot, axes):
     with pytest.raises(ValueError, match="path: expected at least one point, found none"):
         plot(continuation.Path(), axes)
+
+
+@pytest.fixture(scope="module")
+def branches():
+    """The pitchfork's trivial branch, and the branch that crosses it."""
+    pitchfork = Pitchfork()
+    trivial = continuation.trace(pitchfork)
+    start, _ = continuation.switch_branch(pitchfork, trivial.events[0])
+    return trivial, continuation.trace(pitchfork, start=start, target=1.0)
+
+
+def test_several_branches_with_their_stability_and_their_points(branches, axes):
+    def amplitude(y, lam):
+        return y[0]
+
+    plot_bifurcation(branches, axes, value=amplitude, stable=lambda y, lam: lam <= 3.0 * y[0] ** 2, names=["0", "x"])
+    styles = {(line.get_color(), line.get_linestyle()) for line in lines(axes)}
+    assert len({color for color, _ in styles}) == 2
+    assert {style for _, style in styles} == {"-", "--"}
+    assert {style for color, style in styles if color != lines(axes)[0].get_color()} == {"-"}
+    texts = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert texts == ["0", "branch point", "x"]
+    assert axes.get_ylabel() == "amplitude"
+    (mark,) = marks(axes)
+    assert mark.get_marker() == "s"
+
+
+def test_observed_scalars_and_names(axes):
+    path = continuation.trace(Bratu1D(10))
+    plot_bifurcation(path, axes, value="max_u")
+    (line,) = lines(axes)
+    np.testing.assert_allclose(line.get_ydata()[-1], 8.0)
+    assert axes.get_ylabel() == "max_u"
+    assert axes.get_xlabel() == "lambda"
+    with pytest.raises(ValueError, match="value: expected one of max_u, found 'nothing'"):
+        plot_bifurcation(path, axes, value="nothing")
+    with pytest.raises(ValueError, match="stable: expected one of max_u"):
+        plot_bifurcation(path, axes, stable="nothing")
+
+
+def test_an_axis_runs_as_the_path_runs(axes):
+    falling = continuation.trace(continuation.from_functions(lambda y, lam: y - lam, start=([1.0], 1.0)))
+    falling.plot(axes)
+    assert axes.xaxis_inverted()
+
+
+def test_profiles_and_heat(axes):
+    path, x = continuation.trace(Bratu1D(9)), np.linspace(0.1, 0.9, 9)
+    plot_profiles(path, axes, profiles=40, x=x)
+    assert len(lines(axes)) == 6
+    other = Figure().subplots()
+    plot_heat(path, other, x)
+    assert other.get_ylabel() == "$x$"
+    for draw in (plot_profiles, plot_heat):
+        with pytest.raises(ValueError, match="x: expected 9 places"):
+            draw(path, axes, x=x[1:])
+
+
+def test_a_path_draws_itself(branches, axes):
+    branches[1].plot(axes, value=0)
+    assert axes.get_ylabel() == "$y_{0}$"

@@ -22,7 +22,7 @@ def test_a_path_says_whether_it_arrived():
 
 def test_numbers_are_those_of_the_archives():
     assert [int(status) for status in Status] == list(range(15))
-    assert [int(kind) for kind in Kind] == list(range(7))
+    assert [int(kind) for kind in Kind] == list(range(8))
     assert [kind.flag for kind in Kind] == [
         "regular", "start", "target", "turning_point", "branch_point", "event", "kink",
     ]  # fmt: skip

@@ -30,7 +30,7 @@ def read_model(file: str) -> Program:
     try:
         import highspy
     except ImportError:
-        raise ImportError("expected highspy for this format, found none; pip install continuation[mps]") from None
+        raise ImportError("expected highspy for this format, found none; pip install pseudoarclength[mps]") from None
     solver = highspy.Highs()
     solver.setOptionValue("output_flag", False)
     if solver.readModel(file) == highspy.HighsStatus.kError:

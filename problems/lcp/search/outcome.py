@@ -11,6 +11,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.counts import Counts
+from continuation.html import MOST_ROWS, table
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from problems.lcp.data.problem import MixedLCP
@@ -136,6 +137,17 @@ class Solution:
         found = "no point" if self.certificate is None else f"residual {self.residual:.1e}"
         return f"<Solution {self.outcome.name}: n = {self.problem.n}, {found}, {len(self.paths)} paths>"
 
+    def _repr_html_(self) -> str:
+        rows = [("message", self.message), ("residual", f"{self.residual:.2e}"), ("paths", len(self.paths))]
+        page = table(f"Solution: {self.outcome.name}, n = {self.problem.n}", rows)
+        for name, values in self.named.items():
+            shown = ", ".join(f"{value:.6g}" for value in values[:MOST_ROWS])
+            page += table("", [(name, shown + (", ..." if len(values) > MOST_ROWS else ""))])
+        return page
+
+    def __bool__(self) -> bool:
+        return self.success
+
     @property
     def success(self) -> bool:
         """Whether the outcome is SOLVED or SOLVED_TO_PRECISION."""
@@ -206,6 +218,6 @@ class Solution:
             return self.paths[self.best]
         x = self.x if self.x is not None else np.zeros(self.problem.n)
         u = np.append(x, 0.0)
-        status = Status.REACHED_TARGET if self.solved else Status.INTERRUPTED
+        status = Status.REACHED_TARGET if self.solved else Status.ABANDONED
         alone = Step(0, u, np.zeros_like(u), 0.0, kind=Kind.TARGET)
         return Path([alone], status=status, message="No path was traced.")

@@ -41,12 +41,10 @@ def follow(
     before = 0 if finish is None else finish.counts.factorizations
     along = None if finish is None else AlongPath.of(finish, homotopy)
     tracer = Tracer(homotopy, finish=along, budget=budget, observers=observers, **options)
-    reason = ""
     for step in tracer:
         if patience is not None and (reason := patience(step)):
+            tracer.give_up(reason)
             break
-    if reason:
-        tracer.path.message = f"Given up: {reason}."
     if finish is not None:
         tracer.path.counts.factorizations += finish.counts.factorizations - before
     return tracer.path

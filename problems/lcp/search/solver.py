@@ -173,7 +173,7 @@ def solve(
         Finish(Faces(structure), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
-        None if archive is None else PathLog(as_file("archive", archive)),
+        None if archive is None else PathLog(as_file("archive", archive), title=_title(problem)),
         progress,
         dict(options),
     )
@@ -191,6 +191,12 @@ def solve(
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)
         return found
+
+
+def _title(problem: MixedLCP) -> str:
+    """Of an archive: it holds paths of a problem, whatever homotopies they belong to."""
+    bounds = "" if problem.standard else " with bounds"
+    return f"Paths of a linear complementarity problem{bounds}, n = {problem.n}"
 
 
 def _unfixed(problem: MixedLCP) -> MixedLCP:
@@ -278,7 +284,7 @@ def _archive_without_path(search: Search, found: Solution) -> None:
     """
     problem = found.problem
     homotopy = KKTHomotopy(problem) if isinstance(problem, LCP) else WangHomotopy(problem)
-    path = Path(status=Status.INTERRUPTED, message=f"No path was traced. {found.message}")
+    path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate
     if end is not None:
         x, w = end.x, np.maximum(end.w, 0.0)

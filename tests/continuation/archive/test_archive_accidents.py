@@ -57,7 +57,7 @@ try:
         log = PathLog(file, limits=Limits(rows=20))
         trace(ExponentialCosine(3), archive=log, controller=Fixed(bounds=Bounds(initial=0.002)))
     elif work == "merge":
-        merge([file] * 3, file + ".new.h5")
+        merge([file], file + ".new.h5")
     elif work == "export":
         export(file, file + ".new.nc", compression=0)
     elif work == "text":
@@ -243,7 +243,7 @@ def test_what_a_kill_left_beside_is_removed_by_the_next(tmp_path):
     assert fresh.exists(), "it may be another writer's, of this very second"
 
 
-@pytest.mark.parametrize("work", [lambda f, t: merge([f, f], t), export, lambda f, t: recover(f)])
+@pytest.mark.parametrize("work", [lambda f, t: merge([f], t), export, lambda f, t: recover(f)])
 def test_a_kill_at_the_moment_of_naming(tmp_path, work):
     file, target = killed(tmp_path / "run.h5"), tmp_path / "new.h5"
     for name in ("link", "replace"):

@@ -208,7 +208,9 @@ def test_keyboard_interrupt_within_a_commit_repeats_it(tmp_path, monkeypatch):
             raise KeyboardInterrupt
 
     monkeypatch.setattr(Store, "_flush", interrupted)
-    found = trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=4)))
+    with pytest.raises(KeyboardInterrupt) as interrupt:
+        trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=4)))
+    found = interrupt.value.path
     assert found.status is Status.INTERRUPTED
     with open_archive(tmp_path / "run.h5") as archive:
         assert np.array_equal(archive.path(0).u, found.u)

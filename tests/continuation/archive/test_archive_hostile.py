@@ -108,7 +108,7 @@ OPERATIONS = {
     "problem": lambda file: open_archive(file).problem(),
     "describe": lambda file: describe(open_archive(file)),
     "export": lambda file: export(file, file.with_suffix(".csv")),
-    "merge": lambda file: merge([file, file], file.with_suffix(".nc")),
+    "merge": lambda file: merge([file], file.with_suffix(".nc")),
     "recover": recover,
     "resume": lambda file: resume(file, archive=file.with_suffix(".more.h5"), budget=Budget(steps=14)),
 }

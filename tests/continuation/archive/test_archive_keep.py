@@ -7,7 +7,7 @@ import weakref
 import numpy as np
 import pytest
 
-from continuation import Budget, Tracer, trace
+from continuation import Budget, Kind, Tracer, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, resume
 from continuation.archive.stored import StoredSteps
 from continuation.controllers import Bounds, Fixed
@@ -106,3 +106,37 @@ def test_memory_does_not_grow_with_the_path(tmp_path):
         tracemalloc.stop()
     assert len(used) == 2
     assert used[1] - used[0] < 200 * 100
+
+
+def test_every_fifth_step_is_saved_with_the_ends_and_the_events(tmp_path):
+    path = trace(HOMOTOPY, archive=tmp_path / "run.h5", save_every=5)
+    with open_archive(tmp_path / "run.h5") as archive:
+        saved = archive.path(0)
+    expected = [step.u for step in path.steps if step.index % 5 == 0 or step.kind != Kind.REGULAR]
+    np.testing.assert_array_equal(saved.u, expected)
+    assert [event.lam for event in saved.events] == [event.lam for event in path.events]
+    np.testing.assert_array_equal(saved.u[-1], path.u[-1])
+
+
+def test_what_was_thinned_out_is_resumed_as_if_it_had_never_stopped(tmp_path):
+    whole = trace(HOMOTOPY)
+    trace(HOMOTOPY, archive=tmp_path / "run.h5", save_every=4, budget=Budget(steps=17))
+    with open_archive(tmp_path / "run.h5") as archive:
+        assert len(archive.path(0)) == 6
+    found = resume(tmp_path / "run.h5", budget=Budget())
+    assert found.status is whole.status
+    np.testing.assert_array_equal(found.u[-1], whole.u[-1])
+    # From the last saved step but one on, which is where a resumed trace begins.
+    np.testing.assert_array_equal(found.u[:3], whole.u[:12:4])
+    np.testing.assert_array_equal(found.u[3:], whole.u[12:])
+    assert [event.lam for event in found.events] == [event.lam for event in whole.events]
+
+
+@pytest.mark.parametrize("wrong", [0, -1, 2.5, "5"])
+def test_what_save_every_can_be(tmp_path, wrong):
+    with pytest.raises(ValueError, match="save_every: expected"):
+        trace(HOMOTOPY, archive=tmp_path / "run.h5", save_every=wrong)
+    with pytest.raises(ValueError, match="save_every: expected"):
+        trace(HOMOTOPY, save_every=2)
+    with pytest.raises(ValueError, match="save_every: expected"):
+        PathLog(tmp_path / "run.h5", save_every=2, keep="ends")

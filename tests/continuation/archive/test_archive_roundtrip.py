@@ -198,7 +198,7 @@ def test_a_growing_file_is_read_up_to_what_is_committed(tmp_path):
         assert np.array_equal(path.u, [step.u for step in written[: len(path)]])
     steps.close()
     with open_archive(tmp_path / "run.h5") as archive:
-        assert archive.path(0).status is Status.INTERRUPTED
+        assert archive.path(0).status is Status.ABANDONED
         assert len(archive.path(0)) == 10
 
 
@@ -257,4 +257,4 @@ def test_paths_of_another_size_are_refused(tmp_path):
         with pytest.raises(ValueError, match=r"homotopy: expected 1 unknowns.*found 2"):
             trace(FreudensteinRoth(), archive=log)
     with open_archive(tmp_path / "run.h5") as archive:
-        assert [path.status for path in archive] == [Status.CLOSED, Status.INTERRUPTED]
+        assert [path.status for path in archive] == [Status.CLOSED, Status.RAISED]

@@ -86,7 +86,7 @@ def test_failures_are_kept(tmp_path, expected, archived):
     paths = trace_many(homotopies, archive=tmp_path / "run.h5" if archived else None)
     check([paths[i] for i in (1, 2, 3, 5, 6)], expected[:5])
     for i, text in ((0, "RuntimeError: no start"), (4, "RuntimeError: gone"), (7, "RuntimeError: no start")):
-        assert (paths[i].status, paths[i].message) == (Status.INTERRUPTED, text)
+        assert (paths[i].status, paths[i].message) == (Status.RAISED, text)
     assert len(paths[4]) > 1
     if archived:
         page = describe(paths)
@@ -112,7 +112,7 @@ def test_dask_gives_the_same_rows_as_processes_and_as_one_after_another(tmp_path
     ):
         paths = trace_many(homotopies, executor, tmp_path / "dask.h5" if archived else None)
     check(paths[: len(HOMOTOPIES)], expected)
-    assert (paths[-1].status, paths[-1].message) == (Status.INTERRUPTED, "RuntimeError: no start")
+    assert (paths[-1].status, paths[-1].message) == (Status.RAISED, "RuntimeError: no start")
     if archived:
         assert [entry.name for entry in tmp_path.iterdir()] == ["dask.h5"]
         with (
@@ -179,7 +179,8 @@ def test_ctrl_c_within_a_path(tmp_path):
 
 
 def test_misspelt_options_are_refused_at_the_door(tmp_path):
-    with pytest.raises(TypeError, match=r"predicter: expected one of the options budget, .*; did you mean predictor\?"):
+    said = r"predicter: expected one of the options box, budget, .*; did you mean predictor\?"
+    with pytest.raises(TypeError, match=said):
         trace_many(HOMOTOPIES, archive=tmp_path / "run.h5", predicter=None)
     assert not list(tmp_path.iterdir())
 

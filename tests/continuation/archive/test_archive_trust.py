@@ -81,7 +81,7 @@ OPERATIONS = {
     "describe": lambda file: describe(_opened(file)),
     "checkpoint": lambda file: _opened(file).checkpoint(),
     "export": lambda file: export(file, file.with_suffix(".csv")),
-    "merge": lambda file: merge([file, file], file.with_suffix(".nc")),
+    "merge": lambda file: merge([file], file.with_suffix(".nc")),
     "recover": recover,
     "resume": lambda file: resume(file, budget=Budget()),
 }

@@ -73,7 +73,7 @@ def test_it_costs_its_own_path(tmp_path, expected, bad, archived):
         timeout = 6.0 if bad is Hangs else None
         paths = trace_many(tasks, executor, file if archived else None, timeout=timeout)
     assert len(paths) == 6
-    assert paths[2].status is Status.INTERRUPTED
+    assert paths[2].status is Status.RAISED
     assert paths[2].message.startswith(MESSAGES[bad])
     for found, path in zip([*paths[:2], *paths[3:]], expected):
         assert np.array_equal(found.u, path.u)

@@ -255,10 +255,15 @@ def test_export_and_merge(run, archive, tmp_path):
     status, out, _ = run("export", archive, tmp_path / "run.csv")
     assert status == SUCCESS
     assert out.splitlines() == [str(tmp_path / "run.csv"), str(tmp_path / "run.paths.csv")]
-    status, _, _ = run("merge", tmp_path / "both.h5", archive, archive)
+    other = tmp_path / "other.h5"
+    assert run("trace", "circle", "--archive", other)[0] == SUCCESS
+    status, _, _ = run("merge", tmp_path / "both.h5", archive, other)
     assert status == SUCCESS
     with open_archive(tmp_path / "both.h5") as both:
         assert len(both) == 2
+    status, _, err = run("merge", tmp_path / "again.h5", tmp_path / "both.h5", other)
+    assert status == BAD_INPUT
+    assert err.endswith(f"its path 0 is path 1 of {tmp_path / 'both.h5'} as well; expected each path once\n")
 
 
 def test_bad_archives_are_one_line_that_names_the_argument(run, archive, tmp_path):

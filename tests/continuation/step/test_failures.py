@@ -152,7 +152,8 @@ def test_an_exception_of_the_plug_in_is_its_own_and_the_path_is_kept():
     with pytest.raises(KeyError, match="a table ends here"):
         for _ in tracer:
             pass
-    assert tracer.path.status is Status.INTERRUPTED
+    assert tracer.path.status is Status.RAISED
+    assert tracer.path.message.endswith("It says: KeyError: 'a table ends here'")
     assert len(tracer.path) > 1
 
 
@@ -217,9 +218,10 @@ class Interrupted(Cusp):
 def test_ctrl_c_loses_nothing(k):
     whole = trace(Cusp())
     tracer = Tracer(Interrupted(k))
-    for _ in tracer:
-        pass
+    with pytest.raises(KeyboardInterrupt) as interrupt:
+        tracer.run()
     path = tracer.path
+    assert path is interrupt.value.path
     assert path.status is Status.INTERRUPTED
     np.testing.assert_array_equal(path.u, whole.u[: len(path)] if len(path) else path.u)
     if tracer.state is not None:

@@ -29,13 +29,16 @@ TAKERS = {
 
 
 def test_names_and_defaults_agree():
-    assert (*PART_OPTIONS, "tolerance", "budget", "target", "direction", "start", "finish") == OPTIONS
+    course = ("tolerance", "budget", "target", "direction", "start", "finish", "max_step", "box")
+    assert (*PART_OPTIONS, *course) == OPTIONS
     assert set(DEFAULTS) == set(OPTIONS)
     assert checked({}) == DEFAULTS
 
 
 def test_settings_are_options_completed_and_what_an_archive_keeps():
-    assert set(attrs.fields_dict(Settings)) == set(OPTIONS) - {"preset", "start", "finish", "check_jacobian"}
+    # A ceiling of the step is the controller's, and the faces of a box are events.
+    others = {"preset", "start", "finish", "check_jacobian", "max_step", "box"}
+    assert set(attrs.fields_dict(Settings)) == set(OPTIONS) - others
     assert tuple(attrs.fields_dict(Settings)) == checkpoint.OPTIONS
 
 

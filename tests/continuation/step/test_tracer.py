@@ -113,7 +113,7 @@ def test_an_iterator_left_early_leaves_a_consistent_path():
             break
     del step
     assert len(tracer.path) == 4
-    assert tracer.path.status is Status.INTERRUPTED
+    assert tracer.path.status is Status.ABANDONED
 
 
 def test_a_loop_that_was_left_goes_on_and_hands_out_every_step_once():

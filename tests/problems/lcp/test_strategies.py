@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from fractions import Fraction
+from random import Random
 
 import numpy as np
 import pytest
@@ -171,3 +172,62 @@ def test_the_hook_imports_nothing():
     )
     environment = {"HYPOTHESIS_NO_PLUGINS": "1", "PYTHONPATH": ":".join(sys.path)}
     subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+
+
+@pytest.mark.parametrize("cls", ["P", "P0", "nondegenerate", "row_sufficient", "any"])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_failure_of_two_rows_is_found_with_two(cls, seed):
+    def coupled(A):
+        return any(A[i, j] * A[j, i] != 0.0 for i in range(len(A)) for j in range(i))
+
+    found = find(mine.matrices(cls), coupled, settings=HUNT, random=Random(seed))
+    assert found.shape == (2, 2)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_so_is_that_of_a_problem(seed):
+    def coupled(case):
+        A = case[0].A
+        return any(A[i, j] * A[j, i] != 0.0 for i in range(len(A)) for j in range(i))
+
+    found = find(mine.planted_lcps("strict", "P"), coupled, settings=HUNT, random=Random(seed))
+    assert found[0].n == 2
+
+
+@pytest.mark.parametrize("cls", mine.CLASSES)
+@given(data=st.data())
+@settings(max_examples=4, database=None)
+def test_thirty_rows_pass_the_health_checks(cls, data):
+    problem = data.draw(mine.lcps(cls, 30))
+    assert problem.n == 30
+    minors = {"P": "P", "P0": "P0", "nondegenerate": "nondegenerate"}
+    if cls in minors:
+        # Of a leading part all minors can be looked at.
+        membership = TESTS[cls](problem.A[:6, :6])
+        assert membership.holds, str(membership)
+
+
+@given(data=st.data())
+@settings(max_examples=20, database=None)
+def test_entries_of_ones_own(data):
+    A = data.draw(mine.matrices("any", 3, entries=st.floats(-1.0, 1.0)))
+    assert np.abs(A).max() <= 1.0
+    Z = data.draw(mine.matrices("Z", 4, entries=st.floats(-1.0, 1.0)))
+    assert classes.is_z(Z).holds
+
+
+def test_entries_of_a_class_built_from_integers_are_refused():
+    with pytest.raises(ValueError, match="entries: expected none for the class P"):
+        mine.matrices("P", 3, entries=st.floats(-1.0, 1.0))
+
+
+@pytest.mark.parametrize("cls", mine.LARGE)
+@given(data=st.data())
+@settings(max_examples=3, database=None)
+def test_large_problems_have_the_solution_that_they_come_with(cls, data):
+    problem, x = data.draw(mine.large_lcps(cls, 400))
+    assert problem.n == 400
+    w = problem.A @ x + problem.q
+    assert np.abs(np.minimum(x, w)).max() < 1e-9
+    with pytest.raises(ValueError, match="cls: expected one of P, PSD, K, any"):
+        mine.large_lcps("N")

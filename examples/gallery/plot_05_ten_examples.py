@@ -18,8 +18,8 @@ for example, path in zip(EXAMPLES, paths):
     print(f"{example.number:2} {path.status.name}  {len(path):3} points  x = {', '.join(f'{value:g}' for value in x)}")
 
 # %%
-# One panel an example, named after the class of matrices that the paper gives for it. Its own class is another matter:
-# "The paper, measured" has the details.
+# One panel an example, named after the class of matrices that the paper gives for it. The matrix's true class may
+# differ: "The paper, measured" has the details.
 
 figure, panels = plt.subplots(5, 2, figsize=(7, 12), layout="constrained")
 for example, path, axes in zip(EXAMPLES, paths, panels.ravel()):

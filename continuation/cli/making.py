@@ -1,0 +1,122 @@
+"""A homotopy out of its name and options, as the shell is given them; what it raises becomes one line."""
+
+from __future__ import annotations
+
+import ast
+import os
+import sys
+import traceback
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from continuation import plugins
+from continuation.cli.parser import PlugInError, UsageError
+
+DOOR = (
+    "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
+    "parameter_name", "names", "units",
+)  # fmt: skip
+"""What a complaint about a homotopy begins with."""
+
+
+def importable(name: str) -> None:
+    """Let ``module:object`` be found in the working directory, which a program started by its script does not see.
+
+    Parameters
+    ----------
+    name : str
+    """
+    if ":" in name and os.getcwd() not in sys.path:
+        sys.path.insert(0, os.getcwd())
+
+
+def homotopy_of(
+    name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None
+) -> tuple[Any, Mapping[str, Any]]:
+    """The homotopy that NAME KEY=VALUE ... stand for, and the options read.
+
+    Parameters
+    ----------
+    name : str
+        As `continuation.plugins.find` takes it.
+    texts : sequence of str
+        ``KEY=VALUE``.
+    known : mapping, optional
+        Options that hold where no text says otherwise.
+
+    Raises
+    ------
+    UsageError
+        Naming the homotopy or the option.
+    """
+    importable(name)
+    with unknown(name):
+        factory = plugins.find(name)
+    written = {option.name: option.annotation for option in plugins.options(factory)}
+    values = {**(known or {}), **_values(texts, written)}
+    try:
+        with refused(name):
+            return plugins.make(name, values), values
+    except UsageError as complained:
+        error = complained.__cause__
+        if not isinstance(error, (TypeError, ValueError)):
+            raise
+        key, _, complaint = str(error).partition(": ")
+        # Any other error of the plug-in concerns the homotopy as a whole.
+        raise UsageError(*((key, complaint) if key in {*values, *written} else (name, error))) from error
+
+
+def _values(texts: Sequence[str], annotations: Mapping[str, str]) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not key.isidentifier():
+            raise UsageError("KEY=VALUE", f"expected an option like n=10, found {text!r}")
+        if key in values:
+            raise UsageError(key, "expected one value, found two")
+        values[key] = value if annotations.get(key, "").startswith("str") else _literal(value)
+    return values
+
+
+def _literal(text: str) -> Any:
+    """A number, None, True, a list ...; any other text is itself."""
+    try:
+        return ast.literal_eval({"none": "None", "true": "True", "false": "False"}.get(text, text))
+    except (ValueError, SyntaxError):
+        return text
+
+
+@contextmanager
+def unknown(name: str) -> Iterator[None]:
+    """Report a name that no homotopy has.
+
+    Parameters
+    ----------
+    name : str
+    """
+    try:
+        yield
+    except plugins.PluginError as error:
+        raise UsageError(name, str(error).removeprefix(f"{name}: ")) from error
+
+
+@contextmanager
+def refused(name: str) -> Iterator[None]:
+    """Report as a usage error what a trace refuses, and what the plug-in raises, with its place in the source.
+
+    Parameters
+    ----------
+    name : str
+        Of the homotopy.
+    """
+    try:
+        yield
+    except (UsageError, OSError):
+        raise
+    except Exception as error:
+        if isinstance(error, (TypeError, ValueError)) and str(error).partition(":")[0] in DOOR:
+            raise UsageError(name, error) from error
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        where = f"{os.path.basename(place.filename)}, line {place.lineno}"
+        raise PlugInError(name, f"{type(error).__name__}: {error} ({where})") from error

@@ -1,0 +1,189 @@
+"""Bifurcation diagrams: one number of a path, or of several, against the parameter, with what lies on it marked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.drawing import (
+    Axes,
+    Drawing,
+    across,
+    axes_or_new,
+    check_path,
+    chosen_components,
+    height,
+    label_axis,
+    line_style,
+    mark_events,
+    tidy,
+)
+from continuation.path import Path
+
+Mask: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
+
+Value: TypeAlias = int | str | Callable[[Array, float], float] | None
+"""A component, the name of an unknown or of an observed scalar, a function of (y, lam), or the maximum norm."""
+
+Stable: TypeAlias = str | Callable[[Array, float], bool] | None
+
+
+def plot_bifurcation(
+    path: Path | Sequence[Path],
+    axes: Axes | None = None,
+    component: int | None = None,
+    *,
+    value: Value = None,
+    against: str = "lam",
+    stable: Stable = None,
+    names: Sequence[str] | None = None,
+    legend: bool = True,
+) -> Axes:
+    """Draw one number of y against the parameter, turning points, branch points and other events marked and named.
+
+    Parameters
+    ----------
+    path : Path or sequence of Path
+        Several branches are drawn in several colours.
+    axes : matplotlib Axes, optional
+    component : int, optional
+        Of y; the same as `value`.
+    value : int, str or callable, optional
+        A component, the name of an unknown or of a scalar that the homotopy observes, or a function of (y, lam); by
+        default the maximum norm of y.
+    against : {"lam", "arclength"}
+    stable : str or callable, optional
+        Which part is stable, drawn solid, the rest dashed: the name of an observed scalar that is positive there, or a
+        function of (y, lam) that is true there.
+    names : sequence of str, optional
+        One a path, for the legend.
+    legend : bool
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib.
+    ValueError
+        If a path is empty, a component does not exist, or nothing is called as `value` or `stable` says.
+    """
+    paths = [path] if isinstance(path, Path) else list(path)
+    if not paths:
+        raise ValueError("path: expected at least one, found none")
+    for one in paths:
+        check_path(one)
+    wanted = value if component is None else component
+    axes = axes_or_new(axes)
+    for k, one in enumerate(paths):
+        drawing = Drawing.of(one)
+        horizontal, heights = across(against, drawing), values_along(one, drawing, wanted)
+        label = names[k] if names is not None else None
+        # Dashes mean one thing in a picture: with stability they are not for telling paths apart.
+        looks = line_style(k) if stable is None else {**line_style(k), "linestyle": "-"}
+        _draw(axes, horizontal, heights, _solid(one, drawing, stable), looks, label)
+        places = [
+            (event, event.lam if against == "lam" else event.arclength, _at_event(event, one, wanted))
+            for event in one.events
+        ]
+        mark_events(axes, places)
+    label_axis(axes, against, paths)
+    axes.set_ylabel(_named(paths[0], wanted))
+    if legend and axes.get_legend_handles_labels()[1]:
+        axes.legend(frameon=False, fontsize="small")
+    return tidy(axes)
+
+
+def values_along(path: Path, drawing: Drawing, value: Value) -> Array:
+    """A number of each point that is drawn.
+
+    Parameters
+    ----------
+    path : Path
+    drawing : Drawing
+    value : int, str, callable or None
+    """
+    if value is None:
+        return height(drawing.u[:, :-1])
+    if callable(value):
+        return np.array([float(value(u[:-1], float(u[-1]))) for u in drawing.u])
+    if isinstance(value, str):
+        if value in path.steps[0].observed:
+            return _observed(path, drawing, value)
+        value = _component(path, value)
+    found: Array = drawing.u[:, chosen_components([value], drawing.u[:, :-1])[0]]
+    return found
+
+
+def _component(path: Path, name: str) -> int:
+    try:
+        i = path.labels.index(name)
+    except ValueError:
+        i = -1
+    if i < 0:
+        known = ", ".join((*path.labels.names, *path.steps[0].observed)) or "no names"
+        raise ValueError(f"value: expected one of {known}, found {name!r}")
+    return i
+
+
+def _observed(path: Path, drawing: Drawing, name: str) -> Array:
+    """An observed scalar between the points: monotone cubics, which have no extremum that the points have not."""
+    from scipy.interpolate import PchipInterpolator
+
+    known = [*((step.arclength, step.observed[name]) for step in path.steps)]
+    known += [(event.arclength, event.observed[name]) for event in path.events if name in event.observed]
+    s, values = np.array(sorted(known)).T
+    s, first = np.unique(s, return_index=True)
+    if s.size < 2:
+        return np.full(drawing.s.shape, values[0])
+    found: Array = PchipInterpolator(s, values[first])(drawing.s)
+    return found
+
+
+def _at_event(event: Any, path: Path, value: Value) -> float:
+    if value is None:
+        return float(height(event.y))
+    if callable(value):
+        return float(value(event.y, event.lam))
+    if isinstance(value, str):
+        if value in path.steps[0].observed:
+            return float(event.observed.get(value, np.nan))
+        value = _component(path, value)
+    return float(event.y[value])
+
+
+def _solid(path: Path, drawing: Drawing, stable: Stable) -> Mask:
+    if stable is None:
+        return np.ones(len(drawing.s), dtype=bool)
+    if callable(stable):
+        return np.array([bool(stable(u[:-1], float(u[-1]))) for u in drawing.u])
+    if stable not in path.steps[0].observed:
+        raise ValueError(f"stable: expected one of {', '.join(path.steps[0].observed) or 'nothing'}, found {stable!r}")
+    return np.asarray(_observed(path, drawing, stable) > 0.0)
+
+
+def _draw(axes: Axes, x: Array, y: Array, solid: Mask, looks: dict[str, Any], label: str | None) -> None:
+    """Pieces of one stability each; the piece after a change begins where the one before ends."""
+    edges = [0, *(np.flatnonzero(np.diff(solid)) + 1), len(x)]
+    for start, stop in pairwise(edges):
+        style = looks if solid[start] else {**looks, "linestyle": "--"}
+        part = slice(max(start - 1, 0), stop)
+        marker = "." if len(x) == 1 else ""
+        axes.plot(x[part], y[part], label=label if start == 0 and label else "_", marker=marker, **style)
+
+
+def _named(path: Path, value: Value) -> str:
+    if value is None:
+        return r"$\max_i |y_i|$"
+    if callable(value):
+        return str(getattr(value, "__name__", "")).replace("<lambda>", "")
+    if isinstance(value, str):
+        return path.labels.with_unit(value)
+    name = path.labels.unknown(value)
+    return path.labels.with_unit(name) if name else f"$y_{{{value}}}$"

@@ -1,0 +1,273 @@
+"""What every picture of a path is made of: the curve, its marks, its axes. matplotlib is imported when one is drawn.
+
+Colours are Okabe and Ito's, which colour-blind readers tell apart; line styles repeat the distinction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.path import LocatedEvent, Path, Step
+from continuation.status import Kind
+
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+STYLES = ("-", "--", "-.", ":")
+TURN = {"marker": "o", "markersize": 7, "markerfacecolor": "white", "markeredgecolor": "black", "linestyle": "none"}
+"""How a turning point is marked, above every line."""
+
+KINK = {**TURN, "marker": "D", "markersize": 5.5}
+"""How a kink is marked."""
+
+MARKS = {
+    Kind.TURNING_POINT: {},
+    Kind.BRANCH_POINT: {"marker": "s", "markerfacecolor": "black", "markersize": 6},
+    Kind.SINGULAR_POINT: {"marker": "s", "markersize": 6},
+    Kind.KINK: {"marker": "D", "markersize": 5.5},
+}
+"""Kinds that have a sign of their own: a circle, a square, an open square, an open diamond; ..."""
+
+OTHER = {"marker": "D", "markersize": 5, "markerfacecolor": "0.6"}
+"""... any other event, as a value that was asked for, has a grey diamond, and its own name."""
+
+SMOOTHNESS = 12
+"""Points of the curve for every step, ..."""
+
+SAMPLES = 600
+"""... but no more than this in all: a path of many steps is smooth without."""
+
+MOST_COMPONENTS = 12
+"""More curves than this cannot be told apart in one picture."""
+
+Axes = Any
+
+
+def marked(path: Path) -> list[tuple[LocatedEvent, dict[str, Any]]]:
+    """The turning points and kinks, with their marks."""
+    return [*((event, TURN) for event in path.turning_points), *((event, KINK) for event in path.kinks)]
+
+
+@frozen(eq=False)
+class Drawing:
+    """A curve as lines to draw: dense output where there is some, else cubics through the stored points."""
+
+    s: Array
+    u: Array
+
+    @classmethod
+    def of(cls, path: Path) -> Drawing:
+        """Sample the curve, between its points too."""
+        if len(path) < 2:
+            return cls(path.arclength, path.u)
+        if all(step.segment is not None for step in path.steps[1:]):
+            return cls._along(path.steps)
+        return cls._through(*_with_turns(path.arclength, path.u, path.turning_points))
+
+    @classmethod
+    def _along(cls, steps: Sequence[Step]) -> Drawing:
+        """By the segments' own parameter; arclength within a segment by chords, which no picture shows to be wrong.
+
+        The path at given arclengths (`Path.__call__`) integrates its speed for each: 0.5 s of the 4 s of the demo.
+        """
+        inner = np.linspace(0.0, 1.0, _count(len(steps)), endpoint=False)[1:]
+        s, u = [], []
+        for before, after in pairwise(steps):
+            assert after.segment is not None
+            points = np.array([before.u, *map(after.segment.at, inner), after.u])
+            weights = np.ones(points.shape[1]) if after.weights is None else after.weights
+            chords = np.sqrt(np.diff(points, axis=0) ** 2 @ weights)
+            behind = np.append(0.0, np.cumsum(chords[:-1])) / max(chords.sum(), np.finfo(float).tiny)
+            s.append(before.arclength + (after.arclength - before.arclength) * behind)
+            u.append(points[:-1])
+        return cls(np.append(np.concatenate(s), steps[-1].arclength), np.vstack([*u, steps[-1].u]))
+
+    @classmethod
+    def _through(cls, s: Array, u: Array) -> Drawing:
+        """Through points without tangents, by monotone cubics: they have no extremum that the points have not."""
+        from scipy.interpolate import PchipInterpolator
+
+        fine = _between(s)
+        drawn = np.full((fine.size, u.shape[1]), np.nan)
+        known = np.isfinite(u).all(axis=0)
+        drawn[:, known] = PchipInterpolator(s, u[:, known])(fine)
+        return cls(fine, drawn)
+
+
+def _count(points: int) -> int:
+    """How many points to draw for a step of a path of so many points."""
+    return int(np.clip(SAMPLES // (points - 1), 1, SMOOTHNESS))
+
+
+def _between(knots: Array) -> Array:
+    """The knots, and places between them."""
+    pieces = [np.linspace(a, b, _count(len(knots)), endpoint=False) for a, b in pairwise(knots)]
+    return np.append(np.concatenate(pieces), knots[-1])
+
+
+def _with_turns(s: Array, u: Array, turns: Sequence[LocatedEvent]) -> tuple[Array, Array]:
+    """The points with the located turning points among them; of points in one place, the first."""
+    located = [np.append(turn.y, turn.lam) for turn in turns]
+    every = np.concatenate([s, [turn.arclength for turn in turns]])
+    points = np.vstack([u, *located])
+    order = np.argsort(every, kind="stable")
+    every, points = every[order], points[order]
+    apart = np.append(True, np.diff(every) > 1e-9 * every[-1])
+    return every[apart], points[apart]
+
+
+def require_matplotlib() -> None:
+    """Raise ImportError, with what to install, unless matplotlib can be imported."""
+    try:
+        import matplotlib.pyplot  # noqa: F401
+    except ImportError as error:
+        raise ImportError("pictures need matplotlib: pip install 'pseudoarclength[plot]'") from error
+
+
+AGAINST = ("lam", "arclength")
+"""What a picture may run along."""
+
+
+def check_path(path: Path) -> None:
+    """Raise ValueError for a path without points.
+
+    Parameters
+    ----------
+    path : Path
+    """
+    if len(path) == 0:
+        raise ValueError("path: expected at least one point, found none")
+
+
+def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
+    """The components asked for, which must exist, or twelve at even distances.
+
+    Parameters
+    ----------
+    components : iterable of int or None
+    y : ndarray, shape (m, N)
+    """
+    n = y.shape[1]
+    if components is None:
+        # An archive of paths with different numbers of unknowns fills the shorter ones up with NaN.
+        filled = np.flatnonzero(np.isfinite(y).any(axis=0))
+        if len(filled) > MOST_COMPONENTS:
+            filled = filled[np.linspace(0, len(filled) - 1, MOST_COMPONENTS).round().astype(int)]
+        return [int(i) for i in filled]
+    chosen = list(components)
+    outside = [i for i in chosen if not 0 <= i < n]
+    if outside:
+        raise ValueError(f"components: expected numbers from 0 to {n - 1}, found {outside[0]}")
+    return chosen
+
+
+def height(y: Array) -> Array:
+    """The largest absolute value along the last axis, NaN apart.
+
+    Parameters
+    ----------
+    y : ndarray
+    """
+    largest: Array = np.fmax.reduce(np.abs(y), axis=-1)
+    return largest
+
+
+def axes_or_new(axes: Axes | None) -> Axes:
+    """The axes, or those of a new figure.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes or None
+    """
+    if axes is not None:
+        return axes
+    require_matplotlib()
+    from matplotlib import pyplot
+
+    return pyplot.subplots(layout="constrained")[1]
+
+
+def line_style(k: int) -> dict[str, Any]:
+    """Colour and dashes of the k-th line.
+
+    Parameters
+    ----------
+    k : int
+    """
+    return {"color": COLOURS[k % len(COLOURS)], "linestyle": STYLES[k % len(STYLES)], "linewidth": 1.6}
+
+
+def tidy(axes: Axes) -> Axes:
+    """Take away what no reader needs.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+    """
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.margins(x=0.03)
+    return axes
+
+
+def across(against: str, drawing: Drawing) -> Array:
+    """The horizontal coordinate of a drawing.
+
+    Parameters
+    ----------
+    against : {"lam", "arclength"}
+    drawing : Drawing
+    """
+    if against not in AGAINST:
+        raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
+    values: Array = drawing.u[:, -1] if against == "lam" else drawing.s
+    return values
+
+
+def label_axis(axes: Axes, against: str, paths: Sequence[Path]) -> None:
+    """Name the horizontal axis, and let it run as the paths do: from left to right where the parameter falls.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+    against : {"lam", "arclength"}
+    paths : sequence of Path
+    """
+    if against == "arclength":
+        axes.set_xlabel("arclength $s$")
+        return
+    axes.set_xlabel(paths[0].labels.parameter(r"$\lambda$"))
+    if all(falls(path) for path in paths) and not axes.xaxis_inverted():
+        axes.invert_xaxis()
+
+
+def falls(path: Path) -> bool:
+    """Whether the parameter never grows along the path, as from 1 to 0.
+
+    Parameters
+    ----------
+    path : Path
+    """
+    lam = path.lam
+    return len(lam) > 1 and bool((np.diff(lam) <= 0.0).all()) and bool(lam[-1] < lam[0])
+
+
+def mark_events(axes: Axes, places: Sequence[tuple[LocatedEvent, float, Any]]) -> None:
+    """Mark located events, each kind in its own way, named once in the legend.
+
+    Parameters
+    ----------
+    axes : matplotlib Axes
+    places : sequence of (LocatedEvent, float, float or array)
+        With the coordinates of each.
+    """
+    named = set(axes.get_legend_handles_labels()[1])
+    for event, x, y in places:
+        name = event.kind.flag.replace("_", " ") if event.kind in MARKS else event.name
+        heights = np.atleast_1d(y)
+        looks = MARKS.get(event.kind, OTHER)
+        axes.plot([x] * heights.size, heights, zorder=3, label="_" if name in named else name, **{**TURN, **looks})
+        named.add(name)

@@ -1,0 +1,96 @@
+"""A box of the parameter and the unknowns: a path ends on its face, as at any other terminal event."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from attrs import field, frozen
+
+from continuation.arrays import Array
+from continuation.checks import FINITE, complain, is_number, sign
+from continuation.events.monitors import Event, TargetValue
+from continuation.labels import Labels
+from continuation.status import Kind
+
+Box = Mapping[str | int, tuple[float | None, float | None]]
+"""What to (low, high), one of them perhaps None: ``"lam"``, ``"y"`` (all unknowns), one unknown by number or name."""
+
+
+@frozen
+class Extreme:
+    """Where the largest unknown (side +1) or the smallest (side -1) takes a value, on its way out."""
+
+    value: float = field(validator=FINITE)
+    side: int = field(validator=sign)
+    terminal: int = field(default=1, init=False)
+    kind: Kind = field(default=Kind.EVENT, init=False)
+
+    @property
+    def name(self) -> str:
+        """The condition as text."""
+        return f"{'largest' if self.side > 0 else 'smallest'} unknown = {self.value:g}"
+
+    @property
+    def direction(self) -> int:
+        """Outwards."""
+        return self.side
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """The extreme unknown minus the value."""
+        return float(u[:-1].max() if self.side > 0 else u[:-1].min()) - self.value
+
+
+def faces(box: Any, labels: Labels, start: Array) -> tuple[Event, ...]:
+    """The events of a box, each on one face.
+
+    Parameters
+    ----------
+    box : Box
+    labels : Labels
+        Of the homotopy, for names.
+    start : ndarray, shape (N + 1,)
+        Must lie inside.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no box, or the start lies outside.
+    """
+    if not isinstance(box, Mapping):
+        raise complain(TypeError, "box", 'a mapping like {"lam": (0, 5), 2: (None, 1)}', box)
+    events: list[Event] = []
+    for key, interval in box.items():
+        low, high = _interval(key, interval)
+        own = range(start.size - 1) if key == "y" else [_component(key, labels, start.size)]
+        values = start[own[0]] if key != "y" else start[:-1]
+        for value, side in ((low, -1), (high, 1)):
+            if value is None:
+                continue
+            if ((values - value) * side > 0.0).any():
+                raise ValueError(f"box: expected the start inside, found {key!r} beyond {value:g} there")
+            face = Extreme(value, side) if key == "y" else TargetValue(value, own[0], direction=side)
+            events.append(face)
+    return tuple(events)
+
+
+def _interval(key: Any, interval: Any) -> tuple[float | None, float | None]:
+    pair = isinstance(interval, tuple | list) and len(interval) == 2
+    if not pair or any(not (end is None or is_number(end)) for end in interval):
+        raise complain(TypeError, "box", f"two numbers for {key!r}, low and high, or None for one of them", interval)
+    low, high = (None if end is None or math.isinf(end) else float(end) for end in interval)
+    if low is not None and high is not None and not low < high:
+        raise complain(ValueError, "box", f"low < high for {key!r}", interval)
+    return low, high
+
+
+def _component(key: Any, labels: Labels, size: int) -> int:
+    if isinstance(key, str):
+        try:
+            return labels.index(key)
+        except ValueError as error:
+            raise ValueError(str(error).replace("name:", "box:", 1)) from None
+    if not isinstance(key, int) or isinstance(key, bool) or not -1 <= key < size - 1:
+        raise complain(ValueError, "box", f'"lam", "y", a name, or a number from 0 to {size - 2}', key)
+    return key

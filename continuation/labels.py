@@ -1,0 +1,104 @@
+"""What the parameter and the unknowns of a homotopy are called, and their units: for axes, tables and archives."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from attrs import field, frozen
+
+from continuation.checks import complain
+
+ATTRIBUTES = ("parameter_name", "names", "units")
+"""Of a homotopy, and of an archive's root."""
+
+
+@frozen
+class Labels:
+    """Names and units.
+
+    Attributes
+    ----------
+    parameter_name : str
+        Empty where the homotopy does not say.
+    names : tuple of str
+        Of the unknowns, in order; empty where it does not say.
+    units : mapping of str to str
+        Of the parameter, the unknowns and the observed scalars, by their names.
+    """
+
+    parameter_name: str = ""
+    names: tuple[str, ...] = ()
+    units: Mapping[str, str] = field(factory=dict)
+
+    @classmethod
+    def of(cls, homotopy: Any) -> Labels:
+        """What a homotopy says of itself.
+
+        Raises
+        ------
+        TypeError
+            If one of the three attributes is nothing of its kind.
+        """
+        name, names, units = (getattr(homotopy, attribute, None) for attribute in ATTRIBUTES)
+        if not isinstance(name, str | None):
+            raise complain(TypeError, "parameter_name", "a text", name)
+        listed = isinstance(names, Sequence) and not isinstance(names, str)
+        if names is not None and not (listed and all(isinstance(one, str) for one in names)):
+            raise complain(TypeError, "names", "a list of texts, one an unknown", names)
+        if units is not None and not (
+            isinstance(units, Mapping) and all(isinstance(one, str) for pair in units.items() for one in pair)
+        ):
+            raise complain(TypeError, "units", "texts by the names of what they belong to", units)
+        return cls(name or "", tuple(names or ()), dict(units or {}))
+
+    def attributes(self) -> dict[str, str]:
+        """For an archive: what is said, as texts."""
+        texts = (self.parameter_name, json.dumps(self.names), json.dumps(dict(self.units)))
+        said = (self.parameter_name, self.names, self.units)
+        return {name: text for name, text, one in zip(ATTRIBUTES, texts, said) if one}
+
+    @classmethod
+    def from_attributes(cls, attributes: Mapping[str, Any]) -> Labels:
+        """The same again; what makes no sense is left out."""
+        found: dict[str, Any] = {}
+        for name in ATTRIBUTES:
+            text = attributes.get(name)
+            if isinstance(text, str) and text:
+                try:
+                    found[name] = text if name == "parameter_name" else json.loads(text)
+                except ValueError:
+                    continue
+        made = type("Said", (), found)
+        try:
+            return cls.of(made)
+        except TypeError:
+            return cls()
+
+    def parameter(self, symbol: str = "lam") -> str:
+        """What an axis or a column of the parameter is called."""
+        return self.with_unit(self.parameter_name) if self.parameter_name else symbol
+
+    def unknown(self, i: int) -> str:
+        """The name of an unknown; empty where there is none."""
+        return self.names[i] if i < len(self.names) else ""
+
+    def with_unit(self, name: str) -> str:
+        """A name with its unit in brackets, where that is known."""
+        return f"{name} [{self.units[name]}]" if name in self.units else name
+
+    def index(self, name: str) -> int:
+        """The number of an unknown, -1 for the parameter.
+
+        Raises
+        ------
+        ValueError
+            If nothing is called so.
+        """
+        if name in ("lam", self.parameter_name):
+            return -1
+        if name in self.names:
+            return self.names.index(name)
+        known = ", ".join(filter(None, ("lam", self.parameter_name, *self.names)))
+        raise ValueError(f"name: expected one of {known}, found {name!r}")

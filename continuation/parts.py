@@ -1,0 +1,149 @@
+"""Parts of paths, paths turned round, and paths joined: all of them paths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation.arrays import Array
+from continuation.path import LocatedEvent, Path, Step
+from continuation.point.segment import Segment, hermite
+from continuation.status import Kind
+
+MEET = 1e-6
+"""How near two ends must be, relative to the larger of the two paths' extents, to be one point."""
+
+
+@frozen(eq=False)
+class Backwards:
+    """A segment from its end to its beginning."""
+
+    forwards: Segment
+
+    @property
+    def inside(self) -> tuple[float, ...]:
+        """As of the segment itself."""
+        return tuple(1.0 - t for t in reversed(self.forwards.inside))
+
+    def at(self, t: float) -> Array:
+        """The point at t."""
+        return self.forwards.at(1.0 - t)
+
+    def derivative(self, t: float) -> Array:
+        """Its derivative at t."""
+        return -self.forwards.derivative(1.0 - t)
+
+    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
+        """One by one."""
+        return [self.at(t) for t in self.inside], [self.derivative(t) for t in self.inside]
+
+    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
+        """A cubic to the new end."""
+        return hermite(self.at(0.0), self.derivative(0.0), end, v, border)
+
+
+def part_of(path: Path, chosen: slice) -> Path:
+    """Some consecutive steps of a path, or every k-th of them, with the events between the first and the last.
+
+    Parameters
+    ----------
+    path : Path
+    chosen : slice
+        With a positive step.
+
+    Raises
+    ------
+    ValueError
+        If the step is negative: `Path.reversed` turns a path round.
+    """
+    numbers = range(*chosen.indices(len(path.steps)))
+    if numbers.step < 0:
+        raise ValueError("step: expected a positive one; path.reversed() turns a path round")
+    old = [path.steps[i] for i in numbers]
+    steps = [evolve(step, index=k) for k, step in enumerate(old)]
+    if numbers.step > 1:
+        steps = steps[:1] + [evolve(b, segment=_cubic(a, b), weights=None) for a, b in pairwise(steps)]
+    events = [event for event in path.events if numbers and numbers[0] < event.step <= numbers[-1]]
+    after = [int(np.searchsorted(numbers, event.step)) for event in events]
+    ends = [event.ends_step and event.step in numbers for event in events]
+    moved = [evolve(event, step=k, ends_step=end) for event, k, end in zip(events, after, ends)]
+    return evolve(path, steps=steps, events=moved)
+
+
+def _cubic(a: Step, b: Step) -> Segment | None:
+    known = np.isfinite(a.tangent).all() and np.isfinite(b.tangent).all() and bool(np.dot(a.tangent, b.u - a.u) > 0.0)
+    return hermite(a.u, a.tangent, b.u, b.tangent, a.tangent) if known else None
+
+
+def turned_round(path: Path) -> Path:
+    """The path from its end to its start.
+
+    Parameters
+    ----------
+    path : Path
+    """
+    old, last = list(path.steps), len(path.steps) - 1
+    whole = old[-1].arclength if old else 0.0
+    steps = []
+    for k, step in enumerate(reversed(old)):
+        # What belongs to an arc is kept with the step at its end, which is the other one now.
+        arc = old[last - k + 1] if k else None
+        segment = None if arc is None or arc.segment is None else Backwards(arc.segment)
+        kind = Kind.START if k == 0 else Kind.REGULAR if step.kind in (Kind.START, Kind.TARGET) else step.kind
+        steps.append(
+            evolve(
+                step,
+                index=k,
+                tangent=-step.tangent,
+                orientation=-step.orientation,
+                arclength=whole - step.arclength,
+                kind=kind,
+                step_length=0.0 if arc is None else arc.step_length,
+                segment=segment,
+                weights=None if arc is None else arc.weights,
+            )
+        )
+    events = [
+        evolve(
+            event,
+            tangent=-event.tangent,
+            orientation=-event.orientation,
+            arclength=whole - event.arclength,
+            step=max(last - event.step + (not event.ends_step), 1),
+            ends_step=event.ends_step and event.step < last,
+        )
+        for event in reversed(path.events)
+    ]
+    return evolve(path, steps=steps, events=events)
+
+
+def joined(first: Path, second: Path) -> Path:
+    """One path, and then another that begins where it ends.
+
+    Parameters
+    ----------
+    first, second : Path
+
+    Raises
+    ------
+    ValueError
+        If they do not meet.
+    """
+    if not len(first) or not len(second):
+        return first if len(first) else second
+    a, b = first.steps[-1], second.steps[0]
+    extent = max(float(np.ptp(path.u, axis=0).max()) for path in (first, second))
+    if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):
+        raise ValueError(f"other: expected a path that begins at lam = {a.lam:.6g}, found one from lam = {b.lam:.6g}")
+    count, length = len(first) - 1, a.arclength
+    steps = [evolve(s, index=s.index + count, arclength=s.arclength + length) for s in list(second.steps)[1:]]
+    events: list[LocatedEvent] = [
+        evolve(event, step=event.step + count, arclength=event.arclength + length) for event in second.events
+    ]
+    whole = evolve(second, steps=[*first.steps, *steps], events=[*first.events, *events])
+    whole.counts, whole.seconds = first.counts + second.counts, first.seconds + second.seconds
+    whole.references = tuple(dict.fromkeys((*first.references, *second.references)))
+    return whole

@@ -1,0 +1,113 @@
+"""More points of a path, corrected onto it, until the curve through them is as accurate as was asked for."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from attrs import evolve
+
+from continuation.arrays import Array
+from continuation.checks import complain, is_number
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.metric import norm
+from continuation.path import Path, Step
+from continuation.point.linearization import Linearization, linearize
+from continuation.point.projection import PathSolver
+from continuation.point.segment import Segment, hermite
+from continuation.status import Kind
+from continuation.tolerance import Tolerance
+
+DEEPEST = 8
+"""Halvings of an arc: the error of a cubic falls by 16 with each, so that these are worth nine digits."""
+
+
+def refined_path(homotopy: Any, path: Path, accuracy: float = 1e-3) -> Path:
+    """The path with more points, until the arcs between them are the path to an accuracy.
+
+    Each arc's middle is corrected onto the path. Where the arc was farther off than the accuracy, relative to how far
+    each component goes on the whole path, the point is added, and both halves are looked at again.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+        The one that was traced.
+    path : Path
+    accuracy : float, default 1e-3
+
+    Returns
+    -------
+    Path
+        Its steps, in between new ones of kind REGULAR, with cubics through points and tangents.
+
+    Raises
+    ------
+    ValueError
+        If the accuracy is no positive number.
+    """
+    if not is_number(accuracy) or not 0.0 < accuracy < math.inf:
+        raise complain(ValueError, "accuracy", "a positive number", accuracy)
+    if len(path) < 2:
+        return path
+    solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
+    points = path.u
+    allowed = accuracy * np.maximum(np.ptp(points, axis=0), 1e-12 * (1.0 + np.abs(points).max(axis=0)))
+    steps, first = [path.steps[0]], {0: 0}
+    for k, after in enumerate(path.steps[1:], 1):
+        before = path.steps[k - 1]
+        segment = after.segment
+        if segment is not None:
+            steps += _between(solver, before, after, segment, allowed, DEEPEST)
+        steps.append(after if segment is None or steps[-1] is before else _joining(steps[-1], after))
+        first[k] = len(steps) - 1
+    steps = [evolve(step, index=k) for k, step in enumerate(steps)]
+    arclengths = np.array([step.arclength for step in steps])
+    after = np.maximum(np.searchsorted(arclengths, [event.arclength for event in path.events]), 1).tolist()
+    events = [
+        evolve(event, step=first[event.step] if event.ends_step else k) for event, k in zip(path.events, after)
+    ]
+    return evolve(path, steps=steps, events=events)
+
+
+def _between(
+    solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int
+) -> list[Step]:
+    """The points that an arc needs between its ends."""
+    guess, slope = segment.at(0.5), segment.derivative(0.5)
+    weights = np.ones_like(guess) if after.weights is None else after.weights
+    length = norm(weights, slope)
+    if not deep or not length > 0.0:
+        return []
+    border = weights * slope / length
+    try:
+        near: Linearization = linearize(solver.evaluator, guess, weights, border)
+        point = solver.project_and_linearize(near, guess, border)
+    except EvaluationError:
+        # Where the path cannot be had the arc is what there is.
+        return []
+    if (np.abs(point.u - guess) <= allowed).all():
+        return []
+    tangent = point.tangent if float(np.dot(weights * slope, point.tangent)) > 0.0 else -point.tangent
+    ahead = [norm(weights, segment.at(b) - segment.at(a)) for a, b in ((0.0, 0.5), (0.5, 1.0))]
+    arclength = before.arclength + (after.arclength - before.arclength) * ahead[0] / sum(ahead)
+    middle = Step(
+        0, point.u, tangent, arclength, after.step_length, solver.evaluator.residual_norm(point.u),
+        before.orientation, Kind.REGULAR, weights=after.weights,
+        segment=_cubic(before, point.u, tangent, after.weights),
+    )  # fmt: skip
+    last = _cubic(middle, after.u, after.tangent, after.weights)
+    left = _between(solver, before, middle, middle.segment, allowed, deep - 1) if middle.segment is not None else []
+    if left:
+        middle = _joining(left[-1], middle)
+    return [*left, middle, *_between(solver, middle, after, last, allowed, deep - 1)]
+
+
+def _cubic(before: Step, u: Array, v: Array, weights: Array | None) -> Segment:
+    border = before.tangent if weights is None else weights * before.tangent
+    return hermite(before.u, before.tangent, u, v, border)
+
+
+def _joining(before: Step, after: Step) -> Step:
+    return evolve(after, segment=_cubic(before, after.u, after.tangent, after.weights))

@@ -1,0 +1,19 @@
+"""The installed script ``continuation``: its version is said before anything of the library is imported."""
+
+from __future__ import annotations
+
+import importlib.util
+import runpy
+import sys
+from pathlib import Path
+
+
+def main() -> int:
+    """Run the command line; see `continuation.cli.main`."""
+    found = importlib.util.find_spec("continuation")
+    if sys.argv[1:] == ["--version"] and found is not None and found.origin is not None:
+        print(f"continuation {runpy.run_path(str(Path(found.origin).with_name('version.py')))['__version__']}")
+        return 0
+    from continuation.cli import main as command_line
+
+    return command_line()

@@ -1,0 +1,246 @@
+"""Hypothesis strategies for matrices of a class: constructed, not filtered, from integers, so that they shrink."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+
+import numpy as np
+from hypothesis import strategies as st
+
+from continuation.arrays import Array
+from problems.lcp.classes.exact import principal_minors
+
+Order = int | st.SearchStrategy[int]
+Rows = list[list[int]]
+Entries = st.SearchStrategy[int] | st.SearchStrategy[float] | None
+Draw = st.DrawFn
+
+ORDERS = st.integers(1, 4)
+"""The orders drawn when none is given."""
+
+MOST_MINORS = 8
+"""The largest order whose principal minors are all looked at, 2^n of them; larger matrices are dominant or definite."""
+
+_ENTRY = st.integers(-3, 3)
+POSITIVE = st.integers(1, 4)
+_NONNEGATIVE = st.integers(0, 3)
+
+
+def orders_of(n: Order) -> st.SearchStrategy[int]:
+    """Orders, also where one number is given.
+
+    Parameters
+    ----------
+    n : int or strategy of int
+    """
+    return st.just(n) if isinstance(n, int) else n
+
+
+def square(draw: Draw, n: int, entry: st.SearchStrategy[int] = _ENTRY) -> Rows:
+    """Any entries.
+
+    Parameters
+    ----------
+    draw : callable
+    n : int
+    entry : strategy of int
+    """
+    return [[draw(entry) for _ in range(n)] for _ in range(n)]
+
+
+def _add(*parts: Rows) -> Rows:
+    return [[sum(values) for values in zip(*rows, strict=True)] for rows in zip(*parts, strict=True)]
+
+
+def _gram(draw: Draw, n: int) -> Rows:
+    """B'B with B of any rank."""
+    factor = [[draw(st.integers(-2, 2)) for _ in range(n)] for _ in range(draw(st.integers(0, n)))]
+    return [[sum(row[i] * row[j] for row in factor) for j in range(n)] for i in range(n)]
+
+
+def _skew(draw: Draw, n: int) -> Rows:
+    upper = {(i, j): draw(_ENTRY) for i in range(n) for j in range(i + 1, n)}
+    return [[upper.get((i, j), 0) - upper.get((j, i), 0) for j in range(n)] for i in range(n)]
+
+
+def _diagonal(draw: Draw, n: int, entry: st.SearchStrategy[int]) -> Rows:
+    return [[draw(entry) if i == j else 0 for j in range(n)] for i in range(n)]
+
+
+def _scaled(draw: Draw, rows: Rows) -> Rows:
+    """D A E with positive diagonal D and E, which keeps minor signs and sufficiency."""
+    left, right = ([draw(st.integers(1, 3)) for _ in rows] for _ in range(2))
+    return [[d * e * v for e, v in zip(right, row, strict=True)] for d, row in zip(left, rows, strict=True)]
+
+
+def _signed(draw: Draw, rows: Rows) -> Rows:
+    """S A S with a signature S, which keeps every principal minor."""
+    signs = [draw(st.sampled_from((1, -1))) for _ in rows]
+    return [[s * t * v for t, v in zip(signs, row, strict=True)] for s, row in zip(signs, rows, strict=True)]
+
+
+def _psd(draw: Draw, n: int) -> Rows:
+    return _add(_gram(draw, n), _skew(draw, n))
+
+
+def _z(draw: Draw, n: int) -> Rows:
+    rows = square(draw, n, st.integers(-3, 0))
+    return _add(rows, _diagonal(draw, n, st.integers(0, 6)))
+
+
+def _k(draw: Draw, n: int) -> Rows:
+    """Z with positive row sums, columns scaled: Z with A s > 0 for an s > 0, which is K."""
+    rows = [[-draw(st.integers(0, 2)) if i != j else 0 for j in range(n)] for i in range(n)]
+    for i, row in enumerate(rows):
+        row[i] = draw(POSITIVE) - sum(row)
+    return _scaled(draw, rows)
+
+
+def _bordered(draw: Draw, n: int, last: Callable[[Draw, list[int], list[int]], int | None]) -> Rows:
+    """Grow a matrix by one row and column at a time; `last` draws the new diagonal entry from what the minors allow.
+
+    It sees, for every index set of the old matrix, the old minor and the bordered minor with diagonal entry zero: the
+    new minor is entry * old + bordered. Where it finds no entry, the new column is set to zero, so that bordered = 0.
+    """
+    rows: Rows = []
+    for k in range(n):
+        row, column = [draw(_ENTRY) for _ in range(k)], [draw(_ENTRY) for _ in range(k)]
+        entry = last(draw, *_affine_minors(rows, row, column))
+        if entry is None:
+            column = [0] * k
+            entry = last(draw, *_affine_minors(rows, row, column))
+        assert entry is not None, "a zero column leaves the minors entry * old"
+        rows = [[*old, c] for old, c in zip(rows, column, strict=True)] + [[*row, entry]]
+    return rows
+
+
+def _affine_minors(rows: Rows, row: Sequence[int], column: Sequence[int]) -> tuple[list[int], list[int]]:
+    minors = principal_minors([*([*old, c] for old, c in zip(rows, column, strict=True)), [*row, 0]])
+    half = len(minors) // 2
+    return minors[:half], minors[half:]
+
+
+def _dominant(draw: Draw, n: int, signed: bool) -> Rows:
+    """Strictly diagonally dominant: every principal submatrix is regular, and with a positive diagonal it is P."""
+    rows = square(draw, n)
+    for i, row in enumerate(rows):
+        row[i] = sum(abs(value) for j, value in enumerate(row) if j != i) + draw(POSITIVE)
+        row[i] *= draw(st.sampled_from((1, -1))) if signed else 1
+    return rows
+
+
+def _p(draw: Draw, n: int) -> Rows:
+    """P, with any off-diagonal entries in range: the new diagonal entry exceeds -bordered / old for each index set."""
+    if n > MOST_MINORS:
+        dominant = draw(st.booleans())
+        return _dominant(draw, n, False) if dominant else _add(_psd(draw, n), _diagonal(draw, n, POSITIVE))
+
+    def last(draw: Draw, old: list[int], bordered: list[int]) -> int:
+        return max(-b // m for m, b in zip(old, bordered, strict=True)) + draw(POSITIVE)
+
+    return _bordered(draw, n, last)
+
+
+def _p0(draw: Draw, n: int) -> Rows:
+    """P0: as for P, with equality allowed, and a border that no diagonal entry can mend replaced."""
+    if n > MOST_MINORS:
+        return _psd(draw, n)
+
+    def last(draw: Draw, old: list[int], bordered: list[int]) -> int | None:
+        if any(m == 0 and b < 0 for m, b in zip(old, bordered, strict=True)):
+            return None
+        lowest = max(-(b // m) for m, b in zip(old, bordered, strict=True) if m)
+        return lowest + draw(_NONNEGATIVE)
+
+    return _bordered(draw, n, last)
+
+
+def _nondegenerate(draw: Draw, n: int) -> Rows:
+    """Nondegenerate, with any off-diagonal entries in range: the new diagonal entry avoids each -bordered / old."""
+    if n > MOST_MINORS:
+        return _dominant(draw, n, True)
+
+    def last(draw: Draw, old: list[int], bordered: list[int]) -> int:
+        forbidden = {Fraction(-b, m) for m, b in zip(old, bordered, strict=True)}
+        small = sorted(range(-len(old) - 5, len(old) + 6), key=lambda v: (abs(v), v < 0))
+        return draw(st.sampled_from([v for v in small if v not in forbidden][:8]))
+
+    return _bordered(draw, n, last)
+
+
+def _n(draw: Draw, n: int) -> Rows:
+    """K - u v' with u_i v_i > K_ii, with signs and scales: det = det K (1 - v' K^-1 u) < 0 on every index set."""
+    rows = _k(draw, n)
+    u, v = [draw(st.integers(1, 2)) for _ in rows], [draw(st.integers(0, 2)) for _ in rows]
+    weights = [extra + rows[i][i] // u[i] + 1 for i, extra in enumerate(v)]
+    shifted = [[value - u[i] * weights[j] for j, value in enumerate(row)] for i, row in enumerate(rows)]
+    return _signed(draw, shifted)
+
+
+def _row_sufficient(draw: Draw, n: int) -> Rows:
+    """PSD scaled from both sides (sufficient), P, or P with zero rows below it (row but not column sufficient)."""
+    kind = draw(st.sampled_from(("psd", "p", "zero rows")))
+    if kind == "psd":
+        return _scaled(draw, _psd(draw, n))
+    if kind == "p":
+        return _p(draw, n)
+    leading = draw(st.integers(0, n))
+    block = _p(draw, leading)
+    return [[*block[i], *(draw(_ENTRY) for _ in range(n - leading))] if i < leading else [0] * n for i in range(n)]
+
+
+def _copositive(draw: Draw, n: int) -> Rows:
+    """PSD plus nonnegative plus skew, which is every copositive matrix for n <= 4 (Diananda 1962)."""
+    return _add(_psd(draw, n), square(draw, n, _NONNEGATIVE))
+
+
+_BUILDERS: Mapping[str, Callable[[Draw, int], Rows]] = {
+    "any": square, "P": _p, "P0": _p0, "PSD": _psd, "K": _k, "Z": _z, "N": _n, "nondegenerate": _nondegenerate,
+    "row_sufficient": _row_sufficient, "copositive": _copositive,
+}  # fmt: skip
+
+CLASSES: tuple[str, ...] = tuple(_BUILDERS)
+"""The class names that `matrices` knows."""
+
+
+@st.composite
+def _matrices(draw: Draw, cls: str, n: Order, entries: Entries, shrinks: bool) -> Array:
+    order = draw(orders_of(n))
+    if entries is None:
+        A = np.array(_BUILDERS[cls](draw, order), dtype=float)
+    else:
+        A = np.array([draw(entries) for _ in range(order * order)], dtype=float).reshape(order, order)
+        if cls == "Z":
+            A = np.where(np.eye(order, dtype=bool), A, -np.abs(A))
+    if not shrinks:
+        return A
+    # Principal submatrices are of the class too. What is drawn last is what shrinks first: a failure that needs two
+    # rows is found with two rows.
+    kept = [i for i in range(order) if draw(st.integers(0, 7))] or [0]
+    return A[np.ix_(kept, kept)]
+
+
+def matrices(cls: str = "any", n: Order = ORDERS, entries: Entries = None) -> st.SearchStrategy[Array]:
+    """Integer matrices of a class, as floats, shape (n, n).
+
+    Parameters
+    ----------
+    cls : str
+        One of `CLASSES`.
+    n : int or strategy of int
+        The order, 1 to 4 by default; up to 30 in well under a second.
+    entries : strategy of numbers, optional
+        Of the entries, floats as well, for the classes "any" and "Z" (whose off-diagonal ones lose their sign).
+
+    Raises
+    ------
+    ValueError
+        If the class is not one of them, or its entries cannot be chosen.
+    """
+    if cls not in _BUILDERS:
+        raise ValueError(f"cls: expected one of {', '.join(CLASSES)}, found {cls!r}")
+    if entries is not None and cls not in ("any", "Z"):
+        raise ValueError(f"entries: expected none for the class {cls}, whose members are built from integers")
+    # A caller's own orders are what was asked for; the usual ones may become smaller.
+    return _matrices(cls, n, entries, n is ORDERS)

@@ -1,0 +1,192 @@
+"""What a shell's user expects: colours, stdin, completion, a version at once, one line instead of a traceback."""
+
+import io
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from continuation import Budget, trace
+from continuation.archive import open_archive, trace_many
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
+from continuation.cli.parser import paint
+from continuation.progress import SweepProgress
+from problems.bifurcation import Cusp
+
+OWN = """
+import numpy as np
+
+
+class Own:
+    target = 1.0
+
+    def __init__(self, n=3, slope=2.0):
+        self.n, self.slope = n, slope
+
+    def start(self):
+        return np.zeros(self.n), 0.0
+
+    def residual(self, y, lam):
+        return y - self.slope * lam + 0.2 * y**3
+
+
+class Broken(Own):
+    def residual(self, y, lam):
+        return {}["nothing"]
+
+
+class Half(Own):
+    def jacobian(self, y, lam):
+        return np.eye(self.n)
+
+
+class Unmade(Own):
+    def __init__(self):
+        raise RuntimeError("no data")
+
+
+class Table(Own):
+    def residual(self, y, lam):
+        if lam > 0.5:
+            raise ValueError("the table ends")
+        return y - lam
+"""
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    (tmp_path / "own_for_shell.py").write_text(OWN)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    yield "own_for_shell"
+    sys.modules.pop("own_for_shell", None)
+
+
+def test_a_path_of_any_plug_in_is_resumed_by_its_name(run, own):
+    assert run("trace", f"{own}:Own", "slope=3", "n=2", "--archive", "run.h5", "--budget-steps", 2)[0] == FAILURE
+    _, page, _ = run("inspect", "run.h5")
+    command = page.splitlines()[-1].partition("`")[2].strip("`.")
+    assert command == f"continuation resume run.h5 --homotopy {own}:Own --steps N"
+    status, out, _ = run(*command.replace("N", "50").split()[1:])
+    assert status == SUCCESS
+    assert out.startswith("REACHED_TARGET")
+    with open_archive("run.h5") as archive:
+        assert archive.paths["homotopy_slope"].tolist() == [3.0]
+    _, page, _ = run("inspect", "run.h5")
+    assert "can be resumed" not in page
+
+
+def test_options_given_again_hold_over_those_of_the_file(run, own):
+    run("trace", f"{own}:Own", "slope=3", "--archive", "run.h5", "--budget-steps", 2)
+    status, _, err = run("resume", "run.h5", "slope=5", "--homotopy", f"{own}:Own", "--steps", 50)
+    assert status == BAD_INPUT
+    assert "expected the archive's residual" in err
+    status, _, err = run("resume", "run.h5", "slope=5")
+    assert status == BAD_INPUT
+    assert err == "continuation: KEY=VALUE: expected no options without --homotopy\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("Broken", "KeyError: 'nothing' (own_for_shell.py, line 20)"),
+        ("Half", "jacobian: expected a pair (H_y, H_lam) of real numbers"),
+        ("Unmade", "RuntimeError: no data (own_for_shell.py, line 30)"),
+        ("Gone", "cannot be loaded: AttributeError"),
+    ],
+)
+def test_what_is_wrong_with_a_plug_in_is_one_line(run, own, name, line):
+    status, _, err = run("trace", f"{own}:{name}")
+    assert status == (FAILURE if "line" in line else BAD_INPUT)
+    assert line in err
+    assert err.count("\n") == 1
+    assert err.startswith(f"continuation: {own}:{name}: ")
+
+
+def test_its_own_exception_on_the_way_keeps_the_path(run, own):
+    status, out, _ = run("trace", f"{own}:Table")
+    assert status == FAILURE
+    assert "status     RAISED" in out
+    assert "ValueError: the table ends (own_for_shell.py, line 36)" in out
+
+
+def test_a_picture_that_cannot_be_written_is_told_before_the_work(run, tmp_path, monkeypatch):
+    def refused(*arguments, **options):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("continuation.cli.figures.TemporaryFile", refused)
+    status, out, err = run("trace", "circle", "--plot", tmp_path / "p.png")
+    assert (status, out) == (BAD_INPUT, "")
+    assert "--plot: expected a place to write to" in err
+
+
+@pytest.mark.parametrize("form", ["json", "npz"])
+def test_a_problem_comes_on_stdin(run, monkeypatch, form):
+    data = io.BytesIO()
+    if form == "json":
+        data.write(json.dumps({"A": [[1, -1], [-1, 1]], "q": [-0.5, 2]}).encode())
+    else:
+        np.savez(data, A=[[1.0, -1.0], [-1.0, 1.0]], q=[-0.5, 2.0])
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(data.getvalue())))
+    options = ("--tolerance", "1e-9", "--seed", 3, "--restarts", 2, "--seconds", 60, "--json")
+    status, out, _ = run("solve", "-", *options)
+    assert status == SUCCESS
+    assert json.loads(out)["x"] == pytest.approx([0.5, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("bad", [("--tolerance", 2), ("--seed", -1), ("--restarts", 1.5), ("--seconds", 0)])
+def test_bad_numbers_name_their_option(run, tmp_path, bad):
+    status, _, err = run("solve", tmp_path / "gone.npz", *bad)
+    assert status == BAD_INPUT
+    assert f"{bad[0]}" in err
+
+
+def test_colours_are_for_terminals(monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    assert paint("SOLVED", True, Terminal()) == "\x1b[32mSOLVED\x1b[0m"
+    assert paint("DIVERGED", False, Terminal()) == "\x1b[31mDIVERGED\x1b[0m"
+    assert paint("SOLVED", True, io.StringIO()) == "SOLVED"
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert paint("SOLVED", True, Terminal()) == "SOLVED"
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_knows_commands_options_and_homotopies(run, shell):
+    status, out, _ = run("completion", shell)
+    assert status == SUCCESS
+    for word in ("solve", "--tolerance", "--direction", "bratu-1d"):
+        assert word in out
+
+
+def test_completion_works_in_bash(run, tmp_path):
+    (tmp_path / "c.sh").write_text(run("completion", "bash")[1])
+    line = "COMP_WORDS=(continuation trace br); COMP_CWORD=2; _continuation; echo ${COMPREPLY[@]}"
+    command = ["bash", "-c", f"source {tmp_path}/c.sh; {line}"]
+    found = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert found.stdout.split() == ["bratu-1d", "bratu-2d", "brown-fixed-point"]
+
+
+def test_the_version_is_said_without_importing_the_library():
+    code = "import sys; sys.argv = ['continuation', '--version']; from problems.commands.script import main; main(); "
+    code += "print([name for name in sys.modules if name.startswith(('numpy', 'continuation'))])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout == "continuation 0.1.0\n[]\n"
+
+
+def test_a_sweep_shows_its_progress():
+    stream, live = io.StringIO(), Terminal()
+    trace_many([Cusp(), Cusp()], progress=SweepProgress(stream), budget=Budget(steps=3))
+    assert stream.getvalue().splitlines()[-1].startswith("sweep: 2 of 2 paths, ")
+    trace_many([Cusp(), Cusp()], progress=SweepProgress(live), budget=Budget(steps=3))
+    assert live.getvalue().startswith("\rsweep: ")
+    with pytest.raises(TypeError, match="progress: expected"):
+        trace_many([Cusp()], progress=3)
+    assert trace(Cusp()).success
