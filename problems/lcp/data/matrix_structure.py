@@ -15,6 +15,7 @@ from scipy.linalg.lapack import dpotrf
 from continuation.arrays import Array, Matrix
 from continuation.linear import Banded
 from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.ranges import Ranges, ranges
 
 WIDEST_BAND = 16
 """A sparse matrix with at most so many diagonals, the gaps between them counted, is treated as banded."""
@@ -133,6 +134,18 @@ class Structure:
         rows = np.zeros((lower + upper + 1, self.n))
         rows[lower + offsets, entries.row] = entries.data
         return Band(rows, lower, upper)
+
+    @cached_property
+    def ranges(self) -> Ranges | None:
+        """The rows with two sides, if there are any."""
+        return ranges(self.problem)
+
+    @cached_property
+    def without_activities(self) -> Structure:
+        """That of the other unknowns."""
+        assert self.ranges is not None
+        rest, problem = self.ranges.rest, self.problem
+        return Structure(MixedLCP(problem.A[rest][:, rest], problem.q[rest], problem.lower[rest], problem.upper[rest]))
 
     @cached_property
     def squarable(self) -> bool:

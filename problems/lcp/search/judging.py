@@ -192,9 +192,7 @@ def _at(found: Solution, x: Array, tolerance: float) -> Solution:
     """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
-    if not found.solved or (
-        certificate is not None and confirmed(found.problem, certificate, tolerance)
-    ):
+    if not found.solved or (certificate is not None and confirmed(found.problem, certificate, tolerance)):
         return evolve(found, certificate=certificate)
     if not bad.any() and (x > 0.0).any() and float(x[x > 0.0].min()) > np.finfo(float).tiny:
         off = math.nan if certificate is None else certificate.relative_residual
