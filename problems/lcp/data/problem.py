@@ -57,6 +57,9 @@ class MixedLCP:
     q : array_like, shape (n,)
     lower, upper : array_like, shape (n,), or one number for all, optional
         -inf and inf, the defaults, are none.
+    primal : int, optional
+        So many unknowns, the first, are the variables of a quadratic program, the others its multipliers, and the
+        values of its rows; 0, the default, where that is not known. See `from_qp`.
 
     Raises
     ------
@@ -74,6 +77,7 @@ class MixedLCP:
     q: Array = field(converter=_q)
     lower: Array = field(default=None)
     upper: Array = field(default=None)
+    primal: int = field(default=0, kw_only=True, repr=False)
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
     """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
 

@@ -182,7 +182,7 @@ def from_qp(
     none = np.full(both.size, np.inf)
     problem = MixedLCP(
         A, q, np.concatenate([x_low, np.full(free, -np.inf), np.zeros(signed), -none, low[both]]),
-        np.concatenate([x_high, np.full(free + signed, np.inf), none, high[both]]),
+        np.concatenate([x_high, np.full(free + signed, np.inf), none, high[both]]), primal=n,
     )  # fmt: skip
     return Program(P, c, problem, (n, n + B.shape[0]), equal, above, below, both, m)
 

@@ -95,13 +95,13 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     A, q = _scaled(problem.A, rows, columns), _times(problem.q, rows)
     scaled: MixedLCP
     if problem.standard:
-        scaled = LCP(A, q)
+        scaled = LCP(A, q, primal=problem.primal)
     else:
         bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
         ends = zip(bounds, (problem.lower, problem.upper))
         if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
             return None  # a bound that vanishes or overflows would make another problem
-        scaled = MixedLCP(A, q, *bounds)
+        scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
     # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
     scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)

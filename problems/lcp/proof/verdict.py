@@ -9,7 +9,7 @@ from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.homotopies.stationarity import is_stationary
-from problems.lcp.proof.certificate import Certificate, certify_exactly
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify_exactly
 from problems.lcp.proof.compensated import accurate_w
 
 LARGEST_DECIDED = 12
@@ -49,6 +49,21 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
     if certificate.relative_residual <= ENTRIES or problem.n > LARGEST_DECIDED:
         return True
     return certify_exactly(problem, certificate.x).solves
+
+
+def to_precision(problem: MixedLCP, x: Array) -> bool:
+    """Whether x solves the conditions of a program whose data differ by round-off, relative to the largest of them.
+
+    `confirmed` asks that of each row relative to its own terms, which no x can do where the files of a program have
+    sides of rows of 1e-16 in place of zeros.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+        In balanced units.
+    x : ndarray, shape (n,)
+    """
+    return problem.primal > 0 and problem.relative_residual(x) <= ROUND_OFF
 
 
 def exact_nearby(problem: MixedLCP, x: Array) -> bool:

@@ -128,7 +128,7 @@ def solve(
         return of_program(problem, found)
     require_problem(problem)
     if problem.standard and not isinstance(problem, LCP):
-        problem = LCP(problem.A, problem.q)
+        problem = LCP(problem.A, problem.q, primal=problem.primal)
     if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
         given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
         raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")

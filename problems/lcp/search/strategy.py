@@ -14,7 +14,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.presets import FAST
-from problems.lcp.active_set.finish import PATIENCE
+from problems.lcp.active_set.finish import PATIENCE, below_zero
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.problem import LCP
@@ -61,6 +61,9 @@ of feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 0.7 s (
 
 LEAST_START = 1e-3
 """In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
+
+MOST_AUGMENTED = 2000
+"""Factorisations of order n for the augmented Lagrangian: 1,500 are needed for QCAPRI, some 100 for most others."""
 
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
@@ -124,6 +127,12 @@ def _proximally_from_last(case: Case) -> bool:
 
 def _descent(case: Case) -> bool:
     return case.search.descend(case.first_state)
+
+
+def _augmented(case: Case) -> bool:
+    n = case.problem.primal
+    below = 0.0 if case.semidefinite else below_zero(case.problem.A[:n][:, :n])
+    return case.search.augment(below, MOST_AUGMENTED)
 
 
 def _proof(case: Case) -> bool:
@@ -245,6 +254,7 @@ _LEMKE_HOWSON = "By the method of Lemke and Howson, before any path."
 _LEMKE = "By Lemke's method, before any path."
 _SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
 _DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
+_AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
@@ -261,6 +271,7 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("Lemke", _pivotable, lambda c: by_lemke(c.search, c.seed), _LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
     Attempt("few faces", _has_few_faces, _all_faces, _TRIED),
+    Attempt("augmented Lagrangian", lambda c: c.problem.primal > 0 and c.in_budget, _augmented, _AUGMENTED),
 )
 """What is cheap and cannot mislead."""
 
