@@ -95,7 +95,7 @@ class Face:
     def w(self, x: Array) -> Array:
         """``A x + shift x + q``, shape (n,)."""
         w: Array = self.problem.A @ x + self.q
-        return w + self.shift * x if np.ndim(self.shift) or self.shift else w
+        return w + self.shift * x if isinstance(self.shift, np.ndarray) or self.shift else w
 
     def refined(self, x: Array) -> Array:
         """The point x of a face of the problem itself, corrected once with w in twice the working precision."""

@@ -178,6 +178,8 @@ class MixedLCP:
         x, w : ndarray, shape (n,)
             On that piece.
         """
+        if self.standard:
+            return active_state(np.where(state == BETWEEN, x > 0.0, w < 0.0))
         inside, above = state == BETWEEN, state == UPPER
         # Where lower = upper it stays, whatever w is.
         low = np.where(inside, x <= self.lower, ~above & ((w >= 0.0) | self.fixed))

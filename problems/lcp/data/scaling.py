@@ -45,8 +45,9 @@ NEGLIGIBLE = -27.0
 the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
 
 LEVELLED = 16.0
-"""With bounds: where the largest entries of all rows and columns are within this factor of another, and of 1, a problem
-stays as it is. Finding units and changing to them takes longer than solving it then (n = 1000: 0.25 of 0.45 s)."""
+"""Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
+stays as it is, and active sets of an LCP are tried as it is. Finding units and changing to them takes longer than
+solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone LCPs, n = 60: 0.5 of 1.3 ms)."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
@@ -87,7 +88,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
     Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
     """
-    if not problem.standard and _level(problem):
+    if not problem.standard and level(problem):
         return None
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
@@ -107,8 +108,8 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
-def _level(problem: MixedLCP) -> bool:
-    """Whether the largest entries of rows and columns are so alike that other units would change nothing."""
+def level(problem: MixedLCP) -> bool:
+    """Whether the largest entries of rows and columns are so alike that other units would change next to nothing."""
     size: Matrix = abs(problem.A)
     largest = [size.max(axis=axis) for axis in (0, 1)]
     both = np.concatenate([part.toarray().ravel() if sp.issparse(part) else part for part in largest])

@@ -20,6 +20,7 @@ from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish, with_zeros
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.data.scaling import Scaled, balanced
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import LCPHomotopy
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
@@ -74,6 +75,10 @@ class Search:
     paths : list of Path
     ends : list of Candidate
         Where the paths, and the finish, led.
+    scaled : Scaled or None
+        The problem in units of its own, where it is solved in these.
+    postponed : bool
+        Whether these are looked for only when active sets have failed in the units given.
     proof : Farkas, FloatFarkas or None
         That there is no feasible point, exactly or to working precision.
     exhaustion : Exhaustion or None
@@ -91,6 +96,8 @@ class Search:
     counts: Counts = field(factory=Counts)
     paths: list[Path] = field(factory=list)
     ends: list[Candidate] = field(factory=list)
+    scaled: Scaled | None = None
+    postponed: bool = False
     proof: Farkas | FloatFarkas | None = None
     exhaustion: Exhaustion | None = None
     began: float = field(factory=time.perf_counter)
@@ -125,10 +132,20 @@ class Search:
         """Whether a point may be called a solution."""
         return confirmed(self.problem, certificate, self.tolerance)
 
+    def rescale(self) -> None:
+        """Go on in units of the problem's own, if it has others than those given; what was tried stays tried."""
+        self.postponed = False
+        self.scaled = balanced(self.problem)
+        if self.scaled is not None:
+            self.ends.clear()
+            self._change(self.scaled.problem)
+
     def make_dense(self) -> None:
         """Store the matrix dense from here on."""
-        problem = self.problem
-        self.structure = Structure(evolve(problem, A=problem.A.toarray()))
+        self._change(evolve(self.problem, A=self.problem.A.toarray()))
+
+    def _change(self, problem: MixedLCP) -> None:
+        self.structure = Structure(problem)
         if self.finish is not None:
             self.finish.faces = Faces(self.structure)
 

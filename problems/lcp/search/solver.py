@@ -29,7 +29,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme
+from problems.lcp.data.scaling import balanced, extreme, level
 from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
@@ -152,7 +152,9 @@ def solve(
         )  # fmt: skip
         return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
-    scaled = balanced(problem) if automatic or extreme(problem) else None
+    postponed = automatic and finish and not path and problem.standard
+    postponed = postponed and problem.n > LARGEST_DECIDED and level(problem)
+    scaled = balanced(problem) if not postponed and (automatic or extreme(problem)) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
         scaled = None
@@ -167,6 +169,8 @@ def solve(
         None if archive is None else PathLog(as_file("archive", archive)),
         progress,
         dict(options),
+        scaled=scaled,
+        postponed=postponed,
     )
     asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
     case = Case(search, start, asked, restarts, seed, executor)
@@ -177,7 +181,7 @@ def solve(
             found = beyond_floats(problem, tolerance)
         else:
             settled = settled_by(case, strategy)
-            found = answer(search, _account(case, settled))
+            found, scaled = answer(search, _account(case, settled)), search.scaled
             found = evolve(found, problem=problem) if scaled is None else unscaled(problem, scaled, found, tolerance)
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)

@@ -98,6 +98,13 @@ def _made_dense(case: Case) -> bool:
     return False
 
 
+def _rescaled(case: Case) -> bool:
+    case.search.rescale()
+    if case.search.scaled is not None and case.x0 is not None:
+        case.x0 = case.search.scaled.u(case.x0)
+    return False
+
+
 def _zero(case: Case) -> bool:
     case.search.accept(certify(case.problem, case.problem.near_zero))
     return case.search.solved
@@ -259,12 +266,18 @@ _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {c
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
-    Attempt("the point nearest to zero", _zero_solves, _zero, "The point nearest to zero is a solution."),
+    Attempt(
+        "the point nearest to zero",
+        lambda c: not c.problem.standard and _zero_solves(c),
+        _zero,
+        "The point nearest to zero is a solution.",
+    ),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
     Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
     Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
+    Attempt("units of its own", lambda c: c.search.postponed, _rescaled, ""),
     Attempt("descent in a box", _in_a_box, _descent, _DESCENDED),
     Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
     Attempt("Lemke and Howson", _game_perhaps, lambda c: by_lemke_howson(c.search), _LEMKE_HOWSON),
