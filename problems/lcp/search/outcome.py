@@ -68,11 +68,11 @@ _ROUNDED = (
 )
 _PROOFS_WITH_BOUNDS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x between the bounds gives w the signs of a solution.",
-    "exhaustion": "None of the complementary pieces holds a solution: all were tried in exact arithmetic.",
+    "exhaustion": "None of the complementary pieces holds a solution: all were tried, with error bounds or exactly.",
 }
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
-    "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried in exact arithmetic.",
+    "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried, with error bounds or exactly.",
     "unrepresented": "In exact arithmetic there is one (`exhaustion.x`), which rounded to floats is none: q drowns.",
 }
 
@@ -100,7 +100,7 @@ class Solution:
     farkas : Farkas or None
         The proof of UNSOLVABLE where there is no feasible point.
     exhaustion : Exhaustion or None
-        What trying all faces in exact arithmetic came to, where that was done: the other proof of UNSOLVABLE.
+        What trying all faces came to, where that was done: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
         The vector y of INFEASIBLE_TO_PRECISION.
     program : Program or None

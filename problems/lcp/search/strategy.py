@@ -56,8 +56,8 @@ LARGEST_MADE_DENSE = 500
 5 % entries and n = 200 a path takes a tenth of the time then."""
 
 LARGEST_EARLY_FACES = 10
-"""Up to this order trying all faces takes less than two paths: 0.2 ms (n = 3), 16 ms (8), 95 ms (10), where the paths
-of feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 0.7 s (12)."""
+"""Up to this order trying all faces takes less than two paths: 0.6 ms (n = 6), 3 to 50 ms (9), where the paths of
+feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 45 to 600 ms (12, where many are singular)."""
 
 LEAST_START = 1e-3
 """In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
@@ -149,7 +149,7 @@ def _proof(case: Case) -> bool:
 
 
 def _all_faces(case: Case) -> bool:
-    case.search.exhaustion = found = exhaust(case.problem, case.search.seconds_left)
+    case.search.exhaustion = found = exhaust(case.problem, case.search.seconds_left, filtered=True)
     if found is None:
         return False
     if found.point is not None and np.isfinite(found.point).all():
@@ -254,7 +254,7 @@ def _lacks_feasible_start(case: Case) -> bool:
 
 
 _PROVED = "A linear program gave the proof."
-_TRIED = "All complementary faces were tried in exact arithmetic."
+_TRIED = "All complementary faces were tried: excluded by floats with error bounds, or decided in exact arithmetic."
 _FOLLOWED = "Solved by the path of the {case.followed} homotopy."
 _SETTLED = "Solved by active sets alone, before any path."
 _LEMKE_HOWSON = "By the method of Lemke and Howson, before any path."
