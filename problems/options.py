@@ -52,7 +52,7 @@ def real_array(name: str, value: Any) -> Array:
         elif array.dtype.kind not in "fiub":
             raise TypeError(f"dtype {array.dtype}")
         with np.errstate(over="ignore"):
-            numbers: Array = array.astype(float)
+            numbers: Array = array.astype(float, copy=False)
     except (TypeError, ValueError, OverflowError) as error:
         found = f"found {type(value).__name__} ({' '.join(str(error).split())[:100]})"
         raise ValueError(f"{name}: expected real numbers, {found}") from None

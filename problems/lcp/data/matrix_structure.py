@@ -48,12 +48,14 @@ def semidefinite(symmetric: Array) -> bool:
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
-    if (diagonal > 0.0).all() and dpotrf(symmetric, lower=1)[1] == 0:
+    # The transposes are in LAPACK's order.
+    if (diagonal > 0.0).all() and dpotrf(symmetric.T, lower=1)[1] == 0:
         return True
     scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    scaled = symmetric * scale * scale[:, None]
+    scaled = symmetric * scale
+    scaled *= scale[:, None]
     scaled[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n
-    return bool(dpotrf(scaled, lower=1, overwrite_a=1)[1] == 0)
+    return bool(dpotrf(scaled.T, lower=1, overwrite_a=1)[1] == 0)
 
 
 @frozen(eq=False)
