@@ -45,7 +45,8 @@ def real_array(name: str, value: Any) -> Array:
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:
-        array = np.array(value)
+        # By rows, in which sums of products are taken; a matrix of MATLAB comes by columns.
+        array = np.array(value, order="C")
         if array.dtype == object:
             if not all(_is_real(entry) for entry in array.flat):
                 raise TypeError("objects that are no real numbers")

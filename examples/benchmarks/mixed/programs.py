@@ -129,8 +129,10 @@ def main(chart=None):
                     seconds, residual, objective = measured(run, data)
                 except ImportError:
                     continue
-                print(f"{kind}, n = {n}: {name:15} {1e3 * seconds:8.1f} ms, residual {residual:.1e}, {objective:.12g}",
-                      flush=True)
+                print(
+                    f"{kind}, n = {n}: {name:15} {1e3 * seconds:8.1f} ms, residual {residual:.1e}, {objective:.12g}",
+                    flush=True,
+                )
                 points.append((kind, n, name, seconds, residual))
     if chart is not None:
         draw(points, chart)
@@ -138,6 +140,7 @@ def main(chart=None):
 
 def draw(points, file):
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     names = list(dict.fromkeys(name for _, _, name, _, _ in points))
     figure, axes = plt.subplots(len(SIZES), len(KINDS), figsize=(11, 6.5), sharex="row", sharey=True, squeeze=False)
@@ -150,6 +153,9 @@ def draw(points, file):
                     ax.loglog(at[0][0], max(at[0][1], 1e-17), marker, color=f"C{k}", ms=size, label=name)
             ax.set_title(f"{kind}, n = {n}")
             ax.grid(alpha=0.3)
+            ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            ax.xaxis.set_major_formatter("{x:g}")
+            ax.xaxis.set_minor_formatter(NullFormatter())
     for ax in axes[-1]:
         ax.set_xlabel("processor seconds")
     for ax in axes[:, 0]:

@@ -7,10 +7,10 @@ from scipy.optimize import linprog
 
 from continuation.testing import check_homotopy
 from problems import lcp
-from problems.lcp.active_set import face
 from problems.lcp.data.ranges import ranges
-from problems.lcp.homotopies import pair_system
 from problems.lcp.homotopies.registry import HOMOTOPIES
+
+from .util import orders
 
 BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds and name != "kkt"]
 KINDS = pytest.mark.parametrize("sparse", [False, True])
@@ -29,32 +29,13 @@ def random_program(rng, n, m, sparse=False, rank=None, width=0.5):
     return lcp.from_qp(P, rng.standard_normal(n), G, high, rows_lower=low, lower=lower, upper=upper)
 
 
-def counted(monkeypatch):
-    """Where the orders of all matrices that are factored go."""
-    found = []
-
-    def spy(module, name):
-        real = getattr(module, name)
-
-        def counting(matrix, *rest, **options):
-            found.append(getattr(matrix, "matrix", matrix).shape[0])
-            return real(matrix, *rest, **options)
-
-        monkeypatch.setattr(module, name, counting)
-
-    for name in ("factor_lu", "factor_cholesky", "factor_superlu", "factor_band"):
-        spy(face, name)
-    spy(pair_system, "factor_bordered")
-    return found
-
-
 @KINDS
 @pytest.mark.parametrize("name", BOUNDED)
 def test_the_order_of_what_is_factored_is_n_and_the_rows(monkeypatch, name, sparse):
     rng, n, m = np.random.default_rng(3), 30, 20
     program = random_program(rng, n, m, sparse, rank=15)
     assert program.both.size == 13
-    found = counted(monkeypatch)
+    found = orders(monkeypatch)
     quick = lcp.solve(program)
     assert quick.success
     assert max(found) <= n + m
