@@ -243,6 +243,11 @@ def _in_a_box(case: Case) -> bool:
     return case.known.symmetric and all(bool(np.isfinite(end).all()) for end in ends)
 
 
+def _with_rows(case: Case) -> bool:
+    """Whether the problem is that of a program which is not one in a box alone."""
+    return case.problem.primal > 0 and case.in_budget and not _in_a_box(case)
+
+
 def _has_few_faces(case: Case) -> bool:
     if case.problem.standard:
         return _pivotable(case) and case.problem.n <= LARGEST_EARLY_FACES
@@ -284,7 +289,7 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("Lemke", _pivotable, lambda c: by_lemke(c.search, c.seed), _LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
     Attempt("few faces", _has_few_faces, _all_faces, _TRIED),
-    Attempt("augmented Lagrangian", lambda c: c.problem.primal > 0 and c.in_budget, _augmented, _AUGMENTED),
+    Attempt("augmented Lagrangian", _with_rows, _augmented, _AUGMENTED),
 )
 """What is cheap and cannot mislead."""
 
