@@ -66,7 +66,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
         return Outcome.UNSOLVABLE
     if proof is not None:
         return Outcome.INFEASIBLE_TO_PRECISION
-    if exhaustion is None and end is not None and to_precision(search.problem, end.certificate.x):
+    if exhaustion is None and end is not None and to_precision(search.problem, end.certificate):
         return Outcome.SOLVED_TO_PRECISION
     if exhaustion is None and end is not None and end.stationary and not end.certificate.solves(NEARLY):
         return Outcome.STATIONARY

@@ -180,7 +180,7 @@ class Search:
         nearest = None if self.finish is None else self.finish.nearest
         if nearest is not None:
             self.accept(nearest)
-        return nearest is not None and to_precision(self.problem, nearest.x)
+        return nearest is not None and to_precision(self.problem, nearest)
 
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.finish is None:
@@ -319,7 +319,7 @@ class Search:
 
         def rank(end: Candidate) -> tuple[bool, bool, bool, float]:
             certificate = end.certificate
-            rounded = to_precision(self.problem, certificate.x)
+            rounded = to_precision(self.problem, certificate)
             return not self.confirmed(certificate), not rounded, not end.stationary, certificate.residual
 
         return min(self.ends, key=rank)

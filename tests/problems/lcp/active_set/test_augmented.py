@@ -11,6 +11,7 @@ from continuation.counts import Counts
 from problems import lcp
 from problems.lcp import Outcome
 from problems.lcp.active_set.augmented import Penalised, Saddle, guesses
+from problems.lcp.proof.verdict import to_precision
 
 INF = np.inf
 
@@ -138,3 +139,13 @@ def test_rounding_in_place_of_a_zero_is_solved_to_precision_and_said():
     high[0] = -1e-6
     solution = lcp.solve(lcp.from_qp(M @ M.T / n, made.c, G, high, lower=lower, upper=1.0))
     assert solution.outcome is Outcome.UNSOLVABLE
+
+
+def test_a_point_far_along_a_ray_does_not_solve_to_precision():
+    """The objective falls for ever along (1, 1): relative to x its slope is rounding, relative to q it is not."""
+    problem = lcp.from_lp([-1.0, 0.0], A_eq=[[1.0, -1.0]], b_eq=[0.0], lower=0).problem
+    far = np.array([1e17, 1e17, 0.0])
+    assert problem.relative_residual(far) <= 1e-16
+    assert not to_precision(problem, lcp.certify(problem, far))
+    near = lcp.from_lp([1.0, 0.0], A_eq=[[1.0, -1.0]], b_eq=[0.0], lower=0).problem
+    assert to_precision(near, lcp.certify(near, np.zeros(3)))
