@@ -110,9 +110,13 @@ def balanced(problem: MixedLCP) -> Scaled | None:
 
 def level(problem: MixedLCP) -> bool:
     """Whether the largest entries of rows and columns are so alike that other units would change next to nothing."""
-    size: Matrix = abs(problem.A)
-    largest = [size.max(axis=axis) for axis in (0, 1)]
-    both = np.concatenate([part.toarray().ravel() if sp.issparse(part) else part for part in largest])
+    if problem.sparse:
+        entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
+        np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
+        np.maximum.at(both, problem.n + problem.A.indices, entries)
+    else:
+        size = np.abs(problem.A)
+        both = np.concatenate([size.max(axis=axis) for axis in (0, 1)])
     return bool(both.max() <= LEVELLED * both.min() and 1.0 / LEVELLED <= both.max() <= LEVELLED)
 
 
