@@ -45,14 +45,15 @@ def real_array(name: str, value: Any) -> Array:
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:
-        array = np.array(value)
+        # By rows, in which sums of products are taken; a matrix of MATLAB comes by columns.
+        array = np.array(value, order="C")
         if array.dtype == object:
             if not all(_is_real(entry) for entry in array.flat):
                 raise TypeError("objects that are no real numbers")
         elif array.dtype.kind not in "fiub":
             raise TypeError(f"dtype {array.dtype}")
         with np.errstate(over="ignore"):
-            numbers: Array = array.astype(float)
+            numbers: Array = array.astype(float, copy=False)
     except (TypeError, ValueError, OverflowError) as error:
         found = f"found {type(value).__name__} ({' '.join(str(error).split())[:100]})"
         raise ValueError(f"{name}: expected real numbers, {found}") from None

@@ -3,7 +3,7 @@
     python examples/benchmarks/mixed/programs.py [chart.png]
 
 The rivals are piqp, clarabel, highspy and scipy (L-BFGS-B); those that are not installed are left out. Each is timed
-over its whole call, the least of three.
+in processor seconds (a loaded machine adds to the others) over its whole call, the least of eleven, or in 5 s.
 """
 
 import sys
@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from problems import lcp
 
-REPEATS = 3
+REPEATS = 11
 SIZES = (300, 1000)
 KINDS = ("rank n/2", "definite", "condition 1e6")
 LARGEST_FOR_HIGHS = 300
@@ -105,13 +105,13 @@ SOLVERS = {
 
 
 def measured(run, data):
-    seconds, x = np.inf, None
+    seconds, x, first = np.inf, None, time.process_time()
     P, c, low, high = data
     for _ in range(REPEATS):
-        began = time.perf_counter()
+        began = time.process_time()
         x = run(P, c, low, high)
-        seconds = min(seconds, time.perf_counter() - began)
-        if seconds > 5.0:
+        seconds = min(seconds, time.process_time() - began)
+        if time.process_time() - first > 5.0:
             break
     inside = np.clip(x, low, high)
     return seconds, float(np.abs(x - np.clip(x - (P @ x + c), low, high)).max()), 0.5 * inside @ P @ inside + c @ inside
@@ -129,8 +129,10 @@ def main(chart=None):
                     seconds, residual, objective = measured(run, data)
                 except ImportError:
                     continue
-                print(f"{kind}, n = {n}: {name:15} {1e3 * seconds:8.1f} ms, residual {residual:.1e}, {objective:.12g}",
-                      flush=True)
+                print(
+                    f"{kind}, n = {n}: {name:15} {1e3 * seconds:8.1f} ms, residual {residual:.1e}, {objective:.12g}",
+                    flush=True,
+                )
                 points.append((kind, n, name, seconds, residual))
     if chart is not None:
         draw(points, chart)
@@ -138,6 +140,7 @@ def main(chart=None):
 
 def draw(points, file):
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     names = list(dict.fromkeys(name for _, _, name, _, _ in points))
     figure, axes = plt.subplots(len(SIZES), len(KINDS), figsize=(11, 6.5), sharex="row", sharey=True, squeeze=False)
@@ -150,8 +153,11 @@ def draw(points, file):
                     ax.loglog(at[0][0], max(at[0][1], 1e-17), marker, color=f"C{k}", ms=size, label=name)
             ax.set_title(f"{kind}, n = {n}")
             ax.grid(alpha=0.3)
+            ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            ax.xaxis.set_major_formatter("{x:g}")
+            ax.xaxis.set_minor_formatter(NullFormatter())
     for ax in axes[-1]:
-        ax.set_xlabel("seconds")
+        ax.set_xlabel("processor seconds")
     for ax in axes[:, 0]:
         ax.set_ylabel("natural residual")
     handles, labels = axes[0, 0].get_legend_handles_labels()

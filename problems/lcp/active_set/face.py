@@ -58,8 +58,8 @@ class Face:
     exact : bool
         Whether one solve gives the point: the equations themselves were factored, not shifted ones, or they are those
         of a proximal problem, of which no more is asked than signs.
-    shift : float
-        Zero for a face of the problem itself.
+    shift : float or Array
+        Of the diagonal; zero for a face of the problem itself.
     q : Array
         The problem's own, or in its place that of a proximal problem.
     """
@@ -69,7 +69,7 @@ class Face:
     active: Mask
     inverse: Callable[[Array], Array]
     exact: bool
-    shift: float
+    shift: float | Array
     q: Array
 
     def point(self, near: Array) -> tuple[Array, Array] | None:
@@ -95,7 +95,7 @@ class Face:
     def w(self, x: Array) -> Array:
         """``A x + shift x + q``, shape (n,)."""
         w: Array = self.problem.A @ x + self.q
-        return w + self.shift * x if self.shift else w
+        return w + self.shift * x if isinstance(self.shift, np.ndarray) or self.shift else w
 
     def refined(self, x: Array) -> Array:
         """The point x of a face of the problem itself, corrected once with w in twice the working precision."""
@@ -155,19 +155,24 @@ class Faces:
 
     def _made(self, state: State, shift: float, centre: Array | None) -> Face | None:
         problem = self.problem
-        q = problem.q if centre is None else problem.q - shift * centre
-        active = state == BETWEEN
-        inside = np.flatnonzero(active)
+        active, ranges = state == BETWEEN, self.structure.ranges
+        inside = np.flatnonzero(active) if ranges is None else ranges.inside(active)
+        shifts = ranges.shifts(shift) if ranges is not None and shift else shift
+        q = problem.q if centre is None else problem.q - shifts * centre
+        inverse: Callable[[Array], Array] | None
         if inside.size == 0:
-            return Face(problem, state, active, lambda right: right, True, shift, q)
-        if self.structure.band is not None:
-            inverse = self._banded(active, shift)
-            return None if inverse is None else Face(problem, state, active, inverse, True, shift, q)
-        block = problem.A[inside][:, inside]
-        factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
-        if factor is None:
+            inverse, exact = _same, True
+        elif self.structure.band is not None and ranges is None:
+            inverse, exact = self._banded(active, shift), True
+        else:
+            block = problem.A[inside][:, inside]
+            factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
+            inverse = None if factor is None else factor.solve
+        if inverse is None:
             return None
-        return Face(problem, state, active, factor.solve, exact or centre is not None, shift, q)
+        if ranges is not None:
+            inverse = ranges.completed(active, inside, inverse, shift)
+        return Face(problem, state, active, inverse, exact or centre is not None, shifts, q)
 
     def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
         # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.
@@ -196,6 +201,10 @@ class Faces:
             return factor.solve(whole)[active]
 
         return inverse
+
+
+def _same(right: Array) -> Array:
+    return right
 
 
 def _norm(block: Matrix) -> float:

@@ -10,6 +10,7 @@ from attrs import define, field
 
 from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
+from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
@@ -54,6 +55,20 @@ On those 24 all five take 291 factorisations, every second one of them 289, the 
 matrices whose least singular values a large shift would drown.
 """
 
+AFTER_MULTIPLIERS = Policy(steps=3)
+"""At each change of the multipliers of the augmented Lagrangian."""
+
+WORTH_POLISHING = 1e-6
+"""The normwise residual below which its points are corrected on the face that they say,"""
+
+MORE_MULTIPLIERS = 5
+"""and so many changes without half of the residual after which it is given up."""
+
+ZEROS = (0.0, 1e-18, 1e-14, 1e-12)
+"""What is taken for zero at a point with bounds, in natural units: the first that leaves the least residual.
+
+The end of a linear program is degenerate, and a row of zeros is exact only where they are."""
+
 DESCENT_ROUNDS = 200
 """Of the proximal method where A is not semidefinite."""
 
@@ -77,6 +92,8 @@ class Finish:
         The active sets so far.
     certificate : Certificate or None
         Of the last solution found.
+    nearest : Certificate or None
+        Of the point of least normwise residual that the augmented Lagrangian led to.
     """
 
     faces: Faces
@@ -84,6 +101,7 @@ class Finish:
     counts: Counts = field(factory=Counts)
     tried: Tried = field(factory=Tried)
     certificate: Certificate | None = field(default=None, init=False)
+    nearest: Certificate | None = field(default=None, init=False)
 
     @property
     def problem(self) -> MixedLCP:
@@ -154,7 +172,7 @@ class Finish:
         Kaplan and Tichatschke, "Proximal Point Methods and Nonconvex Optimization", J. Global Optim. 13 (1998).
         """
         problem = self.problem
-        x, shift = problem.near_zero, 1.1 * _below(problem.A)
+        x, shift = problem.near_zero, 1.1 * below_zero(problem.A)
         for _ in range(DESCENT_ROUNDS):
             moved = iterate(self.faces, state, PROXIMAL_ROUND, near=x, shift=shift, counts=self.counts)
             if moved.ended is not Ended.SETTLED:
@@ -165,6 +183,54 @@ class Finish:
             if solved is not None:
                 return solved
         return None
+
+    def augmented(self, below: float, most: int) -> Array | None:
+        """A KKT point of a program by way of its augmented Lagrangian; None without one, and `nearest` is the best.
+
+        Parameters
+        ----------
+        below : float
+            How far below zero the least eigenvalue of P is; 0 where P is positive semidefinite.
+        most : int
+            Factorisations.
+        """
+        saddle = Saddle.of(self.problem)
+        if saddle is None:
+            return None
+        start, since, best = self.counts.factorizations, 0, np.inf
+        for state, point in guesses(saddle, below, self.problem.near_zero[: self.problem.primal], self.counts):
+            solved = self.settle(state, AFTER_MULTIPLIERS, point)
+            if solved is not None:
+                return solved
+            now = self.problem.relative_residual(point)
+            if now <= WORTH_POLISHING and self._polished(state, point):
+                assert self.certificate is not None
+                return self.certificate.x
+            since, best = (0, now) if now < 0.5 * best else (since + 1, best)
+            if since > MORE_MULTIPLIERS or self.counts.factorizations - start > most:
+                break
+        return None
+
+    def _polished(self, state: State, near: Array) -> bool:
+        """Correct a point on its face, in twice the precision; whether that is a solution."""
+        self.counts.factorizations += 1
+        face = self.faces.face(state)
+        point = None if face is None else face.point(near)
+        if face is None or point is None:
+            return False
+        x = point[0]
+        for _ in range(SIGN_CORRECTIONS):
+            x = face.refined(x)
+        if not np.isfinite(x).all():
+            return False
+        found = with_zeros(self.problem, certify(self.problem, self.problem.clipped(x)), self.tolerance)
+        if confirmed(self.problem, found, self.tolerance):
+            self.certificate = found
+            return True
+        residual = self.problem.relative_residual
+        if self.nearest is None or residual(found.x) < residual(self.nearest.x):
+            self.nearest = found
+        return False
 
     def _judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
         """The point, clipped to the bounds and certified; corrected in twice the precision until that is round-off."""
@@ -209,7 +275,23 @@ class Finish:
         return low_x >= -self.tolerance * size and low_w >= -self.tolerance * (problem.scale(x) - 1.0)
 
 
-def _below(A: Matrix) -> float:
+def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certificate:
+    """The best certificate with x at the bounds where the piece of a point says so, and what is so near to them.
+
+    What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    end : Certificate
+    tolerance : float
+    """
+    settled = problem.settled(end.x, end.w)
+    exact = (certify(problem, settled, zero) for zero in (*ZEROS, tolerance))
+    return min(end, *exact, key=lambda one: one.relative_residual)
+
+
+def below_zero(A: Matrix) -> float:
     """How far below zero an eigenvalue of a symmetric matrix is at most: exactly, or of a sparse one by its rows."""
     if sp.issparse(A):
         return float((abs(A).sum(axis=1) - A.diagonal()).max())

@@ -53,4 +53,6 @@ def without_fixed(problem: MixedLCP) -> WithoutFixed:
         return WithoutFixed(problem, None, kept)
     q = problem.w(np.where(problem.fixed, problem.lower, 0.0))[kept]
     block = problem.A[kept][:, kept]
-    return WithoutFixed(problem, MixedLCP(block, q, problem.lower[kept], problem.upper[kept]), kept)
+    primal = int(np.searchsorted(kept, problem.primal))
+    rest = MixedLCP(block, q, problem.lower[kept], problem.upper[kept], primal=primal)
+    return WithoutFixed(problem, rest, kept)

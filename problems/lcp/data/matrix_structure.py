@@ -15,6 +15,7 @@ from scipy.linalg.lapack import dpotrf
 from continuation.arrays import Array, Matrix
 from continuation.linear import Banded
 from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.ranges import Ranges, ranges
 
 WIDEST_BAND = 16
 """A sparse matrix with at most so many diagonals, the gaps between them counted, is treated as banded."""
@@ -47,12 +48,14 @@ def semidefinite(symmetric: Array) -> bool:
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
-    if (diagonal > 0.0).all() and dpotrf(symmetric, lower=1)[1] == 0:
+    # The transposes are in LAPACK's order.
+    if (diagonal > 0.0).all() and dpotrf(symmetric.T, lower=1)[1] == 0:
         return True
     scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    scaled = symmetric * scale * scale[:, None]
+    scaled = symmetric * scale
+    scaled *= scale[:, None]
     scaled[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n
-    return bool(dpotrf(scaled, lower=1, overwrite_a=1)[1] == 0)
+    return bool(dpotrf(scaled.T, lower=1, overwrite_a=1)[1] == 0)
 
 
 @frozen(eq=False)
@@ -133,6 +136,18 @@ class Structure:
         rows = np.zeros((lower + upper + 1, self.n))
         rows[lower + offsets, entries.row] = entries.data
         return Band(rows, lower, upper)
+
+    @cached_property
+    def ranges(self) -> Ranges | None:
+        """The rows with two sides, if there are any."""
+        return ranges(self.problem)
+
+    @cached_property
+    def without_activities(self) -> Structure:
+        """That of the other unknowns."""
+        assert self.ranges is not None
+        rest, problem = self.ranges.rest, self.problem
+        return Structure(MixedLCP(problem.A[rest][:, rest], problem.q[rest], problem.lower[rest], problem.upper[rest]))
 
     @cached_property
     def squarable(self) -> bool:

@@ -57,6 +57,9 @@ class MixedLCP:
     q : array_like, shape (n,)
     lower, upper : array_like, shape (n,), or one number for all, optional
         -inf and inf, the defaults, are none.
+    primal : int, optional
+        So many unknowns, the first, are the variables of a quadratic program, the others its multipliers, and the
+        values of its rows; 0, the default, where that is not known. See `from_qp`.
 
     Raises
     ------
@@ -74,6 +77,7 @@ class MixedLCP:
     q: Array = field(converter=_q)
     lower: Array = field(default=None)
     upper: Array = field(default=None)
+    primal: int = field(default=0, kw_only=True, repr=False)
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
     """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
 
@@ -174,6 +178,8 @@ class MixedLCP:
         x, w : ndarray, shape (n,)
             On that piece.
         """
+        if self.standard:
+            return active_state(np.where(state == BETWEEN, x > 0.0, w < 0.0))
         inside, above = state == BETWEEN, state == UPPER
         # Where lower = upper it stays, whatever w is.
         low = np.where(inside, x <= self.lower, ~above & ((w >= 0.0) | self.fixed))

@@ -23,7 +23,8 @@ class Program:
     """min 1/2 x'P x + c'x subject to lower <= x <= upper, A_eq x = b_eq, rows_lower <= G x <= h.
 
     Made by `from_qp` and `from_lp`; `solve` takes it. The unknowns of `problem` are x, a multiplier without a sign of
-    each equation, and a nonnegative one of each finite side of each row, so that::
+    each equation, a nonnegative one of each row with one side, one without a sign of each row with two, and the values
+    G x of these, which are in no matrix that is factored; so that::
 
         P x + c = A_eq' equations + G' rows + bounds
 
@@ -36,9 +37,9 @@ class Program:
         The optimality conditions.
     equations : tuple of int
         Where their multipliers begin and end.
-    equal, above, below : ndarray of int
-        The rows of G that are equations, those with an upper side and those with a lower one, in the order of their
-        multipliers.
+    equal, above, below, both : ndarray of int
+        The rows of G that are equations, those with an upper side alone, with a lower one alone, and with two, in the
+        order of their multipliers.
     rows : int
         The number of rows of G.
     """
@@ -50,6 +51,7 @@ class Program:
     equal: NDArray[np.intp]
     above: NDArray[np.intp]
     below: NDArray[np.intp]
+    both: NDArray[np.intp]
     rows: int
 
     @property
@@ -82,11 +84,11 @@ class Program:
             Of `problem`.
         """
         begin, end = self.equations
-        ends = np.cumsum([end, self.equal.size, self.above.size, self.below.size])
+        kinds = self.equal, self.above, self.below, self.both
+        multipliers = unknowns[end : end + sum(kind.size for kind in kinds)]
         rows = np.zeros(self.rows)
-        rows[self.equal] += unknowns[ends[0] : ends[1]]
-        rows[self.above] -= unknowns[ends[1] : ends[2]]
-        rows[self.below] += unknowns[ends[2] : ends[3]]
+        rows[np.concatenate(kinds)] = multipliers
+        rows[self.above] *= -1.0
         return {"x": unknowns[: self.n], "equations": unknowns[begin:end], "rows": rows, "bounds": w[: self.n]}
 
     def reading(self, multiplier: Array) -> str:
@@ -167,19 +169,22 @@ def from_qp(
         raise ValueError(f"rows_lower: expected at most h, found rows_lower[{i}] = {low[i]} > h[{i}] = {high[i]}")
     x_low, x_high = bound_vector("lower", lower, n, -np.inf), bound_vector("upper", upper, n, np.inf)
     ordered_bounds(x_low, x_high)
-    equal = np.flatnonzero(low == high)
-    above = np.flatnonzero((high < np.inf) & (low != high))
-    below = np.flatnonzero((low > -np.inf) & (low != high))
-    parts = [(B, -b), (G[equal], -low[equal]), (-1 * G[above], high[above]), (G[below], -low[below])]
-    free = B.shape[0] + equal.size
-    signed = above.size + below.size
-    A = _optimality(P, [part for part, _ in parts if part.shape[0]])
-    q = np.concatenate([c, *(constant for _, constant in parts)])
+    has_low, has_high = low > -np.inf, high < np.inf
+    equal, both = np.flatnonzero(low == high), np.flatnonzero(has_low & has_high & (low != high))
+    above, below = np.flatnonzero(has_high & ~has_low), np.flatnonzero(has_low & ~has_high)
+    parts = [
+        (B, -b), (G[equal], -low[equal]), (-1 * G[above], high[above]), (G[below], -low[below]),
+        (G[both], np.zeros(both.size)),
+    ]  # fmt: skip
+    free, signed = B.shape[0] + equal.size, above.size + below.size
+    A = _optimality(P, [part for part, _ in parts if part.shape[0]], both.size)
+    q = np.concatenate([c, *(constant for _, constant in parts), np.zeros(both.size)])
+    none = np.full(both.size, np.inf)
     problem = MixedLCP(
-        A, q, np.concatenate([x_low, np.full(free, -np.inf), np.zeros(signed)]),
-        np.concatenate([x_high, np.full(free + signed, np.inf)]),
+        A, q, np.concatenate([x_low, np.full(free, -np.inf), np.zeros(signed), -none, low[both]]),
+        np.concatenate([x_high, np.full(free + signed, np.inf), none, high[both]]), primal=n,
     )  # fmt: skip
-    return Program(P, c, problem, (n, n + B.shape[0]), equal, above, below, m)
+    return Program(P, c, problem, (n, n + B.shape[0]), equal, above, below, both, m)
 
 
 def from_lp(
@@ -237,12 +242,22 @@ def _check_symmetric(P: Matrix) -> None:
         raise ValueError(f"P: expected a symmetric matrix, found P[{i}, {j}] unlike P[{j}, {i}]; give (P + P') / 2")
 
 
-def _optimality(P: Matrix, rows: list[Matrix]) -> Matrix:
-    """[[P, -R'], [R, 0]] for the rows R, one under another; sparse where one of them is."""
+def _optimality(P: Matrix, rows: list[Matrix], both: int) -> Matrix:
+    """[[P, -R', 0], [R, 0, -E], [0, E', 0]] for the rows R, one under another, of which the last, E, have two sides.
+
+    Sparse where one of them is.
+    """
     if not rows:
         return P
     if sp.issparse(P) or any(sp.issparse(part) for part in rows):
         R = sp.vstack([sp.csr_array(part) for part in rows], format="csr")
-        return sp.block_array([[sp.csr_array(P), -R.T], [R, None]], format="csr")
+        E = sp.eye_array(R.shape[0], format="csr")[:, R.shape[0] - both :]
+        whole = sp.block_array([[sp.csr_array(P), -R.T, None], [R, None, -E], [None, E.T, sp.csr_array((both, both))]])
+        return sp.csr_array(whole)
     R = np.vstack(rows)
-    return np.block([[P, -R.T], [R, np.zeros((R.shape[0], R.shape[0]))]])
+    (k, n), size = R.shape, sum(R.shape) + both
+    A = np.zeros((size, size))
+    A[:n, :n], A[:n, n : n + k], A[n : n + k, :n] = P, -R.T, R
+    multipliers, activities = np.arange(n + k - both, n + k), np.arange(n + k, size)
+    A[multipliers, activities], A[activities, multipliers] = -1.0, 1.0
+    return A

@@ -45,8 +45,9 @@ NEGLIGIBLE = -27.0
 the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
 
 LEVELLED = 16.0
-"""With bounds: where the largest entries of all rows and columns are within this factor of another, and of 1, a problem
-stays as it is. Finding units and changing to them takes longer than solving it then (n = 1000: 0.25 of 0.45 s)."""
+"""Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
+stays as it is, and active sets of an LCP are tried as it is. Finding units and changing to them takes longer than
+solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone LCPs, n = 60: 0.5 of 1.3 ms)."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
@@ -87,7 +88,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
     Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
     """
-    if not problem.standard and _level(problem):
+    if not problem.standard and level(problem):
         return None
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
@@ -95,23 +96,27 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     A, q = _scaled(problem.A, rows, columns), _times(problem.q, rows)
     scaled: MixedLCP
     if problem.standard:
-        scaled = LCP(A, q)
+        scaled = LCP(A, q, primal=problem.primal)
     else:
         bounds = _times(problem.lower, -columns), _times(problem.upper, -columns)
         ends = zip(bounds, (problem.lower, problem.upper))
         if not all(np.array_equal(_times(new, columns), old) for new, old in ends):
             return None  # a bound that vanishes or overflows would make another problem
-        scaled = MixedLCP(A, q, *bounds)
+        scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
     # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
     scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
-def _level(problem: MixedLCP) -> bool:
-    """Whether the largest entries of rows and columns are so alike that other units would change nothing."""
-    size: Matrix = abs(problem.A)
-    largest = [size.max(axis=axis) for axis in (0, 1)]
-    both = np.concatenate([part.toarray().ravel() if sp.issparse(part) else part for part in largest])
+def level(problem: MixedLCP) -> bool:
+    """Whether the largest entries of rows and columns are so alike that other units would change next to nothing."""
+    if problem.sparse:
+        entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
+        np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
+        np.maximum.at(both, problem.n + problem.A.indices, entries)
+    else:
+        size = np.abs(problem.A)
+        both = np.concatenate([size.max(axis=axis) for axis in (0, 1)])
     return bool(both.max() <= LEVELLED * both.min() and 1.0 / LEVELLED <= both.max() <= LEVELLED)
 
 

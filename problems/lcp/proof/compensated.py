@@ -86,7 +86,9 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
-    doubtful = ~np.isfinite(w) | ~(size <= _LARGE) | ((size < 1.0 / _LARGE) & _filled(problem, x))
+    doubtful, small = ~np.isfinite(w) | ~(size <= _LARGE), size < 1.0 / _LARGE
+    if small.any():
+        doubtful |= small & _filled(problem, x)
     if not doubtful.any():
         return Terms(problem.A, x, w, size, none)
     mantissas, powers = np.frexp(x)

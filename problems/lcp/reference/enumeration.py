@@ -16,6 +16,7 @@ from continuation.arrays import Array
 from problems.lcp.classes.exact import Indices, indices, over_common_denominator
 from problems.lcp.classes.faces import FacePoint, bounds_over, face_point, piece_point
 from problems.lcp.data.problem import LCP, MixedLCP, require_lcp
+from problems.lcp.proof.pieces import doubtful
 
 LARGEST_FACES = 14
 """Largest order: 2^14 faces (1.2 s for integers of one digit); so many pieces where there are bounds."""
@@ -154,7 +155,7 @@ def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
     return problem.n <= PER_PIECE * order and problem.pieces <= 1 << order
 
 
-def exhaust(problem: MixedLCP, seconds: float = math.inf) -> Exhaustion | None:
+def exhaust(problem: MixedLCP, seconds: float = math.inf, *, filtered: bool = False) -> Exhaustion | None:
     """Whether the problem has a solution, decided like `solve_by_enumeration`, which goes on to find all of them.
 
     Parameters
@@ -163,6 +164,9 @@ def exhaust(problem: MixedLCP, seconds: float = math.inf) -> Exhaustion | None:
         Dense or sparse, `decidable`: for an LCP, n at most `LARGEST_FACES`.
     seconds : float
         After so long it is given up.
+    filtered : bool
+        Whether pieces that floats, with bounds on their rounding, prove to hold no solution are passed over; quicker by
+        the more the larger n is, and the outcome is the same.
 
     Returns
     -------
@@ -177,15 +181,17 @@ def exhaust(problem: MixedLCP, seconds: float = math.inf) -> Exhaustion | None:
     entries, q, _ = _integers(problem)
     bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
     end = time.perf_counter() + seconds
-    tried = 0
-    for state in _all_states(problem):
-        tried += 1
+    states = list(_all_states(problem))
+    asked = doubtful(problem, np.array(states, dtype=np.int8).reshape(len(states), problem.n)) if filtered else None
+    for tried, state in enumerate(states, 1):
+        if asked is not None and not asked[tried - 1]:
+            continue
         point = piece_point(entries, q, bounds, unit, state)
         if point is not None:
             return Exhaustion(point.x, tried)
         if time.perf_counter() > end:
             return None
-    return Exhaustion(None, tried)
+    return Exhaustion(None, len(states))
 
 
 def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:

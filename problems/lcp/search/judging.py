@@ -17,7 +17,7 @@ from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
-from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby
+from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
 from problems.lcp.reference.enumeration import exhaust
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
@@ -66,6 +66,8 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
         return Outcome.UNSOLVABLE
     if proof is not None:
         return Outcome.INFEASIBLE_TO_PRECISION
+    if exhaustion is None and end is not None and to_precision(search.problem, end.certificate):
+        return Outcome.SOLVED_TO_PRECISION
     if exhaustion is None and end is not None and end.stationary and not end.certificate.solves(NEARLY):
         return Outcome.STATIONARY
     return Outcome.NOT_FOUND
@@ -88,6 +90,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
     said = "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
+    rounded = _rounded(found, tolerance)
     found = evolve(found, problem=problem, message=f"{found.message} {said}")
     exact, nearly = found.farkas, found.float_farkas
     if exact is not None:
@@ -98,7 +101,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
         found = evolve(found, farkas=moved)
     if nearly is not None:
         found = evolve(found, float_farkas=nearly.in_units(scaled.rows))
-    return found if found.x is None else _at(found, scaled.x(found.x), tolerance)
+    return found if found.x is None else _at(found, scaled.x(found.x), tolerance, rounded)
 
 
 def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
@@ -118,6 +121,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
         certificate = certify(problem, small.x(None))
         message = f"{Outcome.SOLVED} All unknowns are fixed."
         return Solution(problem, Outcome.SOLVED, message, certificate, (), -1, Counts(), 0.0)
+    rounded = _rounded(rest, tolerance)
     found = evolve(rest, problem=problem, message=f"{rest.message} {said}")
     if found.exhaustion is not None:
         found = evolve(found, exhaustion=exhaust(problem))
@@ -136,7 +140,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
         found = evolve(found, outcome=Outcome.NOT_FOUND, message=message)
     if rest.x is None:
         return found
-    found = _at(found, small.x(rest.x), tolerance)
+    found = _at(found, small.x(rest.x), tolerance, rounded)
     # The equations of what is left have a q that was rounded.
     if found.outcome is Outcome.SOLVED and found.x is not None and problem.n <= LARGEST_DECIDED:
         exact = exact_nearby(problem, found.x)
@@ -188,12 +192,20 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
     return found if decided.point is None else _at(found, decided.point, tolerance)
 
 
-def _at(found: Solution, x: Array, tolerance: float) -> Solution:
+def _rounded(found: Solution, tolerance: float) -> bool:
+    """Whether a program was solved for data that differ by round-off; each row relative to its own terms it was not."""
+    end = found.certificate
+    return found.solved and end is not None and not confirmed(found.problem, end, tolerance)
+
+
+def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> Solution:
     """The answer at a point of the problem as given, infinite or zero where that is beyond the range of floats."""
     bad = ~np.isfinite(x)
     certificate = None if bad.any() else certify(found.problem, x)
-    if not found.solved or (
-        certificate is not None and confirmed(found.problem, certificate, tolerance)
+    if (
+        not found.solved
+        or (rounded and certificate is not None)
+        or (certificate is not None and confirmed(found.problem, certificate, tolerance))
     ):
         return evolve(found, certificate=certificate)
     if not bad.any() and (x > 0.0).any() and float(x[x > 0.0].min()) > np.finfo(float).tiny:

@@ -63,13 +63,18 @@ _WITH_BOUNDS = {
     Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x between the bounds gives w the signs that a solution "
     "has, complementary or not: a multiplier says so but for rounding.",
 }
+_ROUNDED = (
+    "Solved to working precision: x solves a program whose data differ from these by the round-off of the largest of "
+    "them, in balanced units. Relative to its own terms a row is off by more, as where a side of it is rounding in "
+    "place of a zero; so the data as given may have no solution."
+)
 _PROOFS_WITH_BOUNDS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x between the bounds gives w the signs of a solution.",
-    "exhaustion": "None of the complementary pieces holds a solution: all were tried in exact arithmetic.",
+    "exhaustion": "None of the complementary pieces holds a solution: all were tried, with error bounds or exactly.",
 }
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
-    "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried in exact arithmetic.",
+    "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried, with error bounds or exactly.",
     "unrepresented": "In exact arithmetic there is one (`exhaustion.x`), which rounded to floats is none: q drowns.",
 }
 
@@ -97,7 +102,7 @@ class Solution:
     farkas : Farkas or None
         The proof of UNSOLVABLE where there is no feasible point.
     exhaustion : Exhaustion or None
-        What trying all faces in exact arithmetic came to, where that was done: the other proof of UNSOLVABLE.
+        What trying all faces came to, where that was done: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
         The vector y of INFEASIBLE_TO_PRECISION.
     program : Program or None
@@ -131,6 +136,9 @@ class Solution:
     @property
     def sentence(self) -> str:
         """What the outcome means for this problem."""
+        rounded = self.outcome is Outcome.SOLVED_TO_PRECISION and self.problem.primal > 0
+        if rounded and self.certificate is not None and not self.certificate.solves():
+            return _ROUNDED
         return str(self.outcome) if self.problem.standard else _WITH_BOUNDS.get(self.outcome, str(self.outcome))
 
     def __repr__(self) -> str:

@@ -17,14 +17,15 @@ from continuation.path import Path
 from continuation.status import Status
 from continuation.step.tracer import Observer
 from problems.lcp.active_set.face import Faces
-from problems.lcp.active_set.finish import Finish
+from problems.lcp.active_set.finish import Finish, with_zeros
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.data.scaling import Scaled, balanced
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import LCPHomotopy
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
-from problems.lcp.proof.verdict import confirmed, stationary
+from problems.lcp.proof.verdict import confirmed, stationary, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.restarts import FAR_STARTS, Band, Restart, light, reweighted, trace_light
@@ -35,11 +36,6 @@ IN_FLIGHT = 64
 
 A constant, since restart k goes on from restart k - IN_FLIGHT: the answer must not depend on the number of workers.
 """
-
-ZEROS = (0.0, 1e-14, 1e-12)
-"""What is taken for zero at the end of a path with bounds, in natural units: the first that leaves the least residual.
-
-The end of a linear program is degenerate, and a row of zeros is exact only where they are."""
 
 LARGEST_KEPT = 4_000_000
 """Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
@@ -79,6 +75,10 @@ class Search:
     paths : list of Path
     ends : list of Candidate
         Where the paths, and the finish, led.
+    scaled : Scaled or None
+        The problem in units of its own, where it is solved in these.
+    postponed : bool
+        Whether these are looked for only when active sets have failed in the units given.
     proof : Farkas, FloatFarkas or None
         That there is no feasible point, exactly or to working precision.
     exhaustion : Exhaustion or None
@@ -96,6 +96,8 @@ class Search:
     counts: Counts = field(factory=Counts)
     paths: list[Path] = field(factory=list)
     ends: list[Candidate] = field(factory=list)
+    scaled: Scaled | None = None
+    postponed: bool = False
     proof: Farkas | FloatFarkas | None = None
     exhaustion: Exhaustion | None = None
     began: float = field(factory=time.perf_counter)
@@ -130,10 +132,20 @@ class Search:
         """Whether a point may be called a solution."""
         return confirmed(self.problem, certificate, self.tolerance)
 
+    def rescale(self) -> None:
+        """Go on in units of the problem's own, if it has others than those given; what was tried stays tried."""
+        self.postponed = False
+        self.scaled = balanced(self.problem)
+        if self.scaled is not None:
+            self.ends.clear()
+            self._change(self.scaled.problem)
+
     def make_dense(self) -> None:
         """Store the matrix dense from here on."""
-        problem = self.problem
-        self.structure = Structure(evolve(problem, A=problem.A.toarray()))
+        self._change(evolve(self.problem, A=self.problem.A.toarray()))
+
+    def _change(self, problem: MixedLCP) -> None:
+        self.structure = Structure(problem)
         if self.finish is not None:
             self.finish.faces = Faces(self.structure)
 
@@ -152,6 +164,23 @@ class Search:
     def descend(self, state: State) -> bool:
         """Whether descent in a box, from a guess, led to a solution."""
         return self._finished(lambda finish: finish.descend(state))
+
+    def augment(self, below: float, most: int) -> bool:
+        """Whether the augmented Lagrangian of a program led to a solution, if only to working precision.
+
+        Parameters
+        ----------
+        below : float
+            How far below zero the least eigenvalue of P is.
+        most : int
+            Factorisations.
+        """
+        if self._finished(lambda finish: finish.augmented(below, most)):
+            return True
+        nearest = None if self.finish is None else self.finish.nearest
+        if nearest is not None:
+            self.accept(nearest)
+        return nearest is not None and to_precision(self.problem, nearest)
 
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.finish is None:
@@ -189,10 +218,7 @@ class Search:
             zeros = certify(self.problem, x, self.tolerance)
             end = zeros if zeros.relative_residual < end.relative_residual else end
         if arrived and not self.problem.standard:
-            # What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
-            settled = self.problem.settled(end.x, end.w)
-            exact = (certify(self.problem, settled, zero) for zero in (*ZEROS, self.tolerance))
-            end = min(end, *exact, key=lambda one: one.relative_residual)
+            end = with_zeros(self.problem, end, self.tolerance)
         if self.finish is None or not arrived or end.relative_residual <= ROUND_OFF:
             return end
         before = self.finish.counts.factorizations
@@ -287,11 +313,13 @@ class Search:
         )
 
     def best(self) -> Candidate | None:
-        """The solution, else the best stationary point, else the end of least residual."""
+        """The solution, else one to working precision, the best stationary point, the end of least residual."""
         if not self.ends:
             return None
 
-        def rank(end: Candidate) -> tuple[bool, bool, float]:
-            return not self.confirmed(end.certificate), not end.stationary, end.certificate.residual
+        def rank(end: Candidate) -> tuple[bool, bool, bool, float]:
+            certificate = end.certificate
+            rounded = to_precision(self.problem, certificate)
+            return not self.confirmed(certificate), not rounded, not end.stationary, certificate.residual
 
         return min(self.ends, key=rank)

@@ -29,7 +29,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme
+from problems.lcp.data.scaling import balanced, extreme, level
 from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
@@ -133,7 +133,7 @@ def solve(
         return of_program(problem, found)
     require_problem(problem)
     if problem.standard and not isinstance(problem, LCP):
-        problem = LCP(problem.A, problem.q)
+        problem = LCP(problem.A, problem.q, primal=problem.primal)
     if not isinstance(homotopy, str) or (homotopy != "auto" and homotopy not in HOMOTOPIES):
         given = repr(homotopy) if isinstance(homotopy, str) else type(homotopy).__name__
         raise ValueError(f"homotopy: expected auto or one of {', '.join(HOMOTOPIES)}, found {given}")
@@ -159,7 +159,9 @@ def solve(
         )  # fmt: skip
         return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
-    scaled = balanced(problem) if automatic or extreme(problem) else None
+    postponed = automatic and finish and not path and problem.standard
+    postponed = postponed and problem.n > LARGEST_DECIDED and level(problem)
+    scaled = balanced(problem) if not postponed and (automatic or extreme(problem)) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
         scaled = None
@@ -176,6 +178,8 @@ def solve(
         None if archive is None else PathLog(as_file("archive", archive), title=_title(problem)),
         progress,
         dict(options),
+        scaled=scaled,
+        postponed=postponed,
     )
     asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
     case = Case(search, start, asked, restarts, seed, executor, near)
@@ -186,7 +190,7 @@ def solve(
             found = beyond_floats(problem, tolerance)
         else:
             settled = settled_by(case, strategy)
-            found = answer(search, _account(case, settled))
+            found, scaled = answer(search, _account(case, settled)), search.scaled
             found = evolve(found, problem=problem) if scaled is None else unscaled(problem, scaled, found, tolerance)
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)

@@ -14,7 +14,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.presets import FAST
-from problems.lcp.active_set.finish import PATIENCE
+from problems.lcp.active_set.finish import PATIENCE, below_zero
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.problem import LCP
@@ -59,11 +59,14 @@ LARGEST_MADE_DENSE = 500
 5 % entries and n = 200 a path takes a tenth of the time then."""
 
 LARGEST_EARLY_FACES = 10
-"""Up to this order trying all faces takes less than two paths: 0.2 ms (n = 3), 16 ms (8), 95 ms (10), where the paths
-of feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 0.7 s (12)."""
+"""Up to this order trying all faces takes less than two paths: 0.6 ms (n = 6), 3 to 50 ms (9), where the paths of
+feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 45 to 600 ms (12, where many are singular)."""
 
 LEAST_START = 1e-3
 """In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
+
+MOST_AUGMENTED = 2000
+"""Factorisations of order n for the augmented Lagrangian: 1,500 are needed for QCAPRI, some 100 for most others."""
 
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
@@ -95,6 +98,13 @@ class Attempt:
 
 def _made_dense(case: Case) -> bool:
     case.search.make_dense()
+    return False
+
+
+def _rescaled(case: Case) -> bool:
+    case.search.rescale()
+    if case.search.scaled is not None and case.x0 is not None:
+        case.x0 = case.search.scaled.u(case.x0)
     return False
 
 
@@ -135,6 +145,12 @@ def _descent(case: Case) -> bool:
     return case.search.descend(case.first_state)
 
 
+def _augmented(case: Case) -> bool:
+    n = case.problem.primal
+    below = 0.0 if case.semidefinite else below_zero(case.problem.A[:n][:, :n])
+    return case.search.augment(below, MOST_AUGMENTED)
+
+
 def _proof(case: Case) -> bool:
     case.proof_sought = True
     case.search.proof = infeasibility(case.problem, PROOF_SHARE * case.search.seconds_left)
@@ -142,7 +158,7 @@ def _proof(case: Case) -> bool:
 
 
 def _all_faces(case: Case) -> bool:
-    case.search.exhaustion = found = exhaust(case.problem, case.search.seconds_left)
+    case.search.exhaustion = found = exhaust(case.problem, case.search.seconds_left, filtered=True)
     if found is None:
         return False
     if found.point is not None and np.isfinite(found.point).all():
@@ -240,6 +256,11 @@ def _in_a_box(case: Case) -> bool:
     return case.known.symmetric and all(bool(np.isfinite(end).all()) for end in ends)
 
 
+def _with_rows(case: Case) -> bool:
+    """Whether the problem is that of a program which is not one in a box alone."""
+    return case.problem.primal > 0 and case.in_budget and not _in_a_box(case)
+
+
 def _has_few_faces(case: Case) -> bool:
     if case.problem.standard:
         return _pivotable(case) and case.problem.n <= LARGEST_EARLY_FACES
@@ -251,30 +272,38 @@ def _lacks_feasible_start(case: Case) -> bool:
 
 
 _PROVED = "A linear program gave the proof."
-_TRIED = "All complementary faces were tried in exact arithmetic."
+_TRIED = "All complementary faces were tried: excluded by floats with error bounds, or decided in exact arithmetic."
 _FOLLOWED = "Solved by the path of the {case.followed} homotopy."
 _SETTLED = "Solved by active sets alone, before any path."
 _LEMKE_HOWSON = "By the method of Lemke and Howson, before any path."
 _LEMKE = "By Lemke's method, before any path."
 _SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
 _DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
+_AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 _RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
-    Attempt("the point nearest to zero", _zero_solves, _zero, "The point nearest to zero is a solution."),
+    Attempt(
+        "the point nearest to zero",
+        lambda c: not c.problem.standard and _zero_solves(c),
+        _zero,
+        "The point nearest to zero is a solution.",
+    ),
     Attempt("a problem nearby", _near, _from_guess, "Solved from the solution of a problem nearby, before any path."),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
     Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
     Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
+    Attempt("units of its own", lambda c: c.search.postponed, _rescaled, ""),
     Attempt("descent in a box", _in_a_box, _descent, _DESCENDED),
     Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
     Attempt("Lemke and Howson", _game_perhaps, lambda c: by_lemke_howson(c.search), _LEMKE_HOWSON),
     Attempt("Lemke", _pivotable, lambda c: by_lemke(c.search, c.seed), _LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
     Attempt("few faces", _has_few_faces, _all_faces, _TRIED),
+    Attempt("augmented Lagrangian", _with_rows, _augmented, _AUGMENTED),
 )
 """What is cheap and cannot mislead."""
 

@@ -15,6 +15,8 @@ from problems.lcp.mixed_strategies import mixed_lcps, planted_mixed_lcps, progra
 from problems.lcp.proof.farkas import farkas
 from problems.lcp.reference.enumeration import exhaust
 
+from .util import orders
+
 BENCHMARK = Path(__file__).parents[4] / "examples" / "benchmarks" / "mixed" / "pieces.py"
 random_problem = runpy.run_path(str(BENCHMARK))["random_problem"]
 
@@ -217,34 +219,13 @@ def test_a_nonconvex_program_in_a_box_gives_a_kkt_point(n):
         assert "this is a KKT point, and need not be a minimum" in solution.message
 
 
-def orders(monkeypatch, run):
-    """The orders of all matrices that were factored."""
-    found = []
-
-    def spy(module, name):
-        real = getattr(module, name)
-
-        def counted(matrix, *rest, **given_):
-            found.append(getattr(matrix, "matrix", matrix).shape[0])
-            return real(matrix, *rest, **given_)
-
-        monkeypatch.setattr(module, name, counted)
-
-    from problems.lcp.active_set import face
-    from problems.lcp.homotopies import pair_system
-
-    spy(face, "factor_lu")
-    spy(face, "factor_cholesky")
-    spy(pair_system, "factor_bordered")
-    run()
-    return found
-
-
 def test_the_order_of_what_is_factored_in_a_box_is_n(monkeypatch):
     rng = np.random.default_rng(9)
     M = rng.standard_normal((12, 12))
     problem = lcp.MixedLCP(M @ M.T + np.triu(M) - np.triu(M).T, rng.standard_normal(12), -1, 1)
-    found = orders(monkeypatch, lambda: (lcp.solve(problem), lcp.solve(problem, "wang", finish=False)))
+    found = orders(monkeypatch)
+    for given_ in ({}, {"homotopy": "wang", "finish": False}):
+        assert lcp.solve(problem, **given_).success
     assert max(found) == 12
 
 
@@ -252,7 +233,9 @@ def test_the_order_of_what_is_factored_for_a_program_is_n_and_its_rows(monkeypat
     P, c, G, h, B, b = random_program(np.random.default_rng(10), n=12, m=5, k=3)
     program = lcp.from_qp(P, c, G, h, B, b, 0, 1)
     assert program.problem.n == 12 + 5 + 3
-    found = orders(monkeypatch, lambda: (lcp.solve(program), lcp.solve(program, "wang", finish=False)))
+    found = orders(monkeypatch)
+    for given_ in ({}, {"homotopy": "wang", "finish": False}):
+        assert lcp.solve(program, **given_).success
     assert max(found) == 20
 
 

@@ -1,0 +1,281 @@
+"""The proximal augmented Lagrangian of a quadratic program: guesses of active sets where the pieces of w = 0 cycle.
+
+With a penalty in place of the rows, and of the bounds, what is minimised is convex, differentiable and piecewise
+quadratic. Newton's method with an exact line search cannot cycle there, whatever is degenerate.
+
+References
+----------
+Hermans, Themelis and Patrinos, "QPALM: a proximal augmented Lagrangian method for nonconvex quadratic programs", Math.
+Prog. Comp. 14 (2022). Qi and Sun, "A nonsmooth version of Newton's method", Math. Prog. 58 (1993).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array, Matrix
+from continuation.counts import Counts
+from continuation.linear.sparse import factor_superlu
+from continuation.linear.symmetric import factor_cholesky
+from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
+from problems.lcp.data.ranges import ranges
+
+# As published, but for the two limits at the end and the penalty's start.
+
+PENALTY = 20.0
+"""Of a row at first, times the ratio of the objective to the violations, between the two that follow."""
+
+LEAST_PENALTY, MOST_PENALTY = 1e-4, 1e8
+
+STIFFER = 100.0
+"""The penalty of the row that is violated most grows by this, of others in proportion,"""
+
+FALLEN = 0.25
+"""unless its violation has fallen to this share of what it was."""
+
+WEIGHT, MOST_WEIGHT = 10.0, 1e7
+"""Of the proximal term its inverse, which grows tenfold with each change of the multipliers."""
+
+BELOW = 1.1
+"""The proximal term of a function that is not convex, over what makes it so."""
+
+NEWTON_STEPS = 100
+"""For one change of the multipliers, of which"""
+
+ROUNDS = 100
+"""so many are made."""
+
+
+@frozen(eq=False)
+class Saddle:
+    """A program read from its optimality conditions: P, c, rows R x + d in [low, high], x in [lower, upper].
+
+    Attributes
+    ----------
+    problem : MixedLCP
+    P, R : Matrix
+    c, d : Array
+    low, high : Array
+    multiplier : ndarray of int
+        The index of the multiplier of each row.
+    activity : ndarray of int
+        That of its activity, -1 where it has none.
+    """
+
+    problem: MixedLCP
+    P: Matrix
+    R: Matrix
+    c: Array
+    d: Array
+    low: Array
+    high: Array
+    multiplier: NDArray[np.intp]
+    activity: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, problem: MixedLCP) -> Saddle | None:
+        """The program whose variables are the first `problem.primal` unknowns, or None.
+
+        Parameters
+        ----------
+        problem : MixedLCP
+        """
+        n, A = problem.primal, problem.A
+        pairs = ranges(problem)
+        activity, down = np.full(problem.n, -1, dtype=np.intp), np.zeros(problem.n)
+        rows = np.arange(n, problem.n)
+        if pairs is not None:
+            # A variable of the program may look like one, as a slack that costs nothing does.
+            own = (pairs.activity >= n) & (pairs.multiplier >= n)
+            at, mu = pairs.activity[own], pairs.multiplier[own]
+            activity[mu], down[mu] = at, pairs.down[own]
+            rows = np.setdiff1d(rows, at)
+            if not ((pairs.up[own] > 0.0) & (pairs.down[own] < 0.0)).all() or problem.q[at].any():
+                return None
+        activity, down = activity[rows], down[rows]
+        P, R = A[:n][:, :n], A[rows][:, :n]
+        if n == 0 or not _same(P, P.T) or not _same(R.T, -A[:n][:, rows]) or A[rows][:, rows].sum() != 0.0:
+            return None
+        # mu >= 0 holds a row at its lower side; one without a sign holds it where it is.
+        ends = problem.lower[rows], problem.upper[rows]
+        positive, negative = (ends[0] == 0.0) & np.isinf(ends[1]), np.isinf(ends[0]) & (ends[1] == 0.0)
+        free = np.isinf(ends[0]) & np.isinf(ends[1])
+        if not (positive | negative | free).all():
+            return None
+        low, high = np.where(negative, -np.inf, 0.0), np.where(positive, np.inf, 0.0)
+        two = activity >= 0
+        low[two] = -down[two] * problem.lower[activity[two]]
+        high[two] = -down[two] * problem.upper[activity[two]]
+        return cls(problem, P, R, problem.q[:n], problem.q[rows], low, high, rows, activity)
+
+
+def _same(one: Matrix, other: Matrix) -> bool:
+    return bool((abs(one - other)).sum() == 0.0)
+
+
+@frozen(eq=False)
+class Penalised:
+    """The augmented Lagrangian for given multipliers and penalties, with a proximal term; rows first, then bounds."""
+
+    saddle: Saddle
+    low: Array
+    high: Array
+    sigma: Array
+    weight: float
+
+    def values(self, x: Array) -> Array:
+        """R x + d, and x."""
+        return np.concatenate([self.saddle.R @ x + self.saddle.d, x])
+
+    def pulled(self, y: Array) -> Array:
+        """R' of the first, and the rest: the gradient of the values times y."""
+        m = self.saddle.multiplier.size
+        back: Array = self.saddle.R.T @ y[:m] + y[m:]
+        return back
+
+    def hessian(self, active: NDArray[np.bool_]) -> Matrix:
+        """Of the piece on which these rows and bounds are violated."""
+        R, m = self.saddle.R, self.saddle.multiplier.size
+        held, diagonal = np.flatnonzero(active[:m]), np.where(active[m:], self.sigma[m:], 0.0) + 1.0 / self.weight
+        part = R[held]
+        if sp.issparse(R):
+            return sp.csc_array(self.saddle.P + part.T @ (sp.diags_array(self.sigma[held]) @ part)
+                                + sp.diags_array(diagonal))  # fmt: skip
+        whole: Array = self.saddle.P + part.T @ (self.sigma[held][:, None] * part)
+        whole[np.diag_indices(len(whole))] += diagonal
+        return np.asfortranarray(whole)
+
+    def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
+        """Where along a direction the derivative, which grows piecewise linearly from `slope`, is zero.
+
+        Parameters
+        ----------
+        t, dv : ndarray
+            The values plus multipliers over penalties, and how they change.
+        slope : float
+        curvature : float
+            Of what is not penalised.
+        """
+        with np.errstate(all="ignore"):
+            enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])
+        twice = np.concatenate([dv, dv])
+        # Beyond the lower side where dv < 0, beyond the upper one where dv > 0: there the curvature grows.
+        growing = np.concatenate([dv < 0.0, dv > 0.0])
+        rate = np.concatenate([self.sigma, self.sigma]) * twice * twice
+        outside = (t < self.low) | (t > self.high)
+        curvature += float((self.sigma * dv * dv)[outside].sum())
+        after = np.flatnonzero((enters > 0.0) & np.isfinite(enters) & (rate > 0.0))
+        at = 0.0
+        for k in after[np.argsort(enters[after], kind="stable")]:
+            following = slope + curvature * (enters[k] - at)
+            if following >= 0.0:
+                break
+            slope, at = following, float(enters[k])
+            curvature += float(rate[k]) if growing[k] else -float(rate[k])
+        return at - slope / curvature if curvature > 0.0 else at
+
+
+def guesses(saddle: Saddle, below: float, x: Array, counts: Counts) -> Iterator[tuple[State, Array]]:
+    """Active sets, and points near which their solutions are sought, one after each change of the multipliers.
+
+    Parameters
+    ----------
+    saddle : Saddle
+    below : float
+        How far below zero the least eigenvalue of P is; 0 where P is positive semidefinite.
+    x : ndarray
+        Where it begins.
+    counts : Counts
+        Where factorisations are added up.
+    """
+    problem, n, m = saddle.problem, x.size, saddle.multiplier.size
+    low, high = np.append(saddle.low, problem.lower[:n]), np.append(saddle.high, problem.upper[:n])
+    one = Penalised(saddle, low, high, np.zeros(m + n), 1.0)
+    y, violated = np.zeros(m + n), one.values(x) - np.clip(one.values(x), low, high)
+    objective = abs(float(0.5 * x @ (saddle.P @ x) + saddle.c @ x))
+    sigma = np.full(m + n, PENALTY * max(1.0, objective) / max(1.0, 0.5 * float(violated @ violated)))
+    sigma = np.clip(sigma, LEAST_PENALTY, MOST_PENALTY)
+    weight = WEIGHT if below <= 0.0 else 1.0 / (BELOW * below)
+    accurate, centre, before = 1.0, x, np.full(m + n, np.inf)
+    for _ in range(ROUNDS):
+        one = Penalised(saddle, low, high, sigma, weight)
+        found = _minimised(one, x, y, centre, accurate, counts)
+        if found is None:
+            return
+        x, t = found
+        nearest = np.clip(t, low, high)
+        y = sigma * (t - nearest)
+        yield _state(saddle, t, low, high), _point(saddle, x, y, nearest)
+        violation = np.abs(one.values(x) - nearest)
+        worst = float(violation.max(initial=0.0))
+        centre, accurate = x, 0.1 * accurate
+        stiffer = violation > np.maximum(FALLEN * before, np.finfo(float).eps)
+        if stiffer.any():
+            factor = np.maximum(1.0, STIFFER * violation / worst)
+            sigma = np.where(stiffer, np.minimum(factor * sigma, np.maximum(sigma, MOST_PENALTY)), sigma)
+        before = violation
+        if below <= 0.0:
+            weight = min(10.0 * weight, MOST_WEIGHT)
+
+
+def _minimised(
+    one: Penalised, x: Array, y: Array, centre: Array, accurate: float, counts: Counts
+) -> tuple[Array, Array] | None:
+    """The minimum by Newton's method, and the shifted values there; None where a factorisation fails."""
+    saddle, pieces = one.saddle, b""
+    factor = None
+    for _ in range(NEWTON_STEPS):
+        t = one.values(x) + y / one.sigma
+        force = one.sigma * (t - np.clip(t, one.low, one.high))
+        smooth = saddle.P @ x + saddle.c
+        gradient = smooth + (x - centre) / one.weight + one.pulled(force)
+        terms = max(float(np.abs(smooth).max()), float(np.abs(saddle.c).max()), np.finfo(float).tiny)
+        if float(np.abs(gradient).max()) <= max(accurate, 1e-13) * terms:
+            break
+        active = (t < one.low) | (t > one.high)
+        key = active.tobytes()
+        if factor is None or key != pieces:
+            counts.factorizations += 1
+            hessian = one.hessian(active)
+            factor = factor_superlu(hessian) if sp.issparse(hessian) else factor_cholesky(hessian)
+            pieces = key
+        if factor is None:
+            return None
+        d = factor.solve(-gradient)
+        dv = one.values(d) - one.values(np.zeros(d.size))
+        slope = float(gradient @ d)
+        if not slope < 0.0:
+            break
+        x = x + one.step(t, dv, slope, float(d @ (saddle.P @ d)) + float(d @ d) / one.weight) * d
+    return x, one.values(x) + y / one.sigma
+
+
+def _state(saddle: Saddle, t: Array, low: Array, high: Array) -> State:
+    """The piece that the violated rows and bounds say."""
+    problem, n, m = saddle.problem, saddle.c.size, saddle.multiplier.size
+    side = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
+    state: State = np.full(problem.n, BETWEEN)
+    state[:n] = side[m:]
+    signed = np.isfinite(problem.lower[saddle.multiplier]) | np.isfinite(problem.upper[saddle.multiplier])
+    at_zero = np.where(np.isfinite(problem.lower[saddle.multiplier]), LOWER, UPPER)
+    state[saddle.multiplier] = np.where(signed & (side[:m] == BETWEEN), at_zero, BETWEEN)
+    two = saddle.activity >= 0
+    state[saddle.activity[two]] = side[:m][two]
+    return state
+
+
+def _point(saddle: Saddle, x: Array, y: Array, nearest: Array) -> Array:
+    """All unknowns: x, multipliers, activities."""
+    problem, n, m = saddle.problem, x.size, saddle.multiplier.size
+    point = np.zeros(problem.n)
+    point[:n], point[saddle.multiplier] = x, -y[:m]
+    two = saddle.activity >= 0
+    if two.any():
+        at, mu = saddle.activity[two], saddle.multiplier[two]
+        point[at] = nearest[:m][two] / -np.asarray(problem.A[mu, at]).ravel()
+    return problem.clipped(point)

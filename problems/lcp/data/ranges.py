@@ -1,0 +1,137 @@
+"""Rows with two sides, low <= G x <= high: an activity r = G x in [low, high] and a multiplier mu without a sign.
+
+As unknowns of a problem with bounds they are two, but one of them is in no matrix that is factored: the row of r holds
+mu alone, and the column of r is in the row of mu alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array, Matrix
+from problems.lcp.data.problem import MixedLCP
+
+Indices = NDArray[np.intp]
+Mask = NDArray[np.bool_]
+
+
+@frozen(eq=False)
+class Ranges:
+    """Pairs of indices with ``w_r = up mu + q_r`` and ``w_mu = ... + down r + q_mu``, where mu has no bounds.
+
+    Attributes
+    ----------
+    A : Matrix
+    activity, multiplier : ndarray of int
+        The indices r and mu of each pair.
+    up, down : ndarray
+        A[r, mu] and A[mu, r].
+    rest : ndarray of int
+        All indices but the r.
+    place : ndarray of int
+        Where among them the mu are.
+    """
+
+    A: Matrix
+    activity: Indices
+    multiplier: Indices
+    up: Array
+    down: Array
+    rest: Indices
+    place: Indices
+
+    def shifts(self, shift: float) -> Array:
+        """The shift of the diagonal in a proximal problem: none for r, which mu and its row say.
+
+        Parameters
+        ----------
+        shift : float
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        each = np.full(self.A.shape[0], shift)
+        each[self.activity] = 0.0
+        return each
+
+    def inside(self, active: Mask) -> Indices:
+        """The active indices of which the equations are solved together: without the pairs whose r is active.
+
+        Parameters
+        ----------
+        active : ndarray of bool
+        """
+        kept = active.copy()
+        loose = active[self.activity]
+        kept[self.activity] = False
+        kept[self.multiplier[loose]] = False
+        return np.flatnonzero(kept)
+
+    def completed(
+        self, active: Mask, inside: Indices, solve: Callable[[Array], Array], shift: float
+    ) -> Callable[[Array], Array]:
+        """Solve on the active set from a solve on `inside`: mu is what the row of r says, r what is left in that of mu.
+
+        Parameters
+        ----------
+        active : ndarray of bool
+        inside : ndarray of int
+        solve : callable
+        shift : float
+            Of the diagonal.
+        """
+        loose = active[self.activity]
+        r, mu = self.activity[loose], self.multiplier[loose]
+
+        def inverse(right: Array) -> Array:
+            whole, z = np.zeros(active.size), np.zeros(active.size)
+            whole[active] = right
+            z[mu] = whole[r] / self.up[loose]
+            left = whole - self.A @ z
+            if inside.size:
+                z[inside] = solve(left[inside])
+            z[r] = (whole[mu] - (self.A @ z)[mu] - shift * z[mu]) / self.down[loose]
+            return z[active]
+
+        return inverse
+
+
+def ranges(problem: MixedLCP) -> Ranges | None:
+    """The pairs of a problem, found by its zeros; None where there is none.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    """
+    free = np.isinf(problem.lower) & np.isinf(problem.upper)
+    boxed = np.flatnonzero(np.isfinite(problem.lower) & np.isfinite(problem.upper))
+    if problem.standard or not boxed.size or not free.any():
+        return None
+    A = problem.A
+    mu, up = _only(A[boxed])
+    other, down = _only(A[:, boxed].T)
+    found = (mu == other) & (mu >= 0)
+    found[found] = free[mu[found]]
+    # Of two activities with one multiplier neither is one.
+    found[found] = np.bincount(mu[found], minlength=problem.n)[mu[found]] == 1
+    if not found.any():
+        return None
+    r, mu = boxed[found], mu[found]
+    rest = np.setdiff1d(np.arange(problem.n), r)
+    return Ranges(A, r, mu, up[found], down[found], rest, np.searchsorted(rest, mu))
+
+
+def _only(rows: Matrix) -> tuple[Indices, Array]:
+    """The column of the one entry of each row that is not zero, and that; -1 where there is not exactly one."""
+    entries = sp.csr_array(rows)
+    entries.eliminate_zeros()
+    one = np.diff(entries.indptr) == 1
+    column, value = np.full(one.size, -1, dtype=np.intp), np.zeros(one.size)
+    column[one], value[one] = entries.indices[entries.indptr[:-1][one]], entries.data[entries.indptr[:-1][one]]
+    return column, value

@@ -1,0 +1,82 @@
+"""Which complementary pieces hold a solution perhaps: most are excluded in floats, with a bound on what rounding does.
+
+Where x_i = l_i, w_i >= 0 is asked for, and so on: the equations of a piece have one solution if its block B is not
+singular. With an approximate inverse R and |I - R B| <= d < 1 that solution is within |R r| / (1 - d) of a point whose
+residual is r, in the largest norm; so a sign that is clearly wrong is wrong. What is in doubt is decided exactly.
+
+References
+----------
+Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP
+
+TOGETHER = 1024
+"""Pieces in one array: a few megabytes at the orders for which all are tried."""
+
+ROUNDING = 4.0 * float(np.finfo(float).eps)
+"""Over twice what k + 4 terms, times k + 4, can be off (Higham, section 3.5)."""
+
+States = NDArray[np.int8]
+
+
+def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
+    """Which of these pieces are not proved to hold no solution, shape (number,).
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    states : ndarray of int, shape (number, n)
+        -1 where x is at its lower bound, 1 where at its upper one, 0 between.
+    """
+    parts = [states[k : k + TOGETHER] for k in range(0, len(states), TOGETHER)]
+    with np.errstate(all="ignore"):
+        return np.concatenate([_doubtful(problem, part) for part in parts])
+
+
+def _doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
+    A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
+    n, (low, high) = problem.n, (problem.lower, problem.upper)
+    unit = (n + 4) * ROUNDING
+    between = states == BETWEEN
+    ends = np.where(states == LOWER, low, np.where(states == UPPER, high, 0.0))
+    B = np.where(between[:, :, None] & between[:, None, :], A, np.eye(n))
+    right = np.where(between, -(problem.q + ends @ A.T), 0.0)
+    lost = np.where(between, unit * (np.abs(problem.q) + np.abs(ends) @ np.abs(A).T), 0.0)
+    R = _inverses(B)
+    x = np.where(between, (R @ right[:, :, None])[:, :, 0], 0.0)
+    size = np.abs(R)
+    defect = np.abs(R @ B - np.eye(n)) + unit * (size @ np.abs(B))
+    d = defect.sum(axis=2).max(axis=1) * (1.0 + unit)
+    r = np.abs(right - (B @ x[:, :, None])[:, :, 0])
+    lost += unit * (np.abs(right) + (np.abs(B) @ np.abs(x)[:, :, None])[:, :, 0]) + np.finfo(float).tiny
+    off = (size @ (r + lost)[:, :, None])[:, :, 0].max(axis=1) * (1.0 + unit) / (1.0 - d)
+    wrong_x = between & ((x + off[:, None] < low) | (x - off[:, None] > high))
+    whole = np.where(between, x, ends)
+    w = problem.q + whole @ A.T
+    terms = np.abs(problem.q) + np.abs(whole) @ np.abs(A).T
+    unsure = unit * terms + off[:, None] * (between @ np.abs(A).T) * (1.0 + unit) + np.finfo(float).tiny
+    free = low < high
+    wrong_w = free & (((states == LOWER) & (w + unsure < 0.0)) | ((states == UPPER) & (w - unsure > 0.0)))
+    # A comparison with NaN is false: what overflows is in doubt.
+    excluded = (d < 0.5) & (off < np.inf) & (wrong_x | wrong_w).any(axis=1)
+    asked: NDArray[np.bool_] = ~excluded
+    return asked
+
+
+def _inverses(B: Array) -> Array:
+    """Approximate inverses, NaN where there is none."""
+    try:
+        return np.asarray(np.linalg.inv(B))
+    except np.linalg.LinAlgError:
+        regular = np.linalg.slogdet(B)[0] != 0.0
+        R = np.full_like(B, np.nan)
+        R[regular] = np.linalg.inv(B[regular])
+        return R

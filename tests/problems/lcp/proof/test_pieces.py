@@ -1,0 +1,57 @@
+"""What floats with error bounds exclude holds no solution in exact arithmetic, and they exclude nearly all of it."""
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from hypothesis import given, settings
+
+from problems import lcp
+from problems.lcp.mixed_strategies import mixed_lcps
+from problems.lcp.proof.pieces import doubtful
+from problems.lcp.reference.enumeration import exhaust
+
+BENCHMARK = Path(__file__).parents[4] / "examples" / "benchmarks" / "mixed" / "pieces.py"
+random_problem = runpy.run_path(str(BENCHMARK))["random_problem"]
+
+
+def test_the_outcome_is_that_of_exact_arithmetic_alone():
+    rng = np.random.default_rng(11)
+    for _ in range(200):
+        problem = random_problem(rng)
+        assert exhaust(problem, filtered=True) == exhaust(problem), problem
+
+
+@settings(max_examples=50, deadline=None)
+@given(mixed_lcps())
+def test_no_solution_is_excluded(problem):
+    assert exhaust(problem, filtered=True) == exhaust(problem)
+
+
+@pytest.mark.parametrize("power", [-320, -150, 150, 300])
+def test_the_ends_of_the_range_of_floats_are_in_doubt_or_right(power):
+    rng = np.random.default_rng(12)
+    for _ in range(20):
+        A, q = rng.integers(-3, 4, (3, 3)).astype(float), rng.integers(-3, 4, 3).astype(float)
+        problem = lcp.LCP(A * 10.0 ** (power / 2), q * 10.0**power)
+        assert exhaust(problem, filtered=True) == exhaust(problem), problem
+
+
+def test_a_sign_that_rounding_may_change_is_in_doubt():
+    """w_1 is zero exactly on the face of x_0, and a bit below it where q_1 is."""
+    A = np.array([[3.0, 0.0], [1.0, 1.0]])
+    for q, wrong in (([-1.0, -1.0 / 3.0], False), ([-1.0, -0.34], True)):
+        problem = lcp.LCP(A, q)
+        asked = doubtful(problem, np.array([[0, -1]], dtype=np.int8))
+        assert asked.tolist() == [not wrong]
+        assert doubtful(lcp.LCP(sp.csr_array(A), q), np.array([[0, -1]], dtype=np.int8)).tolist() == [not wrong]
+
+
+def test_nearly_all_faces_of_a_regular_problem_are_excluded():
+    rng = np.random.default_rng(13)
+    states = np.array(np.meshgrid(*[[-1, 0]] * 8)).reshape(8, -1).T.astype(np.int8)
+    for _ in range(5):
+        problem = lcp.LCP(rng.standard_normal((8, 8)), rng.standard_normal(8))
+        assert doubtful(problem, states).sum() <= 8
