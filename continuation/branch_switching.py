@@ -12,11 +12,20 @@ from continuation.checks import complain, is_number
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import inner, norm
+from continuation.events.singularity import branch_point_near, row_sizes
+from continuation.metric import Automatic, inner, norm
 from continuation.path import LocatedEvent
 from continuation.point.linearization import linearize
 from continuation.status import Kind
 from continuation.tolerance import Tolerance
+
+SHORTER, TRIALS = 0.25, 16
+"""Where an unknown stands still along the path, its size on the other branch is not known beforehand: shorter steps are
+tried, down to a billionth of the one asked for."""
+
+
+STILL = 1e-12
+"""A component of a tangent that is smaller than this, beside the largest, may be round-off."""
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]:
@@ -40,16 +49,40 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]
     Raises
     ------
     TypeError, ValueError
-        If the event is none, no branch point, or one without directions.
+        If the event is none, or no branch point.
+    ArithmeticError
+        If the event comes from a file, which keeps no directions, and they are not found again.
     """
     if not isinstance(event, LocatedEvent):
         raise complain(TypeError, "event", "a located event of a path", event)
     if event.kind != Kind.BRANCH_POINT:
         raise ValueError(f"event: expected a branch point, found {event.name!r}")
-    if event.rays is None:
-        raise ValueError("event: it has no `rays`, like those of paths traced by earlier versions; trace it anew")
-    known, other = event.rays[1], event.rays[2]
+    _, known, other, _ = _rays(homotopy, event)
     return known / np.linalg.norm(known), other / np.linalg.norm(other)
+
+
+def _rays(homotopy: Any, event: LocatedEvent) -> Array:
+    """Back, onward and both ways of the other branch: as they were found, or for an event of a file again."""
+    if event.rays is not None:
+        return event.rays
+    evaluator = Evaluator(homotopy, Counts())
+    weights = _weights(event)
+    rows = row_sizes(evaluator, 1.0 / np.sqrt(weights), (event.u, event.u + 0.1 * event.tangent))
+    found = branch_point_near(evaluator, event.u, event.tangent, weights, rows)
+    if found is None:
+        raise ArithmeticError("the branches that cross at this point could not be told")
+    along = [inner(weights, event.tangent, d) for d in found.directions]
+    known = int(np.argmax(np.abs(along)))
+    onward, other = found.directions[known] * np.sign(along[known]), found.directions[1 - known]
+    return np.array([-onward, onward, other, -other])
+
+
+def _weights(event: LocatedEvent) -> Array:
+    """The metric at the event; for one of a file by what moves along its tangent, round-off apart."""
+    if event.weights is not None:
+        return event.weights
+    size = np.abs(event.tangent)
+    return Automatic().weights(event.u, np.where(size > STILL * size.max(), size, 0.0), None)
 
 
 def switch_branch(
@@ -67,7 +100,8 @@ def switch_branch(
     event : LocatedEvent
         A branch point or a kink of its path.
     step : float, default 1e-2
-        How far from the branch point the starts are, in the metric of the path: a fraction of its extent.
+        How far from the branch point the starts are, in the metric of the path: a fraction of its extent. Where the
+        corrector does not reach the other branch from there they are nearer.
     ray : int, optional
         At a kink: which of its `rays` to turn to, in place of all on which the path neither came nor went on.
 
@@ -91,29 +125,34 @@ def switch_branch(
         raise ValueError(f"ray: expected None, since the event is no kink, found {ray!r}")
     branch_directions(homotopy, event)
     evaluator = Evaluator(homotopy, Counts())
-    assert event.rays is not None
-    _, onward, *others = event.rays
-    extent = np.abs(event.rays).max(axis=0)
-    # What moves on neither branch, to first order, is measured like the others.
-    extent[extent == 0.0] = float(np.median(extent[extent > 0.0]))
-    weights = extent**-2.0
-    starts = []
-    for away in others:
-        guess, border = event.u + step * away, weights * away
+    _, onward, *others = _rays(homotopy, event)
+    weights = _weights(event)
+    return tuple(_start(evaluator, event.u, away, onward, weights, step) for away in others)
+
+
+def _start(
+    evaluator: Evaluator, u: Array, away: Array, onward: Array, weights: Array, step: float
+) -> tuple[Array, Array]:
+    """A point of the other branch and its direction, at the distance asked for or nearer."""
+    border, failed = weights * away, ""
+    for h in step * SHORTER ** np.arange(TRIALS):
+        guess = u + h * away
         try:
             near = linearize(evaluator, guess, weights, border)
             correction = BorderedNewton(max_iterations=15).correct(evaluator, near, guess, border, Tolerance())
             if not correction.converged:
-                raise ArithmeticError(f"the other branch could not be reached: {correction.rejected(step)}")
+                failed = str(correction.rejected(h))
+                continue
             v = linearize(evaluator, correction.u, weights, border).tangent
         except EvaluationError as error:
-            raise ArithmeticError(f"the other branch could not be reached: {error}") from error
-        way = correction.u - event.u
+            failed = str(error)
+            continue
+        way = correction.u - u
         new, old = (abs(inner(weights, way, d)) / norm(weights, d) for d in (away, onward))
-        if new <= old:
-            raise ArithmeticError("the start fell back onto the branch that the path is on: take another `step`")
-        starts.append((correction.u, v))
-    return tuple(starts)
+        if new > old:
+            return correction.u, v
+        failed = "the corrector fell back onto the branch that the path is on"
+    raise ArithmeticError(f"the other branch could not be reached: {failed}")
 
 
 def _out_of_kink(kink: LocatedEvent, ray: int | None) -> tuple[tuple[Array, Array], ...]:

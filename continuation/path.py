@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from itertools import pairwise
 from os import PathLike
 from typing import Any, overload
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import define, field
 from scipy.optimize import brentq
 
 from continuation.arrays import Array
@@ -17,137 +17,12 @@ from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.labels import Labels
 from continuation.late import late
-from continuation.point.segment import Segment, parameter_at
+from continuation.point.segment import parameter_at
 from continuation.rejection import Rejected
 from continuation.status import Kind, Status
+from continuation.steps import LocatedEvent, Step
 
-
-def _one_line(name: str, point: Any) -> str:
-    shown = ", ".join(f"{value:.6g}" for value in point.y[:3])
-    more = ", ..." if point.y.size > 3 else ""
-    return f"<{name}: arclength {point.arclength:.6g}, lam = {point.lam:.6g}, y = ({shown}{more})>"
-
-
-@frozen(eq=False, repr=False)
-class Step:
-    """One accepted point of the path and how it was reached.
-
-    Attributes
-    ----------
-    index : int
-        0 at the start.
-    u, tangent : ndarray, shape (N + 1,)
-    arclength : float
-        Accumulated in the metric of the trace.
-    step_length : float
-        The predictor's step that led here; 0 at the start.
-    residual_norm : float
-        Largest component of the residual, evaluated at u.
-    orientation : int
-        Sign of det [[H'], [tangent']].
-    kind : Kind
-    corrector_iterations, rejections : int
-        Of the accepted attempt, and the attempts before it.
-    contraction, distance, angle, share : float
-        First ratio of the corrector's increments; length of its correction; angle (radians) between the tangents; the
-        parameter's share of the tangent.
-    segment : Segment or None
-        The path from the point before to this one.
-    weights : ndarray or None
-        The metric in which that was measured.
-    rejected : tuple of Rejected
-        The attempts before the accepted one: step length, contraction and reason. Not kept in archives.
-    observed : mapping
-        Extra scalars of the homotopy.
-    """
-
-    index: int
-    u: Array
-    tangent: Array
-    arclength: float
-    step_length: float = 0.0
-    residual_norm: float = 0.0
-    orientation: int = 0
-    kind: Kind = field(default=Kind.REGULAR, converter=Kind)
-    corrector_iterations: int = 0
-    rejections: int = 0
-    contraction: float = 0.0
-    distance: float = 0.0
-    angle: float = 0.0
-    share: float = 0.0
-    segment: Segment | None = None
-    weights: Array | None = None
-    rejected: tuple[Rejected, ...] = ()
-    observed: Mapping[str, float] = field(factory=dict)
-
-    def __repr__(self) -> str:
-        return _one_line(f"Step {self.index}, {self.kind.flag.replace('_', ' ')}", self)
-
-    @property
-    def y(self) -> Array:
-        """The unknowns, shape (N,)."""
-        return self.u[:-1]
-
-    @property
-    def lam(self) -> float:
-        """The parameter."""
-        return float(self.u[-1])
-
-
-@frozen(eq=False, repr=False)
-class LocatedEvent:
-    """A point of the path at which a monitor vanishes, corrected onto the path and polished.
-
-    Attributes
-    ----------
-    name : str
-    kind : Kind
-    arclength : float
-    u, tangent : ndarray, shape (N + 1,)
-    residual_norm : float
-        Of H at u.
-    monitor : float
-        The monitor's value at u: how well the event is located.
-    orientation : int
-    step : int
-        Index of the step in which it lies (from step - 1 to step).
-    ends_step : bool
-        Whether it is that step's own point.
-    switches : tuple of int
-        At a kink: the switching functions that vanish there.
-    rays : ndarray, shape (k, N + 1), or None
-        At a kink: the directions of all branches that meet there, of unit length in the metric, each pointing away
-        from it. The first leads back to where the path came from, the second, if any, is the one the path goes on in.
-    observed : mapping
-        Extra scalars of the homotopy, at u.
-    """
-
-    name: str
-    kind: Kind = field(converter=Kind)
-    arclength: float
-    u: Array
-    tangent: Array
-    residual_norm: float
-    monitor: float
-    orientation: int
-    step: int
-    ends_step: bool = False
-    switches: tuple[int, ...] = ()
-    rays: Array | None = None
-    observed: Mapping[str, float] = field(factory=dict)
-
-    def __repr__(self) -> str:
-        return _one_line(f"LocatedEvent {self.name}", self)
-
-    @property
-    def y(self) -> Array:
-        """The unknowns, shape (N,)."""
-        return self.u[:-1]
-
-    @property
-    def lam(self) -> float:
-        """The parameter."""
-        return float(self.u[-1])
+__all__ = ["LocatedEvent", "Path", "Step"]
 
 
 @define(eq=False)

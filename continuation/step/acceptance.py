@@ -154,6 +154,7 @@ class Examiner:
             orientation=at.orientation,
             step=state.index + 1,
             ends_step=bool((at.u == end.u).all()),
+            weights=begin.weights,
         )
 
 

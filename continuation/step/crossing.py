@@ -32,6 +32,9 @@ to the path than at its end, where it may lie on the other branch. From there th
 EIGHTHS = (*LOOKS, 0.125, 0.375, 0.625, 0.875)
 """The same for a series, whose steps reach over more than a cubic's, and cost as many solves as it has terms."""
 
+STRIDE = 0.125
+"""Between these."""
+
 CHANGED = 0.25
 """Where H' has changed by more than this part half way, it is looked at on either side too, since two crossings may lie
 before and one behind: on 3,200 steps of acceptance problems that is one in forty. Half as much will do where the
@@ -209,6 +212,9 @@ class Crossings:
             found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, max(BEYOND / at, 1.0 / least))]
             if not found[LOOKS[0]] and not series:
                 break
+        if series:
+            # So near to the path they need not be extrapolated far: a place counts where a look is behind it.
+            found = {at: [t for t in places if t < at + STRIDE] for at, places in found.items()}
         return found
 
     def _derivative(self, u: Array) -> Callable[[Array], Array] | None:

@@ -45,6 +45,10 @@ ROUND_OFF = 1e-13
 """The same on a piece of a piecewise smooth map, where components do stand still but for the last digits of others;
 units thirteen orders apart are no longer told from that."""
 
+SUSPECT, REPLACED = 1e-8, 0.1
+"""Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
+refinement changes by more than the second are."""
+
 NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
 
@@ -80,6 +84,7 @@ def initial_extent(
     standstill = ROUND_OFF if np.isfinite(farthest) else STANDSTILL
     if np.isfinite(farthest):
         v = np.where(np.abs(v) > standstill * float(np.abs(v).max()), v, 0.0)
+    v = _without_round_off(evaluator, point, v)
     size = np.abs(v)
     moving = size > 0.0
     h = NEAR * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
@@ -115,6 +120,19 @@ def initial_extent(
     still = extent <= standstill * float(extent.max())
     extent[still] = float(np.median(extent[~still]))
     return extent
+
+
+def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
+    """The tangent, with zeros for components that are round-off.
+
+    Which a component of 1e-17 is, that or one of another unit, one step of refinement tells: it replaces round-off by
+    other round-off, and leaves what is known.
+    """
+    small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
+    if not small.any() or (apply := evaluator.differential(point.u)) is None:
+        return v
+    replaced = np.abs(point.solve(-apply(v))) > REPLACED * np.abs(v)
+    return np.where(small & replaced, 0.0, v)
 
 
 def _nonlinearity(

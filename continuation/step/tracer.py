@@ -185,7 +185,7 @@ class Tracer:
                 self._end(INTERRUPTED)
             raise Interrupted(self.path) from interrupt
         except BaseException as error:
-            # A consumer that stops iterating, or an exception of the plug-in's own, leaves a consistent path behind.
+            # Whoever stops iterating, or an exception of the plug-in's own, leaves a consistent path.
             if self.path.status is Status.TRACING:
                 self._end(abandoned(self._reason) if isinstance(error, GeneratorExit) else raised(error))
             raise
@@ -198,8 +198,7 @@ class Tracer:
         Interrupted
             After Ctrl-C: a KeyboardInterrupt with the path so far.
         """
-        # In C, so that Ctrl-C is met within the tracer, which knows what to do.
-        deque(self, maxlen=0)
+        deque(self, maxlen=0)  # in C, so that Ctrl-C is met within the tracer, which knows what to do
         return self.path
 
     def give_up(self, reason: str) -> None:

@@ -52,7 +52,7 @@ OTHERS = {
 
 
 def test_every_plugin_of_ours_is_examined():
-    ours = {name for name, plugin in available().items() if plugin.origin.startswith("continuation ")}
+    ours = {name for name, plugin in available().items() if plugin.origin.startswith("pseudoarclength ")}
     assert ours == set(SMALL)
 
 

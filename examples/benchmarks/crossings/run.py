@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from families import Crossed, arm, pitchfork, transcritical, transversal
+from crossed import Crossed, arm, pitchfork, transcritical, transversal
 
 import continuation as ct
 from continuation.arrays import Array

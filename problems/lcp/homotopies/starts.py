@@ -11,7 +11,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import MixedLCP
+from problems.lcp.data.problem import LCP, MixedLCP, require_lcp
+from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import finite_vector
 
 FAR = (0.7, 2.5)
@@ -193,3 +194,21 @@ def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, 
         forces.append((np.maximum(sign * rows, 0.0) + spread)[finite])
     w0 = np.concatenate(forces)
     return Start(x0, w0, w0, w0)
+
+
+def require_order(problem: LCP) -> int:
+    """The order of an LCP; TypeError for anything else."""
+    require_lcp(problem)
+    return problem.n
+
+
+def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
+    """A start (x0, y0) > 0 with y0 = A x0 + q unless y0 is given; ValueError where that is not positive."""
+    n = require_order(problem)
+    x0 = strictly_feasible_start(problem) if x0 is None else positive_vector("x0", x0, n)
+    if y0 is None:
+        y0 = problem.w(x0)
+        if not (y0 > 0.0).all():
+            i = int(np.argmin(y0))
+            raise ValueError(f"x0: expected A x0 + q > 0 (or give y0 > 0), found (A x0 + q)[{i}] = {y0[i]}")
+    return x0, y0

@@ -17,14 +17,19 @@ from continuation.certificate.quadratic import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
+from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.quadratics import exact_end, pairs_form
 from problems.lcp.homotopies.sides import Sides
-from problems.lcp.homotopies.starts import inside_start, inside_vector, natural_units, positive_vector
-from problems.lcp.proof.phase1 import strictly_feasible_start
+from problems.lcp.homotopies.starts import (
+    feasible_start,
+    inside_start,
+    inside_vector,
+    natural_units,
+    positive_vector,
+)
 from problems.options import quiet
 
 
@@ -232,7 +237,7 @@ def ZhaoHomotopy(
     TypeError, ValueError
         For bad input, naming the argument; `NoStrictlyFeasiblePoint` where a start was to be found and there is none.
     """
-    x0, y0 = _feasible(problem, x0, y0)
+    x0, y0 = feasible_start(problem, x0, y0)
     return _made("Zhao", problem, Blend(sign=-1, x=-1), x0, y0, references.ZHAO, structure)
 
 
@@ -258,7 +263,7 @@ def XuHomotopy(
     TypeError, ValueError
         For bad input, naming the argument; `NoStrictlyFeasiblePoint` where a start was to be found and there is none.
     """
-    x0, y0 = _feasible(problem, x0, y0)
+    x0, y0 = feasible_start(problem, x0, y0)
     return _made("Xu", problem, Blend(sign=-1, x=1), x0, y0, references.XU, structure)
 
 
@@ -330,23 +335,6 @@ def _inside(problem: MixedLCP, x0: Any) -> Array:
 def _on_free(sides: Sides) -> int | Array:
     """Where no force is, x - x0 has to fade in its place, so that the matrix at lambda = 1 is not singular."""
     return 0 if sides.free is None else sides.free
-
-
-def _order(problem: LCP) -> int:
-    require_lcp(problem)
-    return problem.n
-
-
-def _feasible(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
-    """A start with y0 = A x0 + q > 0 unless y0 is given."""
-    n = _order(problem)
-    x0 = strictly_feasible_start(problem) if x0 is None else positive_vector("x0", x0, n)
-    if y0 is None:
-        y0 = problem.w(x0)
-        if not (y0 > 0.0).all():
-            i = int(np.argmin(y0))
-            raise ValueError(f"x0: expected A x0 + q > 0 (or give y0 > 0), found (A x0 + q)[{i}] = {y0[i]}")
-    return x0, y0
 
 
 def _made(

@@ -38,7 +38,8 @@ def test_a_study_refuses_what_is_none(change, kind, complaint):
 
 
 def test_a_misspelt_option_and_a_bad_rung_are_refused_at_once():
-    with pytest.raises(TypeError, match=r"predictr: expected one of the options budget, .*; did you mean predictor\?"):
+    said = r"predictr: expected one of the options box, budget, .*; did you mean predictor\?"
+    with pytest.raises(TypeError, match=said):
         chart.traced("a", predictr=Hermite())
     for bad in ((), (-1.0,), ("a",), (math.inf,)):
         with pytest.raises(ValueError, match="values: expected positive numbers"):

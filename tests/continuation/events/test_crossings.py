@@ -10,6 +10,7 @@ import scipy.sparse as sp
 
 import continuation
 from continuation import Budget, Kind, Status, TargetValue, TurningPoint, from_functions, switch_branch, trace
+from continuation.archive import open_archive
 
 from ...util import every_preset
 
@@ -185,6 +186,16 @@ def test_a_start_that_falls_back_is_refused():
         assert abs(u[1]) > 0.01
     with pytest.raises(ArithmeticError):
         switch_branch(from_functions(lambda y, lam: y - lam, start=([0.0], 0.0)), event, 0.1)
+
+
+def test_an_event_of_a_file_is_switched_at_too(tmp_path):
+    homotopy = pitchfork(-1.0)
+    path = trace(homotopy, direction=-1, events=[TargetValue(0.5, component=0)], archive=tmp_path / "path.h5")
+    with open_archive(tmp_path / "path.h5") as archive:
+        (stored,) = branch_points(archive[0])
+    for one, other in zip(switch_branch(homotopy, stored), switch_branch(homotopy, *branch_points(path))):
+        assert min(abs(one[0] - other[0]).max(), abs(one[0] - [0.0, -other[0][1]]).max()) < 0.1
+        assert abs(one[0][0]) < 1e-12
 
 
 @pytest.fixture(scope="module")

@@ -151,7 +151,36 @@ class Ageing(Forgetful):
         return y - (self.slope + self.drift * self.starts) * (1.0 - lam)
 
 
+class Bent:
+    """|y| = lam, whose two pieces meet at 0; `tear` is a step between them, `wrong` an error of their derivatives."""
+
+    target = 0.5
+
+    def __init__(self, tear=0.0, wrong=0.0, watched=lambda y: y):
+        self.tear, self.wrong, self.watched = tear, wrong, watched
+
+    def start(self):
+        return np.array([-1.0]), 1.0
+
+    def residual(self, y, lam):
+        return np.abs(y) - lam
+
+    def switches(self, y, lam):
+        return self.watched(y)
+
+    def piece(self, signs):
+        sign = float(signs[0])
+        return continuation.from_functions(
+            lambda y, lam: sign * y + self.tear - lam,
+            lambda y, lam: (np.array([[sign * (1.0 + self.wrong)]]), -np.ones(1)),
+            start=self.start(),
+        )
+
+
 FAULTS = [
+    ("switches", Bent(watched=lambda y: np.multiply(y, 1.5, out=y)), "switches: at the start it changes its argument"),
+    ("pieces", Bent(tear=1e-3), "piece: .* differs from the map by 0.001"),
+    ("derivatives_of_pieces", Bent(wrong=1e-2), "is -1.01, expected -1"),
     ("start", interior(start=None), "expected a method `start`, found none"),
     ("start", interior(start=lambda self: [1.0, 2.0, 3.0]), r"expected a tuple \(y0, lam0\), found list"),
     ("start", interior(start=lambda self: (np.full(2, np.nan), 1.0)), "expected finite numbers, found NaN"),

@@ -34,7 +34,7 @@ class Crossed:
         Of s.
     mix, shape : ndarray, shape (N, N), (N, 4)
         T, and the coefficients of the unknowns that follow.
-    units, origin, equations : ndarray
+    scales, origin, equations : ndarray
         D and a, c and b, E.
     angle : float
         The least difference of slopes at a crossing.
@@ -47,7 +47,7 @@ class Crossed:
     end: float
     mix: Array
     shape: Array
-    units: Array
+    scales: Array
     origin: Array
     equations: Array
     angle: float = 1.0
@@ -58,12 +58,12 @@ class Crossed:
         return np.linalg.inv(self.mix)
 
     def _x(self, y: Any, lam: Any) -> tuple[Array, float]:
-        return self.unmix @ ((y - self.origin[:-1]) / self.units[:-1]), (lam - self.origin[-1]) / self.units[-1]
+        return self.unmix @ ((y - self.origin[:-1]) / self.scales[:-1]), (lam - self.origin[-1]) / self.scales[-1]
 
     def point(self, x0: float, s: float) -> tuple[Array, float]:
         """The point of the path in the tracer's units."""
         x = np.append(x0, self._follow(x0, s)[0])
-        return self.units[:-1] * (self.mix @ x) + self.origin[:-1], self.units[-1] * s + self.origin[-1]
+        return self.scales[:-1] * (self.mix @ x) + self.origin[:-1], self.scales[-1] * s + self.origin[-1]
 
     def first(self, y: Array, lam: float) -> tuple[float, float]:
         """(x_0, s) of a point."""
@@ -78,14 +78,14 @@ class Crossed:
     @property
     def resolution(self) -> float:
         """What round-off in y leaves of a crossing's place: more where zero is far off and branches nearly touch."""
-        return 100.0 * float(np.finfo(float).eps * np.abs(self.origin / self.units).max()) / self.angle
+        return 100.0 * float(np.finfo(float).eps * np.abs(self.origin / self.scales).max()) / self.angle
 
     def start(self) -> tuple[Array, float]:
         return self.point(*self.curve(self.begin))
 
     @property
     def target(self) -> float:
-        return float(self.units[-1] * self.curve(self.end)[1] + self.origin[-1])
+        return float(self.scales[-1] * self.curve(self.end)[1] + self.origin[-1])
 
     def residual(self, y: Any, lam: Any) -> Any:
         x, s = self._x(y, lam)
@@ -99,8 +99,8 @@ class Crossed:
         inner = np.eye(x.size)
         inner[0, 0] = px
         inner[1:, 0] = -fx
-        H_y = self.equations @ inner @ self.unmix / self.units[:-1]
-        return H_y, self.equations @ np.append(ps, -fs) / self.units[-1]
+        H_y = self.equations @ inner @ self.unmix / self.scales[:-1]
+        return H_y, self.equations @ np.append(ps, -fs) / self.scales[-1]
 
 
 def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Crossed:
@@ -110,7 +110,7 @@ def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Cr
     shift = D * rng.normal(0.0, 1.0, n + 1) * 10.0 ** rng.uniform(0.0, 3.0 * min(units, 1.0), n + 1)
     E = 10.0 ** rng.uniform(-units, units, n)
     shape = rng.normal(0.0, 0.5, (n, 4))
-    return Crossed(mix=mix, shape=shape, units=D, origin=shift, equations=E[:, None] * equations, **known)
+    return Crossed(mix=mix, shape=shape, scales=D, origin=shift, equations=E[:, None] * equations, **known)
 
 
 def _graph(k: Array, s: Any) -> Any:
