@@ -142,9 +142,14 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
             return None
         return next(iter(locate(solver, TargetValue(value), arc, before, after)), None)
     # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
-    turn = brentq(lambda t: arc.segment.derivative(t)[-1], 0.0, 1.0, xtol=RESOLUTION)
-    if (arc.segment.at(turn)[-1] - value) * before > 0.5 * min(abs(before), abs(after)) * abs(before):
-        return None
+
+    def slope(t: float) -> float:
+        return float(arc.segment.derivative(t)[-1])
+
+    if slope(0.0) * slope(1.0) < 0.0:
+        nearest = arc.segment.at(brentq(slope, 0.0, 1.0, xtol=RESOLUTION))[-1] - value
+        if nearest * before > 0.5 * min(abs(before), abs(after)) * abs(before):
+            return None
     fold = locate(solver, TurningPoint(), arc, float(arc.a.tangent[-1]), float(arc.b.tangent[-1]))
     if not fold:
         return None

@@ -181,7 +181,8 @@ def _guess(event: Event, segment: Segment, ga: float, gb: float) -> float:
 
     if g(0.0) * g(1.0) >= 0.0:
         return 0.5
-    return float(brentq(g, 0.0, 1.0, xtol=1e-15, rtol=1e-14))
+    # A guess: where the monitor is so flat that it takes longer, the last bracket will do.
+    return float(brentq(g, 0.0, 1.0, xtol=1e-15, rtol=1e-14, disp=False))
 
 
 def _root(

@@ -295,7 +295,7 @@ def _by_newton(solver: PathSolver, switch: _Switch, arc: Arc, low: float, high: 
     scale = max(ga := g(low), -(gb := g(high)))
     if not ga > 0.0 > gb:
         return None
-    t = float(brentq(g, low, high, xtol=1e-15, rtol=1e-14))
+    t = float(brentq(g, low, high, xtol=1e-15, rtol=1e-14, disp=False))
     u, _ = solver.project(arc.a if t < 0.5 else arc.b, segment.at(t), arc.border)
     near = linearize(evaluator, u, arc.a.weights, arc.border)
     value = switch.monitor(u, near.tangent)

@@ -89,9 +89,8 @@ class Observer(Protocol):
 class Tracer:
     """One path as an iterable of its steps: ``for step in Tracer(homotopy)`` traces it, and the loop may be left.
 
-    Iterating again goes on after the last step that was handed out, with the clock and the budget where they were; a
-    path that has come to its end yields nothing more. Observers are told of the end each time that a loop is left, and
-    an archive closes on that.
+    Iterating again goes on after the last step handed out, with the clock and the budget where they were; a path that
+    has ended yields nothing more. Observers are told of the end each time that a loop is left; an archive then closes.
 
     Parameters
     ----------
