@@ -68,7 +68,7 @@ class Interval(NDArrayOperatorsMixin):
 
     @staticmethod
     def of(ends: Ends, algebra: int) -> Interval:
-        """The array with these ends, of shape (coefficients, boxes, *shape), neither checked nor copied.
+        """The array with these ends, of shape (coefficients, boxes, ...), neither checked nor copied.
 
         Parameters
         ----------
@@ -80,7 +80,7 @@ class Interval(NDArrayOperatorsMixin):
 
     @property
     def lo(self) -> Array:
-        """Lower ends of the value: shape (*shape), or (boxes, *shape) where there are many."""
+        """Lower ends of the value; where there are many boxes their number comes first in its shape."""
         return self._values(self.ends.lo)
 
     @property
