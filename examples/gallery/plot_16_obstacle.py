@@ -28,7 +28,7 @@ for event in path.events[:3]:
 exact = 8 * np.exp(-psi) * np.arccosh(np.exp(psi / 2)) ** 2
 print(f"turning kink at {path.kinks[0].lam:.6f}, exact {exact:.6f}")
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 3.8), layout="constrained")
+figure, left = plt.subplots(figsize=(5.5, 3.6), layout="constrained")
 u = np.array([path(s) for s in np.linspace(0, path.arclength[-1], 400)])
 left.plot(u[:, -1], np.trapezoid(homotopy.x(u[:, :-1]), axis=1) / (n + 1), color="#0072B2")
 for events, mark, name in ((path.turning_points, TURN, "fold"), (path.kinks, KINK, "kinks")):
@@ -41,6 +41,7 @@ left.legend(frameon=False)
 # %%
 # The solutions at the fold, at the turning kink, and at the end, where a good part rests on the lid.
 
+figure, right = plt.subplots(figsize=(5.5, 3.6), layout="constrained")
 x = np.linspace(0, 1, n + 2)
 for name, event, style in (
     ("at the fold", path.turning_points[0], ":"),
