@@ -23,7 +23,6 @@ SHORTER, TRIALS = 0.25, 16
 """Where an unknown stands still along the path, its size on the other branch is not known beforehand: shorter steps are
 tried, down to a billionth of the one asked for."""
 
-
 STILL = 1e-12
 """A component of a tangent that is smaller than this, beside the largest, may be round-off."""
 
@@ -53,16 +52,16 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]
     ArithmeticError
         If the event comes from a file, which keeps no directions, and they are not found again.
     """
-    if not isinstance(event, LocatedEvent):
-        raise complain(TypeError, "event", "a located event of a path", event)
-    if event.kind != Kind.BRANCH_POINT:
-        raise ValueError(f"event: expected a branch point, found {event.name!r}")
     _, known, other, _ = _rays(homotopy, event)
     return known / np.linalg.norm(known), other / np.linalg.norm(other)
 
 
 def _rays(homotopy: Any, event: LocatedEvent) -> Array:
     """Back, onward and both ways of the other branch: as they were found, or for an event of a file again."""
+    if not isinstance(event, LocatedEvent):
+        raise complain(TypeError, "event", "a located event of a path", event)
+    if event.kind != Kind.BRANCH_POINT:
+        raise ValueError(f"event: expected a branch point, found {event.name!r}")
     if event.rays is not None:
         return event.rays
     evaluator = Evaluator(homotopy, Counts())
@@ -71,10 +70,7 @@ def _rays(homotopy: Any, event: LocatedEvent) -> Array:
     found = branch_point_near(evaluator, event.u, event.tangent, weights, rows)
     if found is None:
         raise ArithmeticError("the branches that cross at this point could not be told")
-    along = [inner(weights, event.tangent, d) for d in found.directions]
-    known = int(np.argmax(np.abs(along)))
-    onward, other = found.directions[known] * np.sign(along[known]), found.directions[1 - known]
-    return np.array([-onward, onward, other, -other])
+    return found.rays(event.tangent, weights)
 
 
 def _weights(event: LocatedEvent) -> Array:
@@ -123,10 +119,8 @@ def switch_branch(
         return _out_of_kink(event, ray)
     if ray is not None:
         raise ValueError(f"ray: expected None, since the event is no kink, found {ray!r}")
-    branch_directions(homotopy, event)
-    evaluator = Evaluator(homotopy, Counts())
     _, onward, *others = _rays(homotopy, event)
-    weights = _weights(event)
+    evaluator, weights = Evaluator(homotopy, Counts()), _weights(event)
     return tuple(_start(evaluator, event.u, away, onward, weights, step) for away in others)
 
 

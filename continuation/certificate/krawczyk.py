@@ -11,6 +11,7 @@ Computing 4 (1969) 187-201; with the uniqueness of Moore, SIAM J. Numer. Anal. 1
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from typing import Any, ClassVar, Protocol
 
@@ -113,7 +114,7 @@ class ByIntervals:
                 shape = (len(u.ends.lo), 1, u.size - 1)
                 return Interval.of(thin(np.full(shape, np.nan)), u.algebra)
             halves = (slice(None, count // 2), slice(count // 2, None))
-            parts = [self.image(u.linear(lambda x, half=half: x[:, half])) for half in halves]  # type: ignore[misc]
+            parts = [self.image(u.linear(partial(_boxes, half))) for half in halves]
             return _side_by_side(parts)
 
     def probe(self, u: Array) -> None:
@@ -215,6 +216,10 @@ class Several:
     def moved(self, x: Array) -> Array:
         """Part by part."""
         return np.concatenate([part.moved(x[k]) for part, k in zip(self.parts, self.places)])
+
+
+def _boxes(some: slice, x: Array) -> Array:
+    return x[:, some]
 
 
 def _side_by_side(parts: list[Interval]) -> Interval:

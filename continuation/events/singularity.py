@@ -6,20 +6,21 @@ they are made of, so that neither units nor the place of zero count.
 
 from __future__ import annotations
 
+import warnings
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.linear import Banded, Symmetric
-from continuation.metric import norm
+from continuation.metric import inner, norm
 
 POLISHING = Contraction(iterations=15, ratio=np.inf)
 """Newton's method from a guess: its first increments may grow, and where it goes is checked afterwards."""
@@ -53,6 +54,13 @@ class SimpleBranchPoint:
 
     u: Array
     directions: tuple[Array, Array]
+
+    def rays(self, heading: Array, weights: Array) -> Array:
+        """Back, onward and both ways of the other branch, shape (4, N + 1), for a path that comes along `heading`."""
+        along = [inner(weights, heading, d) for d in self.directions]
+        k = int(np.argmax(np.abs(along)))
+        onward, other = self.directions[k] * np.sign(along[k]), self.directions[1 - k]
+        return np.array([-onward, onward, other, -other])
 
 
 @frozen(eq=False)
@@ -133,7 +141,13 @@ class Bordered:
         H, column, rows = self.matrix, self.column, self.rows
         if sp.issparse(H):
             return splu(sp.csc_array(sp.block_array([[H, sp.csc_array(column[:, None])], [sp.csc_array(rows), None]])))
-        return lu_factor(np.block([[H, column[:, None]], [rows, np.zeros((2, 1))]]), check_finite=False)
+        whole = np.block([[H, column[:, None]], [rows, np.zeros((2, 1))]])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", LinAlgWarning)
+            try:
+                return lu_factor(whole, check_finite=False)
+            except LinAlgWarning as warning:
+                raise np.linalg.LinAlgError(str(warning)) from warning
 
     def solve(self, r: Array, transposed: bool = False) -> Array:
         """The solution of the bordered system, or of its transpose."""
@@ -185,14 +199,14 @@ def branch_point_near(
     scaled = ScaledDerivative(evaluator, extent, rows)
     generic = generic_vector(3 * n + 2)
     newton = Iteration(np.append(guess, 0.0), POLISHING)
-    here = Bordered(np.zeros((n, n + 1)), generic[:n], generic[n:].reshape(2, n + 1))
+    here: Bordered | None = None
 
     def at(u: Array) -> Bordered:
         evaluator.counts.factorizations += 1
         matrix = scaled.at(u)
-        return here.refreshed(matrix) if here.matrix is not None and newton.count else Bordered(
-            matrix, here.column, here.rows
-        )
+        if here is None:
+            return Bordered(matrix, generic[:n], generic[n:].reshape(2, n + 1))
+        return here.refreshed(matrix)
 
     def increment() -> Array:
         nonlocal here
@@ -201,8 +215,8 @@ def branch_point_near(
         phi, gamma = here.left[:-2], here.left[-2:]
         gradient = np.array([-scaled.second(u, phi, here.kernel[:-1, i]) for i in range(2)])
         first = here.solve(np.concatenate([-(evaluator.residual(u) / rows + beta * here.column), np.zeros(2)]))
-        inner = np.linalg.solve(gradient @ here.kernel[:-1], -gamma - gradient @ first[:-1])
-        step = first + here.kernel @ inner
+        within = np.linalg.solve(gradient @ here.kernel[:-1], -gamma - gradient @ first[:-1])
+        step = first + here.kernel @ within
         step[:-1] *= extent
         return step
 
@@ -214,13 +228,15 @@ def branch_point_near(
         return lost or size <= POLISHED or (size < POLISHED_NEARLY and newton.ratio >= HALVING)
 
     try:
-        if not newton.run(increment, measure, done) or newton.size > POLISHED_NEARLY:
-            return None
-        u = newton.x[:-1]
-        here = at(u)
-        if np.abs(here.left[-2:]).max() > RANK or abs(float(newton.x[-1])) > IMPERFECT:
-            return None
-        found = directions(scaled, here, u, heading / extent)
+        # A matrix that is nearly singular may give what is not finite: no number of it is believed unchecked.
+        with np.errstate(all="ignore"):
+            if not newton.run(increment, measure, done) or not newton.size <= POLISHED_NEARLY:
+                return None
+            u = newton.x[:-1]
+            here = at(u)
+            if not np.abs(here.left[-2:]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
+                return None
+            found = directions(scaled, here, u, heading / extent)
     except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):
         return None
     if found is None:

@@ -17,7 +17,7 @@ from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events.crossing import multiplicity, singular_places
 from continuation.events.singularity import SimpleBranchPoint, branch_point_near, row_sizes
-from continuation.metric import inner, norm
+from continuation.metric import norm
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
@@ -133,9 +133,13 @@ class Crossings:
         if end is None and any(abs(t - 1.0) < APART for t in places):
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         inside = [t for t in places if t < 1.0]
-        together = self._counted(arc, attempt, prediction, [t for t in inside if t - inside[0] < APART], flipped)
-        if len({*inside} - {*together}) > 0:
-            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (inside[0] + min({*inside} - {*together})))
+        apart = [t for t in inside if t - inside[0] >= APART]
+        if apart:
+            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (inside[0] + apart[0]))
+        together = self._counted(arc, inside, flipped)
+        if inside and not together:
+            # Along the prediction a branch crosses, and the arc's end knows nothing of it: it is looked at from nearer.
+            return _rejected(attempt, Rejection.ORIENTATION, inside[0])
         if len(together) > 1:
             return self._together(arc, attempt, prediction, together, flipped)
         doubtful = len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
@@ -164,9 +168,7 @@ class Crossings:
             return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
         return self._point(arc, found, at)
 
-    def _counted(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, places: list[float], flipped: bool
-    ) -> list[float]:
+    def _counted(self, arc: Arc, places: list[float], flipped: bool) -> list[float]:
         """The same places, each as often as H' loses a rank there, if their number does not agree with the sign."""
         if not places or flipped == bool(len(places) % 2) or (apply := self._derivative(arc.b.u)) is None:
             return places
@@ -282,12 +284,8 @@ class Crossings:
 
     def _point(self, arc: Arc, found: SimpleBranchPoint, at: float) -> Crossed:
         """The branch point as a point of the path, its tangent that of the branch which goes on."""
-        weights, heading = arc.a.weights, arc.segment.derivative(at)
-        along = [inner(weights, heading, d) for d in found.directions]
-        k = int(np.argmax(np.abs(along)))
-        tangent: Array = found.directions[k] * np.sign(along[k])
-        other = found.directions[1 - k]
-        return Crossed(evolve(arc.a, u=found.u, tangent=tangent), np.array([-tangent, tangent, other, -other]))
+        rays = found.rays(arc.segment.derivative(at), arc.a.weights)
+        return Crossed(evolve(arc.a, u=found.u, tangent=rays[1]), rays)
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:

@@ -2,6 +2,7 @@
 
 import importlib.util
 import sys
+import warnings
 from pathlib import Path as File
 
 import numpy as np
@@ -11,6 +12,9 @@ import scipy.sparse as sp
 import continuation
 from continuation import Budget, Kind, Status, TargetValue, TurningPoint, from_functions, switch_branch, trace
 from continuation.archive import open_archive
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
+from continuation.events.singularity import branch_point_near, row_sizes
 
 from ...util import every_preset
 
@@ -196,6 +200,18 @@ def test_an_event_of_a_file_is_switched_at_too(tmp_path):
     for one, other in zip(switch_branch(homotopy, stored), switch_branch(homotopy, *branch_points(path))):
         assert min(abs(one[0] - other[0]).max(), abs(one[0] - [0.0, -other[0][1]]).max()) < 0.1
         assert abs(one[0][0]) < 1e-12
+
+
+def test_where_the_derivative_vanishes_altogether_there_is_no_simple_branch_point():
+    """Nothing is found, and no library warns."""
+    homotopy = from_functions(
+        lambda y, lam: y**2 * lam, lambda y, lam: (np.diag(2.0 * y * lam), y**2), start=(np.zeros(2), 0.0)
+    )
+    evaluator, u = Evaluator(homotopy, Counts()), np.zeros(3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rows = row_sizes(evaluator, np.ones(3), (u,))
+        assert branch_point_near(evaluator, u, np.array([0.0, 0.0, 1.0]), np.ones(3), rows) is None
 
 
 @pytest.fixture(scope="module")
