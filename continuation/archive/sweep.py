@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import suppress
 from itertools import pairwise
+from multiprocessing.process import BaseProcess
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
@@ -18,6 +19,7 @@ from attrs import define, field
 
 from continuation.archive.atomic import as_file, check_new
 from continuation.archive.errors import ArchiveError
+from continuation.archive.locks import is_held
 from continuation.archive.merge import gather
 from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
@@ -157,6 +159,7 @@ class _Run:
     results: dict[int, Result | BaseException] = field(factory=dict)
     again: dict[int, Result | BaseException] = field(factory=dict)
     futures: dict[Future[Result], int] = field(factory=dict)
+    processes: list[BaseProcess] = field(factory=list)
     stopped: bool = False
     done: int = 0
 
@@ -164,6 +167,7 @@ class _Run:
         """Submit all of it and wait; workers that hang past the timeout are ended with their processes."""
         for k, batch in enumerate(self.batches):
             self.futures[self.executor.submit(work, batch)] = k
+        self.processes = _processes(self.executor)
         waiting = set(self.futures)
         while waiting:
             finished, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
@@ -196,6 +200,10 @@ class _Run:
         Where the executor is broken each homotopy gets a process of its own, so that one that ends its process takes no
         other with it.
         """
+        if any(isinstance(found, BrokenExecutor) for found in self.results.values()):
+            # A broken pool fails its futures first and ends its processes then: their files are at rest after that.
+            for process in self.processes:
+                process.join()
         for k, batch in enumerate(self.batches):
             error = self.results.setdefault(k, TimeoutError(f"took longer than {self.timeout:g} s" if self.timeout
                                                             else "was never begun"))
@@ -274,10 +282,15 @@ def _outcome(future: Future[Result]) -> Result | BaseException:
 
 def _end_processes(executor: Executor) -> bool:
     """End the processes of a pool, whose homotopies do not come back; False where it has none of its own."""
-    processes = getattr(executor, "_processes", None) if isinstance(executor, ProcessPoolExecutor) else None
-    for process in list((processes or {}).values()):
+    processes = _processes(executor)
+    for process in processes:
         process.kill()
     return bool(processes)
+
+
+def _processes(executor: Executor) -> list[BaseProcess]:
+    processes = getattr(executor, "_processes", None) if isinstance(executor, ProcessPoolExecutor) else None
+    return list((processes or {}).values())
 
 
 def _parts(executor: Executor, tasks: int) -> int:
@@ -327,5 +340,7 @@ def _collect(
     files = sorted(target.parent.glob(pattern))
     if files:
         gather(files, target, finished=stopped)
-    for file in files:
+    # What a worker was writing when it was ended is named after its file, and nobody writes it any more.
+    parts = target.parent.glob(f".{pattern}.*.part")
+    for file in (*files, *(part for part in parts if not is_held(part))):
         file.unlink()

@@ -5,9 +5,11 @@ import signal
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
+from attrs import frozen
 
 from continuation import Status, trace
 from continuation.archive import open_archive, trace_many
@@ -82,6 +84,25 @@ def test_it_costs_its_own_path(tmp_path, expected, bad, archived):
         assert paths.paths["member"].tolist() == list(range(6))
         paths.close()
         assert os.listdir(tmp_path) == ["run.h5"]
+
+
+@frozen
+class DiesAtItsFile(Fatal):
+    """As a process does that is ended between making its file and naming it."""
+
+    directory: Path = Path()
+
+    def act(self):
+        (file,) = self.directory.glob("run.sweep-*.0003.h5")
+        file.with_name(f".{file.name}.0123abcd.part").touch()
+        os._exit(3)
+
+
+def test_what_a_worker_was_writing_goes_with_it(tmp_path):
+    tasks = [*GOOD[:2], DiesAtItsFile(1.0, directory=tmp_path), *GOOD[2:]]
+    with ProcessPoolExecutor(2) as executor, trace_many(tasks, executor, tmp_path / "run.h5") as paths:
+        assert paths[2].status is Status.RAISED
+    assert os.listdir(tmp_path) == ["run.h5"]
 
 
 def test_ctrl_c_ends_a_sweep_that_hangs(tmp_path):
