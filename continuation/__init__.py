@@ -23,6 +23,7 @@ from continuation.metric import Automatic, Euclidean, Metric
 from continuation.path import LocatedEvent, Path, Step
 from continuation.predictors import Predictor
 from continuation.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
+from continuation.stability import HopfPoint, Stability
 from continuation.status import Kind, Status
 from continuation.step.options import Options
 from continuation.step.settings import Settings
@@ -46,6 +47,7 @@ __all__ = [
     "EvaluationError",
     "Event",
     "Homotopy",
+    "HopfPoint",
     "Interrupted",
     "Kind",
     "KinkPoint",
@@ -59,6 +61,7 @@ __all__ = [
     "Preset",
     "Proof",
     "Settings",
+    "Stability",
     "Status",
     "Step",
     "TargetValue",

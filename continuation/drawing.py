@@ -29,8 +29,9 @@ MARKS = {
     Kind.BRANCH_POINT: {"marker": "s", "markerfacecolor": "black", "markersize": 6},
     Kind.SINGULAR_POINT: {"marker": "s", "markersize": 6},
     Kind.KINK: {"marker": "D", "markersize": 5.5},
+    Kind.HOPF: {"marker": "*", "markersize": 10, "markerfacecolor": "black"},
 }
-"""Kinds that have a sign of their own: a circle, a square, an open square, an open diamond; ..."""
+"""Kinds that have a sign of their own: a circle, a square, an open square, an open diamond, a star; ..."""
 
 OTHER = {"marker": "D", "markersize": 5, "markerfacecolor": "0.6"}
 """... any other event, as a value that was asked for, has a grey diamond, and its own name."""
@@ -48,8 +49,9 @@ Axes = Any
 
 
 def marked(path: Path) -> list[tuple[LocatedEvent, dict[str, Any]]]:
-    """The turning points and kinks, with their marks."""
-    return [*((event, TURN) for event in path.turning_points), *((event, KINK) for event in path.kinks)]
+    """The turning points, kinks and Hopf points, with their marks."""
+    hopf = ((event, {**TURN, **MARKS[Kind.HOPF]}) for event in path.events if event.kind == Kind.HOPF)
+    return [*((event, TURN) for event in path.turning_points), *((event, KINK) for event in path.kinks), *hopf]
 
 
 @frozen(eq=False)
@@ -266,7 +268,8 @@ def mark_events(axes: Axes, places: Sequence[tuple[LocatedEvent, float, Any]]) -
     """
     named = set(axes.get_legend_handles_labels()[1])
     for event, x, y in places:
-        name = event.kind.flag.replace("_", " ") if event.kind in MARKS else event.name
+        known = event.kind in MARKS and event.kind is not Kind.HOPF
+        name = event.kind.flag.replace("_", " ") if known else event.name
         heights = np.atleast_1d(y)
         looks = MARKS.get(event.kind, OTHER)
         axes.plot([x] * heights.size, heights, zorder=3, label="_" if name in named else name, **{**TURN, **looks})

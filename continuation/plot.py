@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.diagram import plot_bifurcation
+from continuation.bifurcation import plot_bifurcation
 from continuation.drawing import (
     COLOURS,
     KINK,
@@ -29,6 +29,7 @@ from continuation.drawing import (
     tidy,
 )
 from continuation.path import Path
+from continuation.stretches import by_stability, draw_line
 
 __all__ = [
     "KINK",
@@ -55,7 +56,9 @@ def plot_components(
     components: Iterable[int] | None = None,
     legend: bool = True,
 ) -> Axes:
-    """Draw components of y against the parameter or the arclength, turning points and kinks marked.
+    """Draw components of y against the parameter or the arclength; turning points, kinks and Hopf points are marked.
+
+    Where the path knows its stability (`continuation.Stability`), it is solid where stable, and dashed elsewhere.
 
     Parameters
     ----------
@@ -93,8 +96,9 @@ def plot_components(
         raise ValueError(f"names: expected {len(chosen)}, one a component drawn, found {len(labels)}")
     axes = axes_or_new(axes)
     horizontal = across(against, drawing)
+    parts = by_stability(path, drawing.s)
     for k, (i, label) in enumerate(zip(chosen, labels)):
-        axes.plot(horizontal, drawing.u[:, i], label=label, marker="." if len(horizontal) == 1 else "", **line_style(k))
+        draw_line(axes, horizontal, drawing.u[:, i], label, line_style(k), drawing.s, parts)
     for event, mark in marked(path):
         where = event.lam if against == "lam" else event.arclength
         axes.plot([where] * len(chosen), event.y[chosen], zorder=3, **mark)

@@ -18,14 +18,15 @@ import attrs
 import numpy as np
 import scipy.sparse as sp
 
-from continuation import budget, controllers, correctors, events, metric, predictors, tolerance
+from continuation import budget, controllers, correctors, events, metric, predictors, stability, tolerance
 from continuation.archive.codec import UnstorableError, path_of
 from continuation.evaluation import functions
 from continuation.events import box, branch_point
 
 ENTRY_POINTS = "continuation.homotopies"
 
-_MODULES = (budget, controllers, correctors, events, box, branch_point, functions, metric, predictors, tolerance)
+_MODULES = (budget, controllers, correctors, events, box, branch_point, functions, metric, predictors, stability,
+            tolerance)
 _REAL = "fiub"
 
 

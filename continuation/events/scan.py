@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from continuation.arrays import Array
@@ -11,6 +13,26 @@ from continuation.events.locate import locate, may_vanish
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
+
+
+def found_by_events(
+    solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
+) -> tuple[list[tuple[int, Linearization]], bool]:
+    """Events that look for themselves on an arc, by `found_on`, and whether all say that this is all, by `accounts_for`.
+
+    Parameters
+    ----------
+    solver : PathSolver
+    events : tuple of Event
+    arc : Arc
+        Up to where the path ends, if it does.
+    found : list of (int, Linearization)
+        What the monitors of others found on it.
+    """
+    watching = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
+    own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
+    kinds = [events[i].kind for i, _ in (*found, *own)]
+    return own, all(event.accounts_for(arc, kinds) for _, event in watching)
 
 
 def monitored(event: Event, point: Linearization) -> float:
@@ -24,7 +46,7 @@ def monitored(event: Event, point: Linearization) -> float:
 def scan_events(
     solver: PathSolver, events: tuple[Event, ...], before: tuple[float, ...], arc: Arc
 ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...]]:
-    """All events on the arc, in order, and the monitors' values at its end.
+    """All events on the arc, in order, and the monitors' values at its end; but for those with `found_on`.
 
     A zero exactly at the arc's beginning was found there before; the sign just behind it takes its place.
     """
@@ -32,6 +54,9 @@ def scan_events(
     values = []
     noise: Array | None = None
     for i, event in enumerate(events):
+        if hasattr(event, "found_on"):
+            values.append(0.0)
+            continue
         g = event.monitor(arc.b.u, arc.b.tangent)
         values.append(g)
         first = before[i] if before[i] != 0.0 else event.monitor(*arc.just_after_start)

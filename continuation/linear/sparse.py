@@ -94,7 +94,7 @@ def factor_sparse(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
         matrix = matrix.copy()
         matrix.sum_duplicates()
     bordered = _measured(matrix, column, row)
-    factor = _factor(matrix)
+    factor = factor_square(matrix)
     if factor is None:
         return factor_whole(matrix, column, row)
     return eliminate(bordered, factor, lambda: factor_whole(matrix, column, row))
@@ -118,7 +118,7 @@ def factor_whole(matrix: Matrix, column: Array, row: Array) -> SparseWhole:
     top = csc_array(matrix).multiply(scale[:n, None])
     corner = scale[n] * row
     whole = block_array([[top, (scale[:n] * column)[:, None]], [corner[None, :n], corner[None, n:]]], format="csc")
-    factor = _factor(whole)
+    factor = factor_square(whole)
     if factor is None:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: a pivot is zero.")
     return SparseWhole(bordered, factor, scale)
@@ -129,7 +129,7 @@ def _measured(matrix: Matrix, column: Array, row: Array) -> BorderedMatrix:
         return BorderedMatrix(matrix, column, row, abs(matrix) @ np.ones(len(column)))
 
 
-def _factor(matrix: Matrix) -> SuperLU | None:
+def factor_square(matrix: Matrix) -> SuperLU | None:
     """Factor by SuperLU; None where a pivot is exactly zero."""
     # On a symmetric pattern, diagonal pivots keep the ordering's fill; a weak one is left to refinement.
     symmetric = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 1e-3, "options": {"SymmetricMode": True}}

@@ -12,11 +12,11 @@ from attrs import evolve, field, frozen
 from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces
-from continuation.events.scan import first_terminal, scan_events
+from continuation.events.scan import first_terminal, found_by_events, scan_events
 from continuation.kinks.crossing import Crossing, cross
 from continuation.kinks.first import first_zero
 from continuation.path import LocatedEvent
-from continuation.point.arc import angle_between, arc_between, cut, length_between, position
+from continuation.point.arc import Arc, angle_between, arc_between, cut, length_between, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver, arc_on_path
 from continuation.predictors import Prediction
@@ -29,6 +29,10 @@ from continuation.step.stepper import Arrival
 
 MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
 """What is said of a point where several branches cross at once."""
+
+PATIENCE = 2.0**-8
+"""Of the step that the controller asked for: down to that an arc is made shorter on which a census of eigenvalues finds
+more than the events do. What then crosses has another reason, as a pole of H_y, or a symmetry."""
 
 
 @frozen(eq=False)
@@ -105,10 +109,18 @@ class Examiner:
             if kink is not None:
                 ending = self._ending_in_kink(ending, kink[0])
             found, monitors = scan_events(self.solver, events, state.monitors, ending.arc)
+            if index is not None and branch is not None and within(arc, branch.point, ending.arc.b):
+                found = sorted((*found, (index, branch.point)), key=lambda pair: position(arc, pair[1].u))
+            last, _ = first_terminal(events, state.occurrences, found)
+            ended = ending.arc if last is None else cut(ending.arc, found[last][1])
+            more, all_found = found_by_events(self.solver, events, ended, found if last is None else found[: last + 1])
+            several = ending.limit is not None or (branch is not None and branch.rays is None)
+            if not (all_found or several) and attempt.h > PATIENCE * state.h:
+                return _rejected(attempt, Rejection.UNACCOUNTED)
+            if more:
+                found = sorted((*found, *more), key=lambda pair: position(arc, pair[1].u))
         except EvaluationError as error:
             return _rejected(attempt, Rejection.ARC, str(error))
-        if index is not None and branch is not None and position(arc, branch.point.u) <= position(arc, ending.arc.b.u):
-            found = sorted((*found, (index, branch.point)), key=lambda pair: position(arc, pair[1].u))
         crossing = None
         if kink is not None and ending.at is EndsAt.KINK and self.pieces is not None:
             crossing = cross(self.solver, self.pieces, state.signs, arrival, orientation, kink[1])
@@ -156,6 +168,11 @@ class Examiner:
             ends_step=bool((at.u == end.u).all()),
             weights=begin.weights,
         )
+
+
+def within(arc: Arc, at: Linearization, end: Linearization) -> bool:
+    """Whether a point lies on an arc no farther than its end, which may be before the arc's own."""
+    return position(arc, at.u) <= position(arc, end.u)
 
 
 def _rejected(attempt: Arrival, reason: Rejection, detail: str = "") -> Rejected:

@@ -6,10 +6,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import Evaluator
+from continuation.homotopy import SupportsObserve
 from continuation.metric import norm, share
 from continuation.path import LocatedEvent, Step
 from continuation.point.linearization import Linearization
@@ -17,6 +19,38 @@ from continuation.status import Kind
 from continuation.step.state import State
 
 Observe = Callable[[Array, float], Mapping[str, float]]
+
+
+def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
+    """What is stored with each point: the homotopy's own scalars, and those of events that have some.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    events : sequence of Event
+        As they watch the path.
+
+    Raises
+    ------
+    ValueError
+        Later, where two have a scalar of one name.
+    """
+    own = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
+    others = [event.observe for event in events if hasattr(event, "observe")]
+    if not others:
+        return own
+
+    def observe(y: Array, lam: float) -> Mapping[str, float]:
+        u = np.append(y, lam)
+        found: dict[str, float] = {} if own is None else dict(own(y, lam))
+        for other in others:
+            more = other(u)
+            if shared := found.keys() & more.keys():
+                raise ValueError(f"observe: expected each name once, found {min(shared)!r} of an event too")
+            found |= more
+        return found
+
+    return observe
 
 
 @frozen(eq=False)

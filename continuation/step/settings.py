@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from attrs import evolve, frozen, has
@@ -12,6 +12,7 @@ from continuation.budget import Budget
 from continuation.checks import complain, instance_with
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
+from continuation.evaluation.evaluator import Evaluator
 from continuation.events import Event, KinkPoint, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
@@ -63,11 +64,26 @@ class Settings:
         """Which of the events stands for kinks; None for smooth homotopies."""
         return self._index_of(KinkPoint)
 
+    def bound(self, evaluator: Evaluator) -> Settings:
+        """The same with events that know the homotopy, where they have to: those with a method `bound`.
+
+        What is kept for resuming does not know it; what watches a path does.
+
+        Parameters
+        ----------
+        evaluator : Evaluator
+            Of the homotopy.
+        """
+        known = (event.bound(evaluator) if hasattr(event, "bound") else event for event in self.events)
+        return evolve(self, events=tuple(known))
+
     def _index_of(self, kind: type) -> int | None:
         return next((i for i, event in enumerate(self.events) if isinstance(event, kind)), None)
 
 
-def complete_settings(homotopy: Any, asked: Options, start: Callable[[], Array]) -> Settings:
+def complete_settings(
+    homotopy: Any, asked: Options, start: Callable[[], Array], observers: Sequence[Any] = ()
+) -> Settings:
     """Complete checked options from the homotopy.
 
     Parameters
@@ -76,6 +92,8 @@ def complete_settings(homotopy: Any, asked: Options, start: Callable[[], Array])
     asked : Options
     start : callable
         Where the path begins, (y, lam); asked for where there is a box.
+    observers : sequence of Observer
+        Those with `events` have them watched for.
 
     Raises
     ------
@@ -91,7 +109,7 @@ def complete_settings(homotopy: Any, asked: Options, start: Callable[[], Array])
         corrector=_first(asked["corrector"], preset.corrector),
         controller=_capped(_first(asked["controller"], preset.controller), asked["max_step"]),
         metric=_first(asked["metric"], own, Automatic()),
-        events=(*_events(homotopy, asked), *_box(homotopy, asked, start)),
+        events=(*_events(homotopy, asked, observers), *_box(homotopy, asked, start)),
         tolerance=as_tolerance(asked["tolerance"]),
         budget=_first(asked["budget"], Budget()),
         target=checked_target(getattr(homotopy, "target", 0.0) if names_homotopy(target) else target),
@@ -125,10 +143,11 @@ def _first(*candidates: Any) -> Any:
     return next(candidate for candidate in candidates if candidate is not None)
 
 
-def _events(homotopy: Any, asked: Options) -> tuple[Event, ...]:
+def _events(homotopy: Any, asked: Options, observers: Sequence[Any]) -> tuple[Event, ...]:
     own = tuple(homotopy.events) if isinstance(homotopy, SupportsEvents) else ()
     each("events", own, EVENT)
     watched: tuple[Event, ...] = (*own, *asked["events"])
+    watched += tuple(e for part in observers for e in getattr(part, "events", ()) if e not in watched)
     if isinstance(homotopy, SupportsPieces) and not any(isinstance(event, KinkPoint) for event in watched):
         watched = (*watched, KinkPoint(terminal=0))
     if not asked["examine"]:

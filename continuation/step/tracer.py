@@ -17,7 +17,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
-from continuation.homotopy import SupportsObserve, SupportsPieces
+from continuation.homotopy import SupportsPieces
 from continuation.interrupted import Interrupted
 from continuation.kinks.start import begin
 from continuation.labels import Labels
@@ -29,7 +29,7 @@ from continuation.status import Kind, Status
 from continuation.step.advance import Advance, Stopped
 from continuation.step.capabilities import finish_of, max_step_of
 from continuation.step.options import OBSERVER, Options, checked, documented, each
-from continuation.step.record import StepRecorder
+from continuation.step.record import StepRecorder, observing
 from continuation.step.settings import complete_settings
 from continuation.step.start import (
     StartError,
@@ -135,16 +135,16 @@ class Tracer:
         given = asked["start"]
         self._guess = guessed(given) if is_guess(given) else None
         self._start = given if self._guess is None else None
-        self.settings = complete_settings(homotopy, asked, self._beginning)
+        self.settings = complete_settings(homotopy, asked, self._beginning, observers)
+        self._bound = self.settings.bound(self._evaluator)
         self.observers = tuple(observers)
         self._finish = finish_of(homotopy, asked["finish"])
         self._pieces = Pieces(homotopy) if isinstance(homotopy, SupportsPieces) else None
         leaving = None if self._start is None else np.asarray(self._start[1], dtype=float)
         straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
         self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy), straight)
-        observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
-        self._recorder = StepRecorder(self._evaluator, observe)
-        self._advance = Advance(self._solver, self.settings, self._recorder, self._spent, self._pieces)
+        self._recorder = StepRecorder(self._evaluator, observing(homotopy, self._bound.events))
+        self._advance = Advance(self._solver, self._bound, self._recorder, self._spent, self._pieces)
         self._check = asked["check_jacobian"]
         self._clock: float | None = None
         self._handed = 0
@@ -277,7 +277,7 @@ class Tracer:
             orientation=point.orientation,
             h=bounds.cap(h if bounds.initial is None else bounds.initial),
             controller=settings.controller.init(),
-            monitors=tuple(monitored(event, point) for event in settings.events),
+            monitors=tuple(monitored(event, point) for event in self._bound.events),
             occurrences=(0,) * len(settings.events),
             origin=here,
             origin_weights=point.weights,

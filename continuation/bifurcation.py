@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -23,8 +22,7 @@ from continuation.drawing import (
     tidy,
 )
 from continuation.path import Path
-
-Mask: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
+from continuation.stretches import Stretch, by_stability, draw_line, stretches
 
 Value: TypeAlias = int | str | Callable[[Array, float], float] | None
 """A component, the name of an unknown or of an observed scalar, a function of (y, lam), or the maximum norm."""
@@ -58,7 +56,8 @@ def plot_bifurcation(
     against : {"lam", "arclength"}
     stable : str or callable, optional
         Which part is stable, drawn solid, the rest dashed: the name of an observed scalar that is positive there, or a
-        function of (y, lam) that is true there.
+        function of (y, lam) that is true there. By default what `continuation.Stability` stored with the path, if it
+        was among the observers.
     names : sequence of str, optional
         One a path, for the legend.
     legend : bool
@@ -84,10 +83,8 @@ def plot_bifurcation(
     for k, one in enumerate(paths):
         drawing = Drawing.of(one)
         horizontal, heights = across(against, drawing), values_along(one, drawing, wanted)
-        label = names[k] if names is not None else None
-        # Dashes mean one thing in a picture: with stability they are not for telling paths apart.
-        looks = line_style(k) if stable is None else {**line_style(k), "linestyle": "-"}
-        _draw(axes, horizontal, heights, _solid(one, drawing, stable), looks, label)
+        label = (names[k] if names is not None else None) or "_"
+        draw_line(axes, horizontal, heights, label, line_style(k), drawing.s, _parts(one, drawing, stable))
         places = [
             (event, event.lam if against == "lam" else event.arclength, _at_event(event, one, wanted))
             for event in one.events
@@ -158,24 +155,16 @@ def _at_event(event: Any, path: Path, value: Value) -> float:
     return float(event.y[value])
 
 
-def _solid(path: Path, drawing: Drawing, stable: Stable) -> Mask:
+def _parts(path: Path, drawing: Drawing, stable: Stable) -> list[Stretch] | None:
     if stable is None:
-        return np.ones(len(drawing.s), dtype=bool)
+        return by_stability(path, drawing.s)
     if callable(stable):
-        return np.array([bool(stable(u[:-1], float(u[-1]))) for u in drawing.u])
-    if stable not in path.steps[0].observed:
+        solid = np.array([bool(stable(u[:-1], float(u[-1]))) for u in drawing.u])
+    elif stable in path.steps[0].observed:
+        solid = _observed(path, drawing, stable) > 0.0
+    else:
         raise ValueError(f"stable: expected one of {', '.join(path.steps[0].observed) or 'nothing'}, found {stable!r}")
-    return np.asarray(_observed(path, drawing, stable) > 0.0)
-
-
-def _draw(axes: Axes, x: Array, y: Array, solid: Mask, looks: dict[str, Any], label: str | None) -> None:
-    """Pieces of one stability each; the piece after a change begins where the one before ends."""
-    edges = [0, *(np.flatnonzero(np.diff(solid)) + 1), len(x)]
-    for start, stop in pairwise(edges):
-        style = looks if solid[start] else {**looks, "linestyle": "--"}
-        part = slice(max(start - 1, 0), stop)
-        marker = "." if len(x) == 1 else ""
-        axes.plot(x[part], y[part], label=label if start == 0 and label else "_", marker=marker, **style)
+    return stretches(drawing.s, drawing.s[np.flatnonzero(np.diff(solid))], bool(solid[0]))
 
 
 def _named(path: Path, value: Value) -> str:

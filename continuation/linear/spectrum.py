@@ -1,0 +1,234 @@
+"""Eigenvalues of H_y for questions of stability: all of them, the ones on the right, or no more than their signs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+from scipy.linalg import eigvals, lu_factor, lu_solve
+from scipy.linalg.lapack import dsytrf, dsytrf_lwork
+from scipy.sparse import csc_array, eye_array, issparse
+
+from continuation.arrays import Array, Matrix, generic_vector
+from continuation.linear.banded import Banded
+from continuation.linear.sparse import factor_square
+from continuation.linear.symmetric import Symmetric
+
+ALL = 100
+"""Up to this order all eigenvalues of a dense matrix are computed: 8 ms there, and 80 ms at twice the order."""
+
+WANTED = 6
+"""Eigenvalues on the right that are computed beyond that, where nothing is said."""
+
+OFF_AXIS = 1e-10
+"""The real part, relative to the largest of the eigenvalues known, from which an eigenvalue counts as unstable: events
+are located to that."""
+
+SHIFT = 0.017
+"""By how much more than the bound on real parts the shift is: no eigenvalue of a symmetric matrix lies on it."""
+
+NEAR = 1e-6
+"""At least so far is the shift from zero, relative to the diagonal: a singular matrix has eigenvalues all the same."""
+
+DIGITS, CONVERGED = 1e-4, 1e-12
+"""Eigenvalues are computed until they, and their real parts, have four digits, so that it is known on which side they
+are. Near the axis these are as many as an event needs that is located to 1e-10: down to the second, relative."""
+
+DIMENSIONS, LOOK = 40, 6
+"""At most so many dimensions of the Krylov space for each eigenvalue and one more; 40 in all are usual for six. After
+so many more it is looked whether they are enough: the small eigenvalue problem costs as much as ten solves."""
+
+ROUND_OFF = 1e-14
+"""A vector that loses all but this to the ones before it has no direction of its own."""
+
+
+@frozen(eq=False)
+class Spectrum:
+    """What is known of the eigenvalues of a matrix.
+
+    Attributes
+    ----------
+    values : ndarray of complex
+        Those computed, the rightmost first; none where only signs were asked for.
+    unstable : int
+        How many lie to the right of the imaginary axis.
+    covered : bool
+        Whether no other eigenvalue can lie there.
+    solves : int
+        With the one factorisation of Arnoldi's method.
+    """
+
+    values: np.ndarray[Any, np.dtype[np.complex128]]
+    unstable: int
+    covered: bool = True
+    solves: int = 0
+
+    @property
+    def rightmost(self) -> float:
+        """The largest real part; nan where only signs are known."""
+        return float(self.values[0].real) if self.values.size else np.nan
+
+    @property
+    def size(self) -> float:
+        """The largest modulus of those computed; 1 where there are none."""
+        return float(np.abs(self.values).max()) if self.values.size else 1.0
+
+    @property
+    def pairs(self) -> np.ndarray[Any, np.dtype[np.complex128]]:
+        """The upper one of each complex pair, the rightmost first."""
+        return self.values[self.values.imag > OFF_AXIS * self.size]
+
+    @property
+    def unstable_pairs(self) -> int:
+        """How many complex pairs lie to the right."""
+        return int(np.count_nonzero(self.pairs.real > 0.0))
+
+    @property
+    def critical(self) -> bool:
+        """Whether an eigenvalue lies on the axis, to half of the digits: then the count is as round-off wants it."""
+        return bool((np.abs(self.values.real) <= np.sqrt(OFF_AXIS) * self.size).any())
+
+
+def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
+    """The eigenvalues of ``side * matrix`` that decide on stability.
+
+    Of a `Symmetric` matrix the inertia of its LDL' factorisation (Sylvester's law); of a small one all, by the QR
+    method; of others the k nearest to a real number on the right of all of them, by Arnoldi's method on the inverse
+    (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 5.3). Bendixson's theorem bounds real
+    and imaginary parts by the eigenvalues of the symmetric and of the skew part, which Gershgorin's discs bound: where
+    the disc that Arnoldi's method has emptied covers what is left on the right, the count is complete.
+
+    Parameters
+    ----------
+    matrix : ndarray, sparse array, Banded or Symmetric, shape (N, N)
+    side : {1, -1}
+    k : int, optional
+        6 by default.
+
+    Raises
+    ------
+    TypeError
+        If the matrix is an operator, which has no entries.
+    ArithmeticError
+        If Arnoldi's method does not converge.
+    """
+    if isinstance(matrix, Symmetric):
+        return _of_signs(matrix, side)
+    if isinstance(matrix, Banded):
+        matrix = matrix.tosparse()
+    if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
+        raise TypeError(f"stability: expected H_y as a matrix, found {type(matrix).__name__}")
+    if matrix.shape[0] <= ALL and k is None:
+        whole = matrix.toarray() if issparse(matrix) else matrix
+        return _counted(eigvals(side * np.asarray(whole, dtype=float)))
+    return _nearest(side * matrix, WANTED if k is None else k)
+
+
+def _counted(values: Any, covered: bool = True) -> Spectrum:
+    found = np.asarray(values, dtype=complex)
+    found = found[np.lexsort((-found.imag, -found.real))]
+    size = float(np.abs(found).max())
+    return Spectrum(found, int(np.count_nonzero(found.real > OFF_AXIS * size)), covered)
+
+
+def _of_signs(symmetric: Symmetric, side: int) -> Spectrum:
+    work, _ = dsytrf_lwork(symmetric.shape[0], lower=1)
+    ldu, pivots, _ = dsytrf(symmetric.matrix.T, lower=1, lwork=int(work))
+    # As LAPACK has it: pivots are negative in both rows of a block of order two, which has one eigenvalue of each sign.
+    single = ldu.diagonal()[pivots > 0]
+    pairs = (symmetric.shape[0] - single.size) // 2
+    return Spectrum(np.empty(0, dtype=complex), pairs + int(np.count_nonzero(side * single > 0.0)))
+
+
+def bounds(matrix: Matrix) -> tuple[float, float]:
+    """The largest real part and the largest imaginary part that an eigenvalue may have (Bendixson, Gershgorin).
+
+    Parameters
+    ----------
+    matrix : ndarray or sparse array, shape (N, N)
+    """
+    turned = matrix.T
+    rows = abs(matrix + turned).sum(axis=1)
+    diagonal = matrix.diagonal()
+    real = 0.5 * np.asarray(rows).ravel() - np.abs(diagonal) + diagonal
+    imaginary = 0.5 * np.asarray(abs(matrix - turned).sum(axis=1)).ravel()
+    return float(real.max()), float(imaginary.max())
+
+
+def _nearest(matrix: Matrix, k: int) -> Spectrum:
+    """The k eigenvalues nearest to a shift at the right edge of where they can be."""
+    n = matrix.shape[0]
+    real, imaginary = bounds(matrix)
+    # Where all are stable the shift is not much farther away than what oscillates, and no eigenvalue itself.
+    shift = (1.0 + SHIFT) * max(real, 0.1 * imaginary, NEAR * float(np.abs(matrix.diagonal()).max()))
+    inverse, corner = _solver(matrix, shift), float(np.hypot(shift, imaginary))
+    wanted, solves = min(k, n), 0
+
+    def known(theta: Any, error: Array) -> bool:
+        moduli, real_parts = np.abs(theta), np.abs((shift + 1.0 / theta).real)
+        off = error / moduli**2
+        return bool(((error <= DIGITS * moduli) & (off <= DIGITS * real_parts) | (error <= CONVERGED * moduli)).all())
+
+    while True:
+        theta, more = dominant(inverse, generic_vector(n), wanted, known)
+        solves += more
+        found = shift + 1.0 / theta
+        covered = wanted == n or real <= 0.0 or bool(np.abs(found - shift).max() >= corner)
+        if covered or not (found.real > 0.0).all():
+            return evolve(_counted(found, covered), solves=solves)
+        # There are more on the right than were asked for.
+        wanted = min(2 * wanted, n)
+
+
+def dominant(
+    apply: Callable[[Array], Array], start: Array, k: int, known: Callable[[Any, Array], bool]
+) -> tuple[Any, int]:
+    """The k eigenvalues of largest modulus, by Arnoldi's method, and how often the operator was applied.
+
+    Parameters
+    ----------
+    apply : callable
+    start : ndarray, shape (N,)
+    k : int
+    known : callable
+        Of eigenvalues and bounds on their errors: whether they are good enough.
+
+    Raises
+    ------
+    ArithmeticError
+        If they do not converge.
+    """
+    n = start.size
+    most = min(n, DIMENSIONS * (k + 1))
+    Q, H = np.zeros((most + 1, n)), np.zeros((most + 1, most))
+    Q[0] = start / np.linalg.norm(start)
+    for j in range(1, most + 1):
+        x = apply(Q[j - 1])
+        size = float(np.linalg.norm(x))
+        for _ in range(2):
+            part = Q[:j] @ x
+            H[:j, j - 1] += part
+            x = x - part @ Q[:j]
+        H[j, j - 1] = float(np.linalg.norm(x))
+        exhausted = j == n or H[j, j - 1] <= ROUND_OFF * size
+        if exhausted or j == most or (j >= 2 * k and (j - 2 * k) % LOOK == 0):
+            theta, vectors = np.linalg.eig(H[:j, :j])
+            largest = np.argsort(-np.abs(theta))[:k]
+            error = H[j, j - 1] * np.abs(vectors[-1, largest])
+            if exhausted or known(theta[largest], error):
+                return theta[largest], j
+        Q[j] = x / H[j, j - 1]
+    raise ArithmeticError(f"the {k} eigenvalues on the right are not found in {most} steps of Arnoldi's method")
+
+
+def _solver(matrix: Matrix, shift: float) -> Callable[[Array], Array]:
+    n = matrix.shape[0]
+    if isinstance(matrix, np.ndarray):
+        factors = lu_factor(matrix - shift * np.eye(n), check_finite=False)
+        return lambda rhs: lu_solve(factors, rhs, check_finite=False)
+    factor = factor_square(csc_array(matrix - shift * eye_array(n, format="csc")))
+    if factor is None:
+        raise ArithmeticError("eigenvalues of H_y: the shifted matrix is singular")
+    return factor.solve

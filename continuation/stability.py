@@ -1,0 +1,219 @@
+"""Stability along a path: eigenvalues at its points, Hopf points between them, and a census of what crosses.
+
+The flow is dy/dt = side H(y, lam). Its equilibria are the points of the path; they are stable where all eigenvalues of
+side H_y lie to the left of the imaginary axis. A real eigenvalue crosses it at turning points and branch points, which
+the tracer finds by itself, a complex pair at Hopf points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from attrs import define, field, frozen
+from attrs.validators import in_, optional
+from scipy.optimize import brentq
+
+from continuation.arrays import Array
+from continuation.checks import integer, sign
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.linear.spectrum import Spectrum, spectrum
+from continuation.path import LocatedEvent, Step
+from continuation.point.arc import Arc, position
+from continuation.point.linearization import Linearization
+from continuation.point.projection import PathSolver
+from continuation.status import Kind
+
+KEPT = 6
+"""Spectra that are remembered: the ends of an arc, and the event that is being looked at."""
+
+ON_AXIS = 1e-6
+"""The real part of a Hopf point's pair, relative to its modulus: more, and a pair appeared or vanished, and none
+crossed."""
+
+CLOSE = 1e-12
+"""Of an arc: nearer a point is not moved."""
+
+RESOLVED = 1e-14
+"""The same where it is zero: what is left is round-off of the eigenvalues."""
+
+
+@frozen
+class HopfPoint:
+    """A complex pair of eigenvalues of H_y crosses the imaginary axis: a Hopf point, with what is known on the way.
+
+    Parameters
+    ----------
+    side : {1, -1}, default 1
+        Of dy/dt = side H(y, lam): a Hopf point does not depend on it, the counts stored do.
+    k : int, optional
+        So many eigenvalues nearest to the right edge are computed, by Arnoldi's method. By default all where there are
+        at most 100, else 6.
+    terminal : int, default 0
+        The trace ends at the k-th occurrence; 0 for never.
+    direction : int, default 0
+        +1 only where a pair becomes unstable, -1 only where one becomes stable.
+    """
+
+    side: int = field(default=1, validator=in_((1, -1)))
+    k: int | None = field(default=None, validator=optional(integer(1)))
+    terminal: int = field(default=0, validator=integer(0))
+    direction: int = field(default=0, validator=sign)
+    kind: Kind = field(default=Kind.HOPF, init=False)
+    name: str = field(default="Hopf point", init=False)
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """A constant: the event needs H_y, and watches for crossings when it is `bound` to a homotopy."""
+        return 1.0
+
+    def bound(self, evaluator: Evaluator) -> BoundHopf:
+        """The event as it watches one path.
+
+        Parameters
+        ----------
+        evaluator : Evaluator
+            Of the homotopy.
+        """
+        return BoundHopf(self, evaluator)
+
+
+@frozen
+class Stability:
+    """An observer that stores the stability of each point, and locates Hopf points.
+
+    Each point, and each event, has ``observed["unstable"]``, the number of unstable eigenvalues; ``"rightmost"``, the
+    largest real part; ``"frequency"``, the imaginary part of the complex pair nearest to the axis (nan without one);
+    and ``"covered"``, 1 where no unstable eigenvalue can have been overlooked. Pictures are solid where none is
+    unstable, and dashed elsewhere. Where H_y is `Symmetric` only signs are computed: ``"unstable"`` is all there is.
+
+    Parameters
+    ----------
+    side, k, terminal
+        As for `HopfPoint`, which is watched for.
+    """
+
+    side: int = field(default=1, validator=in_((1, -1)))
+    k: int | None = field(default=None, validator=optional(integer(1)))
+    terminal: int = field(default=0, validator=integer(0))
+
+    @property
+    def events(self) -> tuple[HopfPoint, ...]:
+        """What is watched for: ``trace_both(homotopy, events=Stability().events)`` does the same."""
+        return (HopfPoint(self.side, self.k, self.terminal),)
+
+    def step(self, tracer: Any, step: Step) -> None:
+        """The point has its numbers already."""
+
+    def event(self, tracer: Any, event: LocatedEvent) -> None:
+        """The event has its numbers already."""
+
+    def end(self, tracer: Any) -> None:
+        """Nothing is left to do."""
+
+
+@define(eq=False)
+class BoundHopf:
+    """The event `HopfPoint` on the path of one homotopy."""
+
+    event: HopfPoint
+    evaluator: Evaluator
+    _known: dict[Any, Spectrum] = field(factory=dict, init=False)
+
+    @property
+    def name(self) -> str:
+        """As of the event."""
+        return self.event.name
+
+    @property
+    def kind(self) -> Kind:
+        """As of the event."""
+        return self.event.kind
+
+    @property
+    def terminal(self) -> int:
+        """As of the event."""
+        return self.event.terminal
+
+    @property
+    def direction(self) -> int:
+        """As of the event."""
+        return self.event.direction
+
+    def at(self, u: Array) -> Spectrum:
+        """The eigenvalues at a point, on the piece that the path is on."""
+        key = (id(self.evaluator.homotopy), u.tobytes())
+        if key not in self._known:
+            while len(self._known) >= KEPT:
+                del self._known[next(iter(self._known))]
+            self._known[key] = self._computed(u)
+        return self._known[key]
+
+    def _computed(self, u: Array) -> Spectrum:
+        counts = self.evaluator.counts
+        counts.jacobians += 1
+        counts.factorizations += 1
+        H_y, _ = self.evaluator.derivative(u[:-1], float(u[-1]))
+        try:
+            found = spectrum(H_y, self.event.side, self.event.k)
+            counts.solves += found.solves
+            return found
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            raise EvaluationError(str(error)) from error
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """The real part of the pair nearest to the axis: how well a Hopf point is located."""
+        pairs = self.at(u).pairs
+        return float(pairs.real[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
+
+    def observe(self, u: Array) -> dict[str, float]:
+        """What is stored with a point."""
+        found = self.at(u)
+        if not found.values.size:
+            return {"unstable": float(found.unstable)}
+        pairs = found.pairs
+        frequency = float(pairs.imag[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
+        known = (float(found.unstable), found.rightmost, frequency, float(found.covered))
+        return dict(zip(("unstable", "rightmost", "frequency", "covered"), known))
+
+    def found_on(self, solver: PathSolver, arc: Arc) -> list[Linearization]:
+        """The Hopf points of an arc, in order: of each pair that changes sides, where its real part vanishes."""
+        before, after = self.at(arc.a.u), self.at(arc.b.u)
+        p, q = before.unstable_pairs, after.unstable_pairs
+        if p == q or before.unstable == after.unstable:
+            return []
+        points = [self._located(solver, arc, rank) for rank in range(min(p, q), max(p, q))]
+        wanted = [point for point in points if point is not None and (q - p) * self.direction >= 0]
+        return sorted(wanted, key=lambda point: position(arc, point.u))
+
+    def _real_part(self, u: Array, rank: int) -> float:
+        """Of the pair of a rank, the rightmost first: smooth where that pair crosses alone."""
+        found = self.at(u)
+        if rank >= found.pairs.size:
+            return -found.size
+        pair = found.pairs[rank]
+        return float(pair.real) if abs(pair.real) > RESOLVED * abs(pair) else 0.0
+
+    def _located(self, solver: PathSolver, arc: Arc, rank: int) -> Linearization | None:
+        """Where the real part of the pair of a rank vanishes; None where it jumps, as a pair out of real ones does.
+
+        Brent's method on points of the path: few spectra, which cost more than all the rest.
+        """
+
+        def real_part(t: float) -> float:
+            ends = {0.0: arc.a.u, 1.0: arc.b.u}
+            u = ends[t] if t in ends else solver.project(arc.a, arc.segment.at(t), arc.border)[0]
+            return self._real_part(u, rank)
+
+        t = float(brentq(real_part, 0.0, 1.0, xtol=CLOSE, rtol=CLOSE, disp=False))
+        at = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
+        pairs = self.at(at.u).pairs
+        return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
+
+    def accounts_for(self, arc: Arc, kinds: Sequence[Kind]) -> bool:
+        """Whether the events found on an arc explain how the number of unstable eigenvalues changes along it."""
+        before, after = self.at(arc.a.u), self.at(arc.b.u)
+        if before.critical or after.critical or not (before.covered and after.covered):
+            return True
+        explained = sum({Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1}.get(kind, 0) for kind in kinds)
+        return Kind.SINGULAR_POINT in kinds or abs(after.unstable - before.unstable) <= explained

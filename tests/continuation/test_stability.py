@@ -1,0 +1,303 @@
+"""Stability along paths: Hopf points in closed form, counts that are stored, kept and drawn, and what a count shows."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from attrs import frozen
+
+from continuation import (
+    Budget,
+    HopfPoint,
+    Kind,
+    Stability,
+    Status,
+    from_functions,
+    switch_branch,
+    trace,
+    trace_both,
+)
+from continuation.archive import open_archive, resume
+from continuation.linear import Banded, Symmetric, factor_bordered
+from continuation.linear.spectrum import bounds, spectrum
+
+from ..util import every_preset
+
+
+def hopf_points(path):
+    return [event for event in path.events if event.kind == Kind.HOPF]
+
+
+def brusselator(A):
+    def rates(y, B):
+        made = y[0] * y[0] * y[1]
+        return np.stack([A - (B + 1.0) * y[0] + made, B * y[0] - made])
+
+    return from_functions(rates, start=([A, 0.5 / A], 0.5), target=3.0 + A * A)
+
+
+def lorenz(y, r):
+    return np.stack([10.0 * (y[1] - y[0]), r * y[0] - y[1] - y[0] * y[2], y[0] * y[1] - 8.0 / 3.0 * y[2]])
+
+
+def van_der_pol(y, mu):
+    return np.stack([y[1], mu * (1.0 - y[0] * y[0]) * y[1] - y[0]])
+
+
+@frozen
+class Diffusing:
+    """Two species on n points, (d - lam) z + turning, both ends held at 0: z = 0, and a Hopf point for each mode."""
+
+    n: int = 20
+    diffusion: float = 0.02
+    target: float = 1.0
+
+    @property
+    def laplacian(self):
+        return (self.n + 1) ** 2 * sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(self.n, self.n))
+
+    def rate(self, mode):
+        return self.diffusion * 4.0 * (self.n + 1) ** 2 * np.sin(0.5 * mode * np.pi / (self.n + 1)) ** 2
+
+    def start(self):
+        return np.zeros(2 * self.n), 0.0
+
+    def matrix(self, lam):
+        grow, turn = self.diffusion * self.laplacian + lam * sp.eye_array(self.n), 3.0 * sp.eye_array(self.n)
+        return sp.csc_array(sp.block_array([[grow, -turn], [turn, grow]]))
+
+    def residual(self, y, lam):
+        return self.matrix(lam) @ y - y**3
+
+    def jacobian(self, y, lam):
+        return sp.csc_array(self.matrix(lam) - sp.diags_array(3.0 * y * y)), y.copy()
+
+
+@every_preset
+@pytest.mark.parametrize("A", [0.5, 1.0, 2.0])
+def test_the_brusselator_oscillates_from_one_plus_a_squared_on(preset, A):
+    path = trace(brusselator(A), observers=[Stability()], preset=preset)
+    (event,) = hopf_points(path)
+    assert abs(event.lam - 1.0 - A * A) < 1e-10
+    assert abs(event.observed["frequency"] - A) < 1e-10
+    assert [step.observed["unstable"] for step in path.steps] == [2.0 * (lam > 1.0 + A * A) for lam in path.lam]
+
+
+def test_lorenz_has_its_pitchfork_and_its_hopf_points():
+    homotopy = from_functions(lorenz, start=(np.zeros(3), 0.2), target=30.0)
+    trunk = trace(homotopy, observers=[Stability()])
+    (fork,) = trunk.events
+    assert abs(fork.lam - 1.0) < 1e-10
+    assert {step.observed["unstable"] for step in trunk.steps if step.lam > 1.0} == {1.0}
+    for start in switch_branch(homotopy, fork):
+        arm = trace(homotopy, start=start, target=30.0, observers=[Stability()])
+        (event,) = hopf_points(arm)
+        assert abs(event.lam - 470.0 / 19.0) < 1e-10
+        assert abs(event.observed["frequency"] - np.sqrt(8.0 / 3.0 * (470.0 / 19.0 + 10.0))) < 1e-10
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_van_der_pol_starts_to_oscillate_at_zero(side):
+    path = trace_both(
+        from_functions(van_der_pol, start=([0.0, 0.0], -0.7), target=None),
+        events=Stability(side).events,
+        box={"lam": (-1.0, 1.5)},
+    )
+    (event,) = hopf_points(path)
+    assert abs(event.lam) < 1e-10
+    assert path.steps[0].observed["unstable"] == (0.0 if side == 1 else 2.0)
+    # Eigenvalues of +-[[0, 1], [-1, mu]], real from |mu| = 2 on.
+    assert path.steps[-1].observed["rightmost"] == pytest.approx(0.75 * side, abs=1e-12)
+
+
+def test_a_hopf_point_may_end_the_path_and_only_one_way_of_crossing_may_count():
+    path = trace(brusselator(1.0), events=[HopfPoint(terminal=1)])
+    assert path.status is Status.STOPPED_AT_EVENT
+    assert abs(path.endpoint.lam - 2.0) < 1e-10
+    assert path.endpoint.kind == Kind.HOPF
+    assert hopf_points(trace(brusselator(1.0), events=[HopfPoint(direction=-1)])) == []
+    assert len(hopf_points(trace(brusselator(1.0), events=[HopfPoint(direction=1)]))) == 1
+
+
+@pytest.mark.parametrize("k", [None, 8])
+def test_several_pairs_that_cross_within_one_step_are_all_found(k):
+    homotopy = Diffusing()
+    path = trace(homotopy, observers=[Stability(k=k)], target=2.5)
+    found = hopf_points(path)
+    assert len(found) == 3
+    for mode, event in enumerate(found, start=1):
+        assert abs(event.lam - homotopy.rate(mode)) < 1e-10
+        assert abs(event.observed["frequency"] - 3.0) < 1e-10
+    assert len(path) < 8
+    assert path.endpoint.observed["unstable"] == 6.0
+    assert all(step.observed["covered"] for step in path.steps)
+
+
+def test_what_stability_costs_on_a_large_sparse_branch():
+    homotopy = Diffusing(1000)
+    alone = trace(homotopy, target=0.15)
+    watched = trace(homotopy, target=0.15, observers=[Stability()])
+    np.testing.assert_array_equal(watched.u, alone.u)
+    # One factorisation and one H_y a point, and none to find out that nothing crosses.
+    assert watched.counts.factorizations == alone.counts.factorizations + len(alone)
+    assert watched.counts.jacobians == alone.counts.jacobians + len(alone)
+    assert watched.counts.solves <= alone.counts.solves + 40 * len(alone)
+    assert {step.observed["unstable"] for step in watched.steps} == {0.0}
+    assert all(step.observed["covered"] for step in watched.steps)
+
+
+# -- the eigenvalues ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_inertia_of_a_symmetric_matrix_is_that_of_its_eigenvalues(seed, side):
+    generator = np.random.default_rng(seed)
+    A = generator.standard_normal((12, 12))
+    A = A + A.T + np.diag(generator.integers(-3, 4, 12))
+    found = spectrum(Symmetric(A), side)
+    assert found.unstable == np.count_nonzero(side * np.linalg.eigvalsh(A) > 0.0)
+    assert found.pairs.size == 0
+
+
+def test_zero_eigenvalues_of_a_symmetric_matrix_count_on_neither_side():
+    A = np.diag([1.0, 0.0, -2.0, 0.0, 3.0])
+    assert [spectrum(Symmetric(A), side).unstable for side in (1, -1)] == [2, 1]
+
+
+@pytest.mark.parametrize("kind", ["dense", "sparse", "banded"])
+def test_the_rightmost_of_a_large_matrix_are_found_whatever_its_structure(kind):
+    n = 150
+    below, above = np.linspace(1.0, 2.0, n - 1), -np.linspace(2.0, 1.0, n - 1)
+    dense = np.diag(np.linspace(0.3, -40.0, n)) + np.diag(below, -1) + np.diag(above, 1)
+    banded = np.zeros((3, n))
+    banded[0, 1:], banded[1], banded[2, :-1] = above, dense.diagonal(), below
+    matrix = {"dense": dense, "sparse": sp.csc_array(dense), "banded": Banded(banded, 1, 1)}[kind]
+    exact = np.linalg.eigvals(dense)
+    found = spectrum(matrix, 1, 10)
+    assert found.unstable == np.count_nonzero(exact.real > 0.0)
+    assert found.rightmost == pytest.approx(exact.real.max(), rel=1e-3)
+
+
+def test_the_bounds_hold_all_eigenvalues():
+    generator = np.random.default_rng(3)
+    for _ in range(20):
+        A = generator.standard_normal((8, 8)) * 10.0 ** generator.uniform(-2, 2, (8, 1))
+        real, imaginary = bounds(A)
+        values = np.linalg.eigvals(A)
+        assert values.real.max() <= real
+        assert np.abs(values.imag).max() <= imaginary
+
+
+def test_eigenvalues_that_may_have_been_overlooked_are_said():
+    # A pair far up the axis is farther from every real shift than the many that are near to it.
+    A = sp.block_diag([sp.csc_array([[0.1, -50.0], [50.0, 0.1]]), sp.diags_array(np.linspace(-3.0, -0.1, 200))], "csc")
+    found = spectrum(A)
+    assert not found.covered
+    assert found.unstable == 0
+    whole = spectrum(A, k=202)
+    assert whole.covered
+    assert whole.unstable == 2
+
+
+def test_more_are_computed_where_all_that_were_asked_for_are_unstable():
+    A = sp.diags_array(np.concatenate([np.linspace(1.0, 2.0, 20), np.linspace(-9.0, -1.0, 200)]), format="csc")
+    found = spectrum(A)
+    assert found.unstable == 20
+    assert found.covered
+
+
+def test_an_operator_has_no_eigenvalues_that_are_known():
+    with pytest.raises(TypeError, match="stability: expected H_y as a matrix, found MatrixLinearOperator"):
+        spectrum(sp.linalg.aslinearoperator(np.eye(3)))
+
+
+# -- what a count shows ---------------------------------------------------------------------------------------
+
+
+@frozen
+class Unseen:
+    """Three pitchforks on a trunk with factors of its own, so that no product with H' shows what crosses."""
+
+    places: tuple[float, ...] = (0.5, 0.503, 2.0)
+    target: float = 1.0
+
+    def start(self):
+        return np.zeros(3), 0.0
+
+    def residual(self, y, lam):
+        return (lam - np.array(self.places)) * y - y**3
+
+    def jacobian(self, y, lam):
+        return np.diag(lam - np.array(self.places) - 3.0 * y * y), y.copy()
+
+    def bordered(self, y, lam, border):
+        return factor_bordered(*self.jacobian(y, lam), border)
+
+
+def test_a_pair_of_branch_points_within_a_step_is_told_apart_by_the_count():
+    assert trace(Unseen()).events == []
+    path = trace(Unseen(), observers=[Stability()])
+    np.testing.assert_allclose([event.lam for event in path.events], [0.5, 0.503], rtol=0, atol=1e-10)
+    assert any("change sides" in str(failed) for step in path.steps for failed in step.rejected)
+
+
+def test_what_never_can_be_told_apart_does_not_stop_the_path():
+    path = trace(Unseen((0.5, 0.5, 2.0)), observers=[Stability()])
+    assert path.status is Status.REACHED_TARGET
+    assert path.endpoint.observed["unstable"] == 2.0
+
+
+# -- stored, resumed, drawn -----------------------------------------------------------------------------------
+
+
+def test_counts_and_frequencies_are_kept_in_archives_and_resuming_goes_on_with_them(tmp_path):
+    whole = trace(Diffusing(), observers=[Stability()], target=2.5, archive=tmp_path / "whole.h5", max_step=0.1)
+    part = tmp_path / "part.h5"
+    trace(Diffusing(), observers=[Stability()], target=2.5, archive=part, max_step=0.1, budget=Budget(steps=3))
+    resumed = resume(part, Diffusing(), budget=Budget())
+    with open_archive(tmp_path / "whole.h5") as archive:
+        stored = archive.path(0)
+        for other in (stored, resumed):
+            assert [step.observed for step in other.steps] == [step.observed for step in whole.steps]
+            assert [(e.name, e.kind, e.lam) for e in other.events] == [(e.name, e.kind, e.lam) for e in whole.events]
+        assert [event.observed["frequency"] for event in hopf_points(stored)] == pytest.approx([3.0] * 3, abs=1e-10)
+
+
+def lines(axes):
+    return [
+        (line.get_linestyle(), np.asarray(line.get_xdata(), dtype=float))
+        for line in axes.lines
+        if line.get_linestyle() in ("-", "--")
+    ]
+
+
+def test_a_path_is_drawn_solid_up_to_the_event_at_which_it_becomes_unstable():
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    path = trace(brusselator(1.0), observers=[Stability()])
+    for drawn in (path.plot(components=[1]), path.plot(value=1)):
+        solid, dashed = lines(drawn)
+        assert solid[0] == "-"
+        assert dashed[0] == "--"
+        assert solid[1][-1] == dashed[1][0] == pytest.approx(2.0, abs=1e-2)
+        assert "*" in {line.get_marker() for line in drawn.lines}
+    pyplot.close("all")
+    (alone,) = lines(trace(brusselator(1.0)).plot(components=[1]))
+    assert alone[0] == "-"
+    pyplot.close("all")
+
+
+def test_a_scalar_of_the_homotopy_with_the_same_name_is_refused():
+    @frozen
+    class Counting(Diffusing):
+        def observe(self, y, lam):
+            return {"unstable": 1.0}
+
+    with pytest.raises(ValueError, match="observe: expected each name once, found 'unstable' of an event too"):
+        trace(Counting(), observers=[Stability()])
+
+
+@pytest.mark.parametrize("options", [{"side": 0}, {"side": 2}, {"k": 0}, {"terminal": -1}])
+def test_bad_options_are_refused(options):
+    for part in (Stability, HopfPoint):
+        with pytest.raises(ValueError, match=next(iter(options))):
+            part(**options)
