@@ -11,6 +11,7 @@ from continuation.citation import cite
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.counts import Counts
+from continuation.diagrams import Deflated, Diagram, diagram
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.functions import from_functions
 from continuation.evaluation.jacobian_check import check_jacobian
@@ -43,6 +44,8 @@ __all__ = [
     "Controller",
     "Corrector",
     "Counts",
+    "Deflated",
+    "Diagram",
     "Euclidean",
     "EvaluationError",
     "Event",
@@ -75,6 +78,7 @@ __all__ = [
     "certify",
     "check_jacobian",
     "cite",
+    "diagram",
     "from_functions",
     "kink_rays",
     "refine",

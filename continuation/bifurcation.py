@@ -86,7 +86,7 @@ def plot_bifurcation(
         label = (names[k] if names is not None else None) or "_"
         draw_line(axes, horizontal, heights, label, line_style(k), drawing.s, _parts(one, drawing, stable))
         places = [
-            (event, event.lam if against == "lam" else event.arclength, _at_event(event, one, wanted))
+            (event, event.lam if against == "lam" else event.arclength, at_event(event, one, wanted))
             for event in one.events
         ]
         mark_events(axes, places)
@@ -143,7 +143,16 @@ def _observed(path: Path, drawing: Drawing, name: str) -> Array:
     return found
 
 
-def _at_event(event: Any, path: Path, value: Value) -> float:
+def at_event(event: Any, path: Path, value: Value) -> float:
+    """The number that is drawn of an event.
+
+    Parameters
+    ----------
+    event : LocatedEvent
+    path : Path
+        On which it lies.
+    value : int, str, callable or None
+    """
     if value is None:
         return float(height(event.y))
     if callable(value):

@@ -1,4 +1,4 @@
-"""Branch switching at a simple branch point: the directions of both branches, and starts on the other one."""
+"""Branch switching: the directions of the branches that meet at a point of a path, and starts on the others."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from continuation.checks import complain, is_number
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.events.multiple import Leaving, leaving, still, without_noise
 from continuation.events.singularity import branch_point_near, row_sizes
 from continuation.metric import Automatic, inner, norm
 from continuation.path import LocatedEvent
@@ -23,37 +24,68 @@ SHORTER, TRIALS = 0.25, 16
 """Where an unknown stands still along the path, its size on the other branch is not known beforehand: shorter steps are
 tried, down to a billionth of the one asked for."""
 
+SAME_LINE = 1.0 - 1e-5
+"""The cosine between the two rays of one smooth branch, whose directions are extrapolated from points on it."""
+
 STILL = 1e-12
 """A component of a tangent that is smaller than this, beside the largest, may be round-off."""
 
 
-def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, Array]:
-    """The directions of the two branches that cross at a simple branch point, as they were found when it was polished.
+def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
+    """The directions of the branches that cross at a branch point: of a simple one as found when it was polished.
 
     The roots of the algebraic bifurcation equation sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel
-    (Keller 1977; Allgower and Georg, Section 8.1).
+    (Keller 1977; Allgower and Georg, Section 8.1). Where H' loses two or three ranks, the zeros of what
+    is left of the equations on a small sphere.
 
     Parameters
     ----------
     homotopy : Homotopy
         The one that was traced.
     event : LocatedEvent
-        Of kind BRANCH_POINT.
+        Of kind BRANCH_POINT or SINGULAR_POINT.
 
     Returns
     -------
-    (known, other) : ndarray, shape (N + 1,)
-        Of unit Euclidean length; `known` is that of the path.
+    (known, other, ...) : ndarray, shape (N + 1,)
+        Of unit Euclidean length; `known` is that of the path. Of a simple branch point there is one other.
 
     Raises
     ------
     TypeError, ValueError
         If the event is none, or no branch point.
     ArithmeticError
-        If the event comes from a file, which keeps no directions, and they are not found again.
+        If the event comes from a file, which keeps no directions, and they are not found again; if several ranks are
+        lost, and the branches do not leave one by one: the sentence says the dimension of the kernel.
     """
-    _, known, other, _ = _rays(homotopy, event)
-    return known / np.linalg.norm(known), other / np.linalg.norm(other)
+    if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
+        found: list[Array] = []
+        for branch in leaving_branches(homotopy, event)[1:]:
+            ray = branch.ray / np.linalg.norm(branch.ray)
+            if not any(abs(float(ray @ other)) > SAME_LINE for other in found):
+                found.append(ray)
+        return tuple(found)
+    _, known, *others = _rays(homotopy, event)
+    return known / np.linalg.norm(known), others[0] / np.linalg.norm(others[0])
+
+
+def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> list[Leaving]:
+    """All branches that leave a multiple branch point, the path's own first: the one back, then the one onward.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    event : LocatedEvent
+        Of kind SINGULAR_POINT.
+    step : float, default 1e-2
+        How far from it each is found, in the metric.
+
+    Raises
+    ------
+    ArithmeticError
+        If the kernel of H' has more than four dimensions, or there is a continuum of branches.
+    """
+    return leaving(Evaluator(homotopy, Counts()), event.u, event.tangent, metric_at(event), step)
 
 
 def _rays(homotopy: Any, event: LocatedEvent) -> Array:
@@ -65,7 +97,7 @@ def _rays(homotopy: Any, event: LocatedEvent) -> Array:
     if event.rays is not None:
         return event.rays
     evaluator = Evaluator(homotopy, Counts())
-    weights = _weights(event)
+    weights = metric_at(event)
     rows = row_sizes(evaluator, 1.0 / np.sqrt(weights), (event.u, event.u + 0.1 * event.tangent))
     found = branch_point_near(evaluator, event.u, event.tangent, weights, rows)
     if found is None:
@@ -73,7 +105,7 @@ def _rays(homotopy: Any, event: LocatedEvent) -> Array:
     return found.rays(event.tangent, weights)
 
 
-def _weights(event: LocatedEvent) -> Array:
+def metric_at(event: LocatedEvent) -> Array:
     """The metric at the event; for one of a file by what moves along its tangent, round-off apart."""
     if event.weights is not None:
         return event.weights
@@ -94,7 +126,7 @@ def switch_branch(
     homotopy : Homotopy
         The one that was traced.
     event : LocatedEvent
-        A branch point or a kink of its path.
+        A branch point, simple or multiple, or a kink of its path.
     step : float, default 1e-2
         How far from the branch point the starts are, in the metric of the path: a fraction of its extent. Where the
         corrector does not reach the other branch from there they are nearer.
@@ -104,7 +136,7 @@ def switch_branch(
     Returns
     -------
     two pairs (u, v) of ndarray, shape (N + 1,)
-        At a kink as many pairs as rays are asked for.
+        At a kink as many pairs as rays are asked for, at a multiple branch point two for each other branch.
 
     Raises
     ------
@@ -119,8 +151,10 @@ def switch_branch(
         return _out_of_kink(event, ray)
     if ray is not None:
         raise ValueError(f"ray: expected None, since the event is no kink, found {ray!r}")
+    if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
+        return tuple((branch.u, branch.tangent) for branch in leaving_branches(homotopy, event, step)[2:])
     _, onward, *others = _rays(homotopy, event)
-    evaluator, weights = Evaluator(homotopy, Counts()), _weights(event)
+    evaluator, weights = Evaluator(homotopy, Counts()), metric_at(event)
     return tuple(_start(evaluator, event.u, away, onward, weights, step) for away in others)
 
 
@@ -144,7 +178,7 @@ def _start(
         way = correction.u - u
         new, old = (abs(inner(weights, way, d)) / norm(weights, d) for d in (away, onward))
         if new > old:
-            return correction.u, v
+            return without_noise(u, way, weights), still(v, weights)
         failed = "the corrector fell back onto the branch that the path is on"
     raise ArithmeticError(f"the other branch could not be reached: {failed}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any
 
@@ -100,16 +101,37 @@ def save(path: Path, file: str | PathLike[str], title: str = "") -> None:
     ArchiveError
         If it exists, or cannot be written.
     """
+    save_all([path], file, title)
+
+
+def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
+    """Write paths of one homotopy to a new archive.
+
+    Parameters
+    ----------
+    many : sequence of Path
+        At least one; all of one number of unknowns, with the same scalars observed.
+    file : path
+    title : str
+
+    Raises
+    ------
+    ArchiveError
+        If it exists, or cannot be written.
+    """
     target = as_file("file", file)
     check_new(target)
-    layout, points, paths, names, attributes = _tables(path, title)
-    paths["source"] = np.array([paths["source"][0] + f" {target.name}".encode()], dtype=paths["source"].dtype)
+    layout, _, _, _, attributes = _tables(many[0], title)
 
     def write(part: Any) -> Store:
         store = Store(part, layout, attributes)
-        for name in names:
-            store.name_event(name)
-        store.commit(points or None, 0, paths, 0)
+        begin = 0
+        for number, path in enumerate(many):
+            rows, row = rows_of(path), {**record.of_path(path, None, ()), "path": number, "member": number}
+            row |= {"n_points": len(rows), "source": f"{attributes['identifier']} {number} {target.name}"}
+            points = to_columns(rows, number, layout, store.name_event) if rows else None
+            store.commit(points, begin, record.to_columns(row, layout), number)
+            begin += len(rows)
         return store
 
     put(target, write)

@@ -58,21 +58,37 @@ def faces(box: Any, labels: Labels, start: Array) -> tuple[Event, ...]:
     TypeError, ValueError
         If it is no box, or the start lies outside.
     """
+    events: list[Event] = []
+    for key, face in _faces(box, labels, start.size):
+        if face.monitor(start, start) * face.direction > 0.0:
+            raise ValueError(f"box: expected the start inside, found {key!r} beyond {face.value:g} there")
+        events.append(face)
+    return tuple(events)
+
+
+def is_inside(box: Any, labels: Labels, u: Array) -> bool:
+    """Whether a point lies in the interior of a box.
+
+    Parameters
+    ----------
+    box : Box
+    labels : Labels
+    u : ndarray, shape (N + 1,)
+    """
+    return all(face.monitor(u, u) * face.direction < 0.0 for _, face in _faces(box, labels, u.size))
+
+
+def _faces(box: Any, labels: Labels, size: int) -> list[tuple[str | int, Extreme | TargetValue]]:
     if not isinstance(box, Mapping):
         raise complain(TypeError, "box", 'a mapping like {"lam": (0, 5), 2: (None, 1)}', box)
-    events: list[Event] = []
+    found: list[tuple[str | int, Extreme | TargetValue]] = []
     for key, interval in box.items():
-        low, high = _interval(key, interval)
-        own = range(start.size - 1) if key == "y" else [_component(key, labels, start.size)]
-        values = start[own[0]] if key != "y" else start[:-1]
-        for value, side in ((low, -1), (high, 1)):
-            if value is None:
-                continue
-            if ((values - value) * side > 0.0).any():
-                raise ValueError(f"box: expected the start inside, found {key!r} beyond {value:g} there")
-            face = Extreme(value, side) if key == "y" else TargetValue(value, own[0], direction=side)
-            events.append(face)
-    return tuple(events)
+        component = -1 if key == "y" else _component(key, labels, size)
+        for value, side in zip(_interval(key, interval), (-1, 1)):
+            if value is not None:
+                face = Extreme(value, side) if key == "y" else TargetValue(value, component, direction=side)
+                found.append((key, face))
+    return found
 
 
 def _interval(key: Any, interval: Any) -> tuple[float | None, float | None]:

@@ -18,7 +18,7 @@ from continuation.point.projection import PathSolver
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """Events that look for themselves on an arc, by `found_on`, and whether all say that this is all, by `accounts_for`.
+    """What events that look for themselves find on an arc, by `found_on`; and whether, by `accounts_for`, that is all.
 
     Parameters
     ----------

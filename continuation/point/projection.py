@@ -59,12 +59,15 @@ class PathSolver:
         How far an interior path may go from a point in a direction (`continuation.homotopy.SupportsMaxStep`).
     straight : callable or None
         How far a path of straight pieces goes before it bends, about; of use where nothing else gives it a scale.
+    room : callable or None
+        How far a path without a target goes until it is to end, if it is straight; the same holds of that.
     """
 
     evaluator: Evaluator
     tolerance: Tolerance
     max_step: MaxStep | None = None
     straight: MaxStep | None = None
+    room: MaxStep | None = None
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
         """Bring a guess onto the path, to round-off, along the hyperplane orthogonal to `border`.

@@ -54,7 +54,12 @@ NOISE = 1e-6
 
 
 def initial_extent(
-    evaluator: Evaluator, point: Linearization, target: float | None, residual: Array, farthest: float = np.inf
+    evaluator: Evaluator,
+    point: Linearization,
+    target: float | None,
+    residual: Array,
+    farthest: float = np.inf,
+    room: float = np.inf,
 ) -> Array:
     """How far each component goes while the path turns by about TURN, or to the target if that is nearer.
 
@@ -69,6 +74,8 @@ def initial_extent(
     farthest : float
         How far along the tangent is far where there is no target: a path of straight pieces has no other scale. Finite
         for these alone.
+    room : float
+        How far along the tangent the path ends on a value that was asked for, if it is straight.
 
     Returns
     -------
@@ -116,6 +123,8 @@ def initial_extent(
         h = min(h, whole)
         if high < AROUND * low:
             break
+    if found > room:
+        found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off))
     still = extent <= standstill * float(extent.max())
     extent[still] = float(np.median(extent[~still]))

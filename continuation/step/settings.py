@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -13,7 +14,7 @@ from continuation.checks import complain, instance_with
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.evaluation.evaluator import Evaluator
-from continuation.events import Event, KinkPoint, TurningPoint
+from continuation.events import Event, KinkPoint, TargetValue, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
 from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces
@@ -63,6 +64,19 @@ class Settings:
     def kink_index(self) -> int | None:
         """Which of the events stands for kinks; None for smooth homotopies."""
         return self._index_of(KinkPoint)
+
+    def room(self, u: Array, v: Array) -> float:
+        """How far along a direction, without a target, the nearest value lies on which the path ends; inf without one.
+
+        Parameters
+        ----------
+        u, v : ndarray, shape (N + 1,)
+        """
+        if self.target is not None:
+            return math.inf
+        ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal == 1]
+        known = ((event.value - u[event.component], v[event.component]) for event in ends)
+        return float(min((gap / slope for gap, slope in known if gap * slope > 0.0), default=math.inf))
 
     def bound(self, evaluator: Evaluator) -> Settings:
         """The same with events that know the homotopy, where they have to: those with a method `bound`.

@@ -116,7 +116,8 @@ def measured(
     """
     seen = RESOLVED * np.spacing(np.abs(point.u)) / solver.tolerance.relative
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
-    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual, farthest), seen)
+    room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
+    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual, farthest, room), seen)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent
     return point.with_weights(metric.weights(point.u, point.tangent, None)), extent

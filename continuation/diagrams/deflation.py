@@ -1,0 +1,183 @@
+"""Deflation: known solutions divided out of a residual, so that Newton's method finds others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array, Matrix
+from continuation.checks import POSITIVE_FINITE, real_vector
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
+from continuation.linear import BorderedSystem, factor_bordered
+
+
+def _vectors(known: Any) -> tuple[Array, ...]:
+    return tuple(np.atleast_1d(real_vector("known", y)) for y in known)
+
+
+@frozen(eq=False)
+class Deflated:
+    """A homotopy with known solutions divided out: M(y) H(y, lam), M the product of 1 / |y - y_i|^power + shift.
+
+    Where H has another zero this has it too; at the known ones it has none. For solutions at one value of the
+    parameter: ``solve_at(Deflated(homotopy, known), lam, guess)``.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    known : sequence of array_like, shape (N,)
+        Solutions at the value of the parameter that is to be solved for.
+    power : float, default 2
+    shift : float, default 1
+        Keeps M from vanishing far away.
+    scale : array_like, shape (N,), optional
+        By which differences are divided: 1 by default.
+
+    References
+    ----------
+    Farrell, Birkisson, Funke, Deflation techniques for finding distinct solutions of nonlinear partial differential
+    equations, SIAM J. Sci. Comput. 37 (2015).
+    """
+
+    homotopy: Any
+    known: tuple[Array, ...] = field(converter=_vectors)
+    power: float = field(default=2.0, validator=POSITIVE_FINITE)
+    shift: float = field(default=1.0, validator=POSITIVE_FINITE)
+    scale: Any = None
+    _evaluator: Evaluator = field(init=False, repr=False)
+
+    @_evaluator.default
+    def _made(self) -> Evaluator:
+        return Evaluator(self.homotopy, Counts())
+
+    def __attrs_post_init__(self) -> None:
+        size = self._evaluator.start().size - 1
+        for y in self.known:
+            if y.shape != (size,):
+                raise ValueError(f"known: expected solutions of {size} unknowns, found shape {y.shape}")
+
+    def start(self) -> tuple[Array, float]:
+        """That of the homotopy."""
+        y, lam = self.homotopy.start()
+        return np.atleast_1d(np.asarray(y, dtype=float)), float(lam)
+
+    def factor(self, y: Array) -> tuple[float, Array]:
+        """M, and the gradient of log M, at a point.
+
+        Parameters
+        ----------
+        y : ndarray, shape (N,)
+        """
+        value, slope = 1.0, np.zeros_like(y)
+        scale = np.ones_like(y) if self.scale is None else np.asarray(self.scale, dtype=float)
+        for other in self.known:
+            way = (y - other) / scale
+            distance = float(np.linalg.norm(way))
+            if distance == 0.0:
+                # There is no value at a known solution: as at the edge of a domain.
+                return float("inf"), slope
+            one = distance**-self.power
+            value *= one + self.shift
+            slope = slope - self.power * one / (one + self.shift) / distance**2 * way / scale
+        return value, slope
+
+    def residual(self, y: Array, lam: float) -> Array:
+        """M(y) H(y, lam)."""
+        return self.factor(y)[0] * np.asarray(self.homotopy.residual(y, lam), dtype=float)
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """M (H_y + H (log M)'), a dense matrix, and M H_lam: for checks; steps use `bordered`."""
+        value, slope = self.factor(y)
+        H_y, H_lam = self._evaluator.derivative(y, lam)
+        whole = H_y if isinstance(H_y, np.ndarray) else H_y.toarray()
+        H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
+        return value * (whole + np.outer(H, slope)), value * np.asarray(H_lam, dtype=float)
+
+    def bordered(self, y: Array, lam: float, border: Array) -> DeflatedSystem:
+        """The homotopy's own bordered matrix factored, and changed by a matrix of rank one (Sherman and Morrison)."""
+        value, slope = self.factor(y)
+        H_y, H_lam = self._evaluator.derivative(y, lam)
+        system = factor_bordered(H_y, np.asarray(H_lam, dtype=float), border)
+        turned = system.solve(np.asarray(self.homotopy.residual(y, lam), dtype=float), 0.0)
+        return DeflatedSystem(system, value, slope, turned)
+
+
+@frozen(eq=False)
+class DeflatedSystem:
+    """[[M (H_y + H g'), M H_lam], [border]], by the factors of [[H_y, H_lam], [border]]."""
+
+    system: BorderedSystem
+    value: float
+    slope: Array
+    turned: Array
+
+    @property
+    def _pivot(self) -> float:
+        return 1.0 + float(self.slope @ self.turned[:-1])
+
+    @property
+    def sign(self) -> int:
+        """M is positive: that of the homotopy's own matrix, times that of the change."""
+        return self.system.sign * (1 if self._pivot > 0.0 else -1)
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The bordered solve.
+
+        Parameters
+        ----------
+        r : ndarray, shape (N,)
+        rho : float
+        """
+        z = self.system.solve(r / self.value, rho)
+        changed: Array = z - self.turned * (float(self.slope @ z[:-1]) / self._pivot)
+        return changed
+
+
+def others(
+    homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array], solve: Callable[..., Array]
+) -> list[Array]:
+    """Solutions at a value of the parameter beside known ones: Newton's method on the deflated residual.
+
+    What is found is divided out too, until no guess leads to anything new.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    lam : float
+    known : sequence of ndarray, shape (N,)
+    guesses : sequence of ndarray, shape (N,)
+    solve : callable
+        ``solve(homotopy, lam, guess)``: `continuation.solve_at`.
+    """
+    every, found = list(known), []
+    spread = np.ptp(np.array([*every, *guesses]), axis=0)
+    scale = np.where(spread > 0.0, spread, max(float(spread.max()), np.finfo(float).tiny)) if spread.any() else None
+    for guess in guesses:
+        while True:
+            try:
+                near = solve(Deflated(homotopy, every, scale=scale), lam, guess)
+                y = solve(homotopy, lam, near)
+            except (ArithmeticError, ValueError):
+                break
+            if any(same_solution(y, other, scale) for other in every):
+                break
+            every.append(y)
+            found.append(y)
+    return found
+
+
+def same_solution(y: Array, other: Array, scale: Any = None, apart: float = 1e-6) -> bool:
+    """Whether two solutions are one, in units of a scale.
+
+    Parameters
+    ----------
+    y, other : ndarray, shape (N,)
+    scale : ndarray, optional
+    apart : float
+    """
+    size = 1.0 + np.abs(y) if scale is None else scale
+    return bool((np.abs(y - other) <= apart * size).all())

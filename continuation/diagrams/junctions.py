@@ -1,0 +1,120 @@
+"""Points where branches meet, and which of the rays that leave them have been followed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import define, field
+
+from continuation.arrays import Array
+from continuation.branch_switching import leaving_branches, metric_at, switch_branch
+from continuation.metric import inner, norm
+from continuation.path import LocatedEvent, Path
+from continuation.status import Kind
+
+MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
+
+SAME_POINT = 1e-6
+"""How far apart, in extents of the path, one point may be located on two branches: they are polished to 1e-10."""
+
+SAME_RAY = 0.99
+"""The cosine between a ray and the tangent of a branch that came along it; rays that are nearer to each other than
+eight degrees are told by the nearest."""
+
+OPPOSITE = -1.0 + 1e-3
+"""The cosine between two rays that make one smooth branch: those of a multiple branch point are extrapolated."""
+
+
+@define(eq=False)
+class Junction:
+    """A point where branches meet.
+
+    Attributes
+    ----------
+    event : LocatedEvent
+        As it was found first.
+    weights : ndarray, shape (N + 1,)
+        The metric there.
+    rays : ndarray, shape (k, N + 1)
+        Directions away from it; the first two are those of the branch on which it was found.
+    starts : list of (u, v)
+        For each ray but those two.
+    used : set of int
+        The rays that are known to be followed.
+    label : str
+    failed : str
+        Why its rays are not known.
+    """
+
+    event: LocatedEvent
+    weights: Array
+    rays: Array
+    starts: list[tuple[Array, Array]]
+    label: str = ""
+    failed: str = ""
+    used: set[int] = field(factory=set)
+
+    @classmethod
+    def at(cls, homotopy: Any, event: LocatedEvent, step: float) -> Junction:
+        """The junction of an event, with starts along the rays that its own path does not take."""
+        weights = metric_at(event)
+        own = np.array([-event.tangent, event.tangent])
+        try:
+            if event.kind == Kind.SINGULAR_POINT:
+                found = leaving_branches(homotopy, event, step)
+                return cls(event, weights, np.array([b.ray for b in found]), [(b.u, b.tangent) for b in found[2:]])
+            starts = list(switch_branch(homotopy, event, step))
+        except ArithmeticError as error:
+            return cls(event, weights, own, [], failed=str(error))
+        return cls(event, weights, own if event.rays is None else event.rays, starts)
+
+    def is_at(self, event: LocatedEvent) -> bool:
+        """Whether it is the place of an event."""
+        return norm(self.weights, event.u - self.event.u) <= SAME_POINT
+
+    def take(self, direction: Array) -> None:
+        """A branch follows the ray of a direction."""
+        lengths = [norm(self.weights, ray) for ray in self.rays]
+        size = norm(self.weights, direction)
+        along = [inner(self.weights, ray, direction) / (a * size) for ray, a in zip(self.rays, lengths)]
+        if max(along) >= SAME_RAY:
+            self.used.add(int(np.argmax(along)))
+
+    def open(self) -> list[int]:
+        """The rays that nobody has followed, of those with a start."""
+        return [k for k in range(2, 2 + len(self.starts)) if k not in self.used]
+
+    def opposite(self, ray: int) -> int | None:
+        """The ray on which a branch that leaves along another one has come; None at a kink, or where there is none."""
+        if self.event.kind == Kind.KINK:
+            return None
+        lengths = [norm(self.weights, r) for r in self.rays]
+        along = [inner(self.weights, self.rays[ray], r) / (lengths[ray] * a) for r, a in zip(self.rays, lengths)]
+        nearest = int(np.argmin(along))
+        return nearest if along[nearest] <= OPPOSITE else None
+
+
+def meetings(path: Path) -> list[LocatedEvent]:
+    """The events of a path at which other branches may leave.
+
+    Parameters
+    ----------
+    path : Path
+    """
+    several = (event for event in path.events if event.kind in MEETING)
+    return [e for e in several if e.kind != Kind.KINK or (e.rays is not None and len(e.rays) > 2)]
+
+
+def directions_of(event: LocatedEvent, path: Path) -> list[Array]:
+    """Where a path came from at an event, and where it went on, as directions away from it.
+
+    Parameters
+    ----------
+    event : LocatedEvent
+    path : Path
+    """
+    at_kink = event.kind == Kind.KINK and event.rays is not None
+    both = list(event.rays[:2]) if at_kink and event.rays is not None else [-event.tangent, event.tangent]
+    ends = event.ends_step and event.step == path.steps[-1].index
+    return both[:1] if ends else both

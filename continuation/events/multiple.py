@@ -1,0 +1,340 @@
+"""Multiple branch points: all branches that leave a point where H' loses several ranks.
+
+Lyapunov and Schmidt: with E a basis of the kernel of H' (of dimension k + 1 where k ranks are lost) and Phi one of the
+left kernel, every zero of H nearby is u = u0 + E a + z, z orthogonal to E, where g(a) = 0; g has k components. Its
+lowest terms are the algebraic branching equations (Keller 1977; Allgower and Georg, Section 8.1), quadratic in general,
+cubic where a symmetry wants it so. They are not asked for: g itself is solved on a small sphere, which every branch
+meets, whatever its order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations_with_replacement
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse.linalg import splu
+
+from continuation.arrays import Array, Matrix
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.events.singularity import RANK, ScaledDerivative, row_sizes
+from continuation.metric import norm
+from continuation.point.linearization import linearize
+
+MOST = 3
+"""Lost ranks that are resolved: the branches of three are sought on the sphere of a space of four dimensions."""
+
+BORDERS = MOST + 2
+"""Ranks that can be counted: one more than is resolved, so that the message is right, and one for safety."""
+
+CHORD, SETTLED = 30, 1e-13
+"""Iterations that bring a point onto the graph of z, and the last increment, relative to the sphere."""
+
+STARTS, ROUNDS = 100, 6
+"""On the sphere Newton's method begins at so many points, and again until two rounds have shown nothing new."""
+
+NEWTON, ROOT = 30, 1e-9
+"""Its iterations, and the last increment, relative to the sphere."""
+
+DIFFERENCE = 1e-4
+"""The step of differences of g, relative to the sphere: half of the digits that g has there are left."""
+
+SAME = 1e-3
+"""Zeros on the sphere that are nearer to each other, relative to it, are one."""
+
+NOISE, ZERO = 1e-11, 1e-14
+"""What of a direction is round-off, relative to its largest component in units of the path; the same of a point."""
+
+ISOLATED = 1e-7
+"""The least singular value of the equations on the sphere, each divided by its size, where a zero is isolated."""
+
+
+class Unresolved(ArithmeticError):
+    """The branches that leave a multiple branch point are not found; the sentence says why, and the dimension."""
+
+
+@frozen(eq=False)
+class Leaving:
+    """A branch that leaves a point.
+
+    Attributes
+    ----------
+    u : ndarray, shape (N + 1,)
+        A point of it nearby.
+    ray : ndarray, shape (N + 1,)
+        Its direction at the branch point, away from it, of unit length in the metric.
+    tangent : ndarray, shape (N + 1,)
+        That at u.
+    """
+
+    u: Array
+    ray: Array
+    tangent: Array
+
+
+@frozen(eq=False)
+class Doubled:
+    """A matrix bordered by columns and rows so that it is square, and factored."""
+
+    matrix: Matrix
+    columns: Array
+    rows: Array
+
+    def factors(self) -> Callable[[Array, bool], Array]:
+        """The solution of the system for a right-hand side, or of its transpose."""
+        if sp.issparse(self.matrix):
+            whole = sp.block_array([[self.matrix, sp.csc_array(self.columns)], [sp.csc_array(self.rows), None]])
+            factored = splu(sp.csc_array(whole))
+            return lambda r, transposed: np.asarray(factored.solve(r, "T" if transposed else "N"))
+        corner = np.zeros((len(self.rows), self.columns.shape[1]))
+        factors = lu_factor(np.block([[self.matrix, self.columns], [self.rows, corner]]), check_finite=False)
+        return lambda r, transposed: np.asarray(lu_solve(factors, r, int(transposed), check_finite=False))
+
+
+def kernels(matrix: Matrix) -> tuple[Array, Array]:
+    """Orthonormal bases of the kernel of a matrix, shape (N, N + 1), and of its left kernel, as columns.
+
+    With as many borders in general position as ranks may be lost the bordered matrix is regular, and what it makes of
+    unit vectors spans the kernels (Govaerts, Section 3.3).
+
+    Parameters
+    ----------
+    matrix : ndarray or sparse array
+    """
+    n = matrix.shape[0]
+    k = min(BORDERS, n)
+    generator = np.random.default_rng(7)
+    columns, rows = generator.standard_normal((n, k)), generator.standard_normal((k + 1, n + 1))
+    solve = Doubled(matrix, columns, rows).factors()
+    right = solve(np.vstack([np.zeros((n, k + 1)), np.eye(k + 1)]), False)
+    left = solve(np.vstack([np.zeros((n + 1, k)), np.eye(k)]), True)
+    return _vanishing(right[: n + 1], right[n + 1 :]), _vanishing(left[:n], left[n:])
+
+
+def _vanishing(vectors: Array, left_over: Array) -> Array:
+    """Those combinations of vectors that leave nothing."""
+    values, turned = np.linalg.svd(left_over)[1:]
+    rank = int(np.count_nonzero(values > RANK * np.linalg.norm(vectors, 2)))
+    basis: Array = np.linalg.qr(vectors @ turned[rank:].T)[0]
+    return basis
+
+
+@frozen(eq=False)
+class Reduced:
+    """The equations g(a) = 0 that are left of H = 0 near a point, in units of the path."""
+
+    evaluator: Evaluator
+    u: Array
+    extent: Array
+    sizes: Array
+    kernel: Array
+    left: Array
+    solve: Callable[[Array, bool], Array]
+
+    def at(self, a: Array) -> tuple[Array, Array]:
+        """The point on the graph over the kernel, in units of the path from u, and g there."""
+        n, size = self.sizes.size, float(np.linalg.norm(a))
+        w, g = self.kernel @ a, np.zeros(self.left.shape[1])
+        for _ in range(CHORD):
+            H = self.evaluator.residual(self.u + self.extent * w) / self.sizes
+            step = self.solve(-np.concatenate([H + self.left @ g, np.zeros(self.kernel.shape[1])]), False)
+            w, g = w + step[: n + 1], g + step[n + 1 :]
+            if np.abs(step).max() <= SETTLED * size:
+                break
+        return w, g
+
+    def slopes(self, a: Array, radius: float) -> Array:
+        """Derivatives of g, by central differences."""
+        h = DIFFERENCE * radius
+        return np.column_stack([(self.at(a + h * e)[1] - self.at(a - h * e)[1]) / (2.0 * h) for e in np.eye(a.size)])
+
+    def newton(self, a: Array, radius: float) -> Array | None:
+        """A zero on the sphere from a guess; None where Newton's method does not come to one."""
+        a = a * (radius / np.linalg.norm(a))
+        for _ in range(NEWTON):
+            step = _onto_sphere(self.at(a)[1], self.slopes(a, radius), a, radius)
+            a = a + step
+            if not np.isfinite(a).all() or np.linalg.norm(a) > 4.0 * radius:
+                return None
+            if np.abs(step).max() <= ROOT * radius:
+                return a
+        return None
+
+
+def _equations(slopes: Array, a: Array, radius: float) -> tuple[Array, Array]:
+    """The derivatives of g = 0 and |a| = radius at points a, each divided by its size, and these."""
+    rows = np.concatenate([slopes, 2.0 * a[..., None, :] / radius], axis=-2)
+    sizes = np.maximum(np.linalg.norm(rows, axis=-1), np.finfo(float).tiny)
+    return rows / sizes[..., None], sizes
+
+
+def _onto_sphere(g: Array, slopes: Array, a: Array, radius: float) -> Array:
+    """Newton's increments for these equations."""
+    rows, sizes = _equations(slopes, a, radius)
+    off = np.concatenate([g, ((a**2).sum(axis=-1, keepdims=True) - radius**2) / radius], axis=-1)
+    step: Array = -(np.linalg.pinv(rows, rcond=1e-12) @ (off / sizes)[..., None])[..., 0]
+    return step
+
+
+@frozen(eq=False)
+class Polynomials:
+    """g on a sphere and within, as polynomials of degree two to four without lower terms: least squares."""
+
+    powers: Array
+    coefficients: Array
+
+    @classmethod
+    def of(cls, reduced: Reduced, radius: float) -> Polynomials:
+        """Fitted to points on two spheres."""
+        m = reduced.kernel.shape[1]
+        sums = [c for degree in (2, 3, 4) for c in combinations_with_replacement(range(m), degree)]
+        powers = np.array([[c.count(i) for i in range(m)] for c in sums])
+        half = _spread(len(sums), m, 1)
+        places = np.vstack([half, -half, 0.5 * half])
+        values = np.array([reduced.at(radius * a)[1] for a in places])
+        terms = np.prod(places[:, None, :] ** powers, axis=2)
+        return cls(powers, np.linalg.lstsq(terms, values, rcond=None)[0])
+
+    def at(self, a: Array) -> tuple[Array, Array]:
+        """The values, shape (points, k), and derivatives, shape (points, k, m), in units of the radius."""
+        raised = a[:, None, :] ** self.powers
+        slopes = []
+        for i in range(a.shape[1]):
+            lower = self.powers.copy()
+            lower[:, i] = np.maximum(lower[:, i] - 1, 0)
+            slopes.append((self.powers[:, i] * np.prod(a[:, None, :] ** lower, axis=2)) @ self.coefficients)
+        return np.prod(raised, axis=2) @ self.coefficients, np.stack(slopes, axis=2)
+
+    def zeros(self) -> list[Array]:
+        """Zeros on the unit sphere, by Newton's method from many points."""
+        found: list[Array] = []
+        idle = 0
+        for k in range(ROUNDS):
+            known = len(found)
+            a = _spread(STARTS, self.powers.shape[1], k + 2)
+            for _ in range(NEWTON):
+                step = _onto_sphere(*self.at(a), a, 1.0)
+                there = np.abs(step).max(axis=1) < ROOT
+                for one in a[there]:
+                    _add(found, one)
+                a = (a + step)[~there]
+                far = np.linalg.norm(a, axis=1) > 2.0
+                a[far] /= np.linalg.norm(a[far], axis=1)[:, None]
+            idle = idle + 1 if len(found) == known else 0
+            if idle == 2:
+                break
+        return found
+
+
+def _spread(count: int, m: int, seed: int) -> Array:
+    """Points on the unit sphere, in general position."""
+    points = np.random.default_rng(seed).standard_normal((count, m))
+    unit: Array = points / np.linalg.norm(points, axis=1)[:, None]
+    return unit
+
+
+def _add(found: list[Array], a: Array) -> None:
+    if not any(np.linalg.norm(a - other) < SAME * np.linalg.norm(a) for other in found):
+        found.append(a)
+
+
+def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step: float) -> list[Leaving]:
+    """All branches that leave a multiple branch point: first the one back, then the one onward.
+
+    Parameters
+    ----------
+    evaluator : Evaluator
+    u : ndarray, shape (N + 1,)
+        The point.
+    heading : ndarray, shape (N + 1,)
+        The direction in which the path came to it.
+    weights : ndarray, shape (N + 1,)
+        The metric there.
+    step : float
+        The radius of the sphere, in the metric.
+
+    Raises
+    ------
+    Unresolved
+        If the kernel has too many dimensions, or the branches do not leave one by one.
+    """
+    extent = 1.0 / np.sqrt(weights)
+    sizes = row_sizes(evaluator, extent, (u, u + 0.1 * heading))
+    matrix = ScaledDerivative(evaluator, extent, sizes).at(u)
+    try:
+        kernel, left = kernels(matrix)
+        m = kernel.shape[1]
+        if m - 1 > MOST or left.shape[1] != m - 1:
+            raise Unresolved(f"the kernel of H' has dimension {m} there; up to {MOST + 1} are resolved")
+        evaluator.counts.factorizations += 2
+        reduced = Reduced(evaluator, u, extent, sizes, kernel, left, Doubled(matrix, left, kernel.T).factors())
+        found = _on_sphere(reduced, step)
+        branches = [_branch(reduced, a, step, weights) for a in found]
+    except (EvaluationError, np.linalg.LinAlgError, RuntimeError) as error:
+        raise Unresolved(f"the branching equations could not be solved there: {error}") from error
+    # The path's own first, back and onward.
+    branches.sort(key=lambda b: -abs(float(np.dot(weights * heading, b.ray))))
+    branches[:2] = sorted(branches[:2], key=lambda b: float(np.dot(weights * heading, b.ray)))
+    return branches
+
+
+def _on_sphere(reduced: Reduced, radius: float) -> list[Array]:
+    m = reduced.kernel.shape[1]
+    found: list[Array] = []
+    for guess in Polynomials.of(reduced, radius).zeros():
+        if len(found) > 2 * 4 ** (m - 1):
+            break
+        for way in (guess, -guess):
+            a = reduced.newton(way, radius)
+            if a is not None:
+                _add(found, a)
+    many = len(found) > 2 * 4 ** (m - 1)
+    if many or not found or any(_flat(reduced, a, radius) for a in found):
+        said = "there is a continuum of branches, as symmetries make it" if found else "none was found"
+        raise Unresolved(f"the kernel of H' has dimension {m} there, and its branches do not leave one by one: {said}")
+    return found
+
+
+def _flat(reduced: Reduced, a: Array, radius: float) -> bool:
+    """Whether the zeros on the sphere are no isolated points there."""
+    rows, _ = _equations(reduced.slopes(a, radius), a, radius)
+    return bool(np.linalg.svd(rows, compute_uv=False)[-1] < ISOLATED)
+
+
+def _branch(reduced: Reduced, a: Array, radius: float, weights: Array) -> Leaving:
+    w = reduced.at(a)[0]
+    nearer = reduced.newton(0.5 * a, 0.5 * radius)
+    ray = w / np.linalg.norm(w)
+    if nearer is not None:
+        half = reduced.at(nearer)[0]
+        # Extrapolated: a branch that is curved leaves along its tangent.
+        ray = 2.0 * half / np.linalg.norm(half) - ray
+    ray = still(reduced.extent * ray, weights)
+    u = without_noise(reduced.u, reduced.extent * w, weights)
+    near = linearize(reduced.evaluator, u, weights, weights * ray)
+    return Leaving(u, ray / norm(weights, ray), still(near.tangent, weights))
+
+
+def still(v: Array, weights: Array) -> Array:
+    """A direction in which unknowns stand still that do: else a path that begins so would measure them by their noise.
+
+    Parameters
+    ----------
+    v, weights : ndarray, shape (N + 1,)
+    """
+    size = np.abs(v) * np.sqrt(weights)
+    return np.where(size > NOISE * size.max(), v, 0.0)
+
+
+def without_noise(u: Array, way: Array, weights: Array) -> Array:
+    """The point at the end of a way, where what stands still is where it was, and what is zero but for round-off zero.
+
+    Parameters
+    ----------
+    u, way, weights : ndarray, shape (N + 1,)
+    """
+    there = u + still(way, weights)
+    return np.where(np.abs(there) * np.sqrt(weights) > ZERO, there, 0.0)
