@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +10,19 @@ from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.checks import POSITIVE_FINITE, real_vector
+from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
+
+SEARCHING = Contraction(iterations=60, ratio=np.inf)
+"""Newton's method far from a solution: its increments may grow, and it may wander for a while."""
+
+FOUND, NEARLY = 1e-13, 1e-6
+"""The last increment, and that below which increments that no longer halve are round-off."""
+
+APART = 1e-6
+"""Solutions that are nearer to each other are one: the root of round-off and more, as a double one is found."""
 
 
 def _vectors(known: Any) -> tuple[Array, ...]:
@@ -137,9 +147,43 @@ class DeflatedSystem:
         return changed
 
 
-def others(
-    homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array], solve: Callable[..., Array]
-) -> list[Array]:
+def solved(homotopy: Any, lam: float, guess: Array, scale: Any = None) -> Array:
+    """The solution at a value of the parameter that Newton's method finds from a guess.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    lam : float
+    guess : ndarray, shape (N,)
+    scale : ndarray, shape (N,), optional
+        What increments are measured by; the size of the guess by default.
+
+    Raises
+    ------
+    ArithmeticError
+        If it does not converge.
+    """
+    evaluator = Evaluator(homotopy, Counts())
+    unit = np.append(np.zeros(guess.size), 1.0)
+    size = 1.0 + np.abs(guess) if scale is None else scale
+    newton = Iteration(np.append(guess, lam), SEARCHING)
+
+    def increment() -> Array:
+        return evaluator.factor(newton.x, unit).solve(-evaluator.residual(newton.x), 0.0)
+
+    def measure(step: Array, _: Array) -> float:
+        return float(np.abs(step[:-1] / size).max())
+
+    def done(last: float) -> bool:
+        return last <= FOUND or (last < NEARLY and newton.ratio >= HALVING)
+
+    with np.errstate(all="ignore"):
+        if not newton.run(increment, measure, done):
+            raise ArithmeticError(f"Newton's method at lam = {lam:g} does not converge")
+    return newton.x[:-1]
+
+
+def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[Array]) -> list[Array]:
     """Solutions at a value of the parameter beside known ones: Newton's method on the deflated residual.
 
     What is found is divided out too, until no guess leads to anything new.
@@ -150,34 +194,30 @@ def others(
     lam : float
     known : sequence of ndarray, shape (N,)
     guesses : sequence of ndarray, shape (N,)
-    solve : callable
-        ``solve(homotopy, lam, guess)``: `continuation.solve_at`.
     """
-    every, found = list(known), []
+    every = list(known)
     spread = np.ptp(np.array([*every, *guesses]), axis=0)
     scale = np.where(spread > 0.0, spread, max(float(spread.max()), np.finfo(float).tiny)) if spread.any() else None
     for guess in guesses:
         while True:
             try:
-                near = solve(Deflated(homotopy, every, scale=scale), lam, guess)
-                y = solve(homotopy, lam, near)
-            except (ArithmeticError, ValueError):
+                # What is left is found to the last digit without the factor, which changes none of it.
+                y = solved(homotopy, lam, solved(Deflated(homotopy, every, scale=scale), lam, guess, scale), scale)
+            except ArithmeticError:
                 break
             if any(same_solution(y, other, scale) for other in every):
                 break
             every.append(y)
-            found.append(y)
-    return found
+    return every[len(known) :]
 
 
-def same_solution(y: Array, other: Array, scale: Any = None, apart: float = 1e-6) -> bool:
+def same_solution(y: Array, other: Array, scale: Any = None) -> bool:
     """Whether two solutions are one, in units of a scale.
 
     Parameters
     ----------
     y, other : ndarray, shape (N,)
     scale : ndarray, optional
-    apart : float
     """
     size = 1.0 + np.abs(y) if scale is None else scale
-    return bool((np.abs(y - other) <= apart * size).all())
+    return bool((np.abs(y - other) <= APART * size).all())

@@ -16,7 +16,7 @@ from continuation.branch_switching import metric_at
 from continuation.checks import complain, instance_with, is_number
 from continuation.counts import Counts
 from continuation.diagrams.branches import LABELS, Branch, Diagram, Special, from_point
-from continuation.diagrams.deflation import others, same_solution
+from continuation.diagrams.deflation import others, same_solution, solved
 from continuation.diagrams.junctions import SAME_POINT, Junction, directions_of, meetings
 from continuation.events.box import is_inside
 from continuation.labels import Labels
@@ -26,7 +26,7 @@ from continuation.stability import Stability
 from continuation.status import Status
 from continuation.step.options import Options, check_names, documented
 from continuation.step.start import guessed, is_guess
-from continuation.tracing import solve_at, trace
+from continuation.tracing import trace
 
 WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.DIVERGED, Status.DEAD_END)
 """Ends of branches that leave nothing open."""
@@ -165,8 +165,8 @@ class Search:
         for start in starts:
             self._begin(start)
         for lam in deflate:
-            known = [solve_at(self.homotopy, lam, y) for y in Diagram(self.branches).at(lam)]
-            for y in others(self.homotopy, lam, known, self._guesses(known), solve_at):
+            known = [solved(self.homotopy, lam, y) for y in Diagram(self.branches).at(lam)]
+            for y in others(self.homotopy, lam, known, self._guesses(known)):
                 self._begin((y, lam))
         found = Diagram(self.branches, self._points(), not self.missing, "", self.counts)
         said = f"Not complete: {'; '.join(self.missing)}." if self.missing else "Complete: nothing is left open."
@@ -204,8 +204,8 @@ class Search:
         near = Diagram(self.branches).at(float(u[-1]))
         if not len(near):
             return False
-        y = solve_at(self.homotopy, float(u[-1]), u[:-1])
-        return any(same_solution(y, solve_at(self.homotopy, float(u[-1]), other)) for other in near)
+        y = solved(self.homotopy, float(u[-1]), u[:-1])
+        return any(same_solution(y, solved(self.homotopy, float(u[-1]), other)) for other in near)
 
     def _traced(self, tasks: list[Task]) -> Iterator[tuple[Task, Path]]:
         """The paths of tasks, but for those that have become idle when it is their turn."""

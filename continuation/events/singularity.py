@@ -19,6 +19,7 @@ from scipy.sparse.linalg import splu
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.events.kernels import kernels
 from continuation.linear import Banded, Symmetric
 from continuation.metric import inner, norm
 
@@ -33,6 +34,9 @@ SECOND = 1e-5
 
 RANK = 1e-6
 """What may be left of the singular value, relative to H', where it is said to vanish: the root of POLISHED and more."""
+
+WEAK = 1e-8
+"""A pivot, relative to the largest, below which the rank is counted: one factorisation more."""
 
 TRANSVERSAL = 1e-9
 """The least discriminant, relative to its terms, of directions that are not one: the digits of SECOND."""
@@ -157,6 +161,13 @@ class Bordered:
         y: Array = lu_solve(self._factor, r, trans=int(transposed), check_finite=False)
         return y
 
+    @property
+    def weak(self) -> bool:
+        """Whether a pivot is so small that the matrix may be singular: it is not, where one rank is lost."""
+        factor = self._factor
+        pivots = np.abs(factor.U.diagonal() if sp.issparse(self.matrix) else factor[0].diagonal())
+        return bool(pivots.min() <= WEAK * pivots.max())
+
     @cached_property
     def left(self) -> Array:
         """(phi, gamma): what spans the left null space, and two numbers, how far H' is from losing rank."""
@@ -235,6 +246,9 @@ def branch_point_near(
             u = newton.x[:-1]
             here = at(u)
             if not np.abs(here.left[-2:]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
+                return None
+            if here.weak and kernels(here.matrix)[0].shape[1] > 2:
+                # Several ranks are lost: no border of one column and two rows makes that regular.
                 return None
             found = directions(scaled, here, u, heading / extent)
     except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):

@@ -155,6 +155,8 @@ class Crossings:
             found = self._found(arc, prediction(t * attempt.h))
         if found is None and not flipped and (behind := self._behind(arc, attempt)) is not None:
             found = self._found(arc, arc.segment.at(behind))
+        if found is None and flipped and inside and len(lost := self._multiple(arc, inside)) > 1:
+            return self._together(arc, attempt, prediction, lost, flipped)
         if found is None:
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or inside or doubtful else None
         at = position(arc, found.u) / position(arc, arc.b.u)
@@ -170,7 +172,11 @@ class Crossings:
 
     def _counted(self, arc: Arc, places: list[float], flipped: bool) -> list[float]:
         """The same places, each as often as H' loses a rank there, if their number does not agree with the sign."""
-        if not places or flipped == bool(len(places) % 2) or (apply := self._derivative(arc.b.u)) is None:
+        return places if not places or flipped == bool(len(places) % 2) else self._multiple(arc, places)
+
+    def _multiple(self, arc: Arc, places: list[float]) -> list[float]:
+        """The first of some places as often as H' loses a rank there; all of them where that cannot be told."""
+        if (apply := self._derivative(arc.b.u)) is None:
             return places
         there = singular_places(arc.a, apply, arc.b.border, BEYOND)
         if not there or abs(there[0] - places[0]) > BESIDE:
