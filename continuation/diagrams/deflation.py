@@ -107,6 +107,14 @@ class Deflated:
         H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
         return value * (whole + np.outer(H, slope)), value * np.asarray(H_lam, dtype=float)
 
+    def differential(self, y: Array, lam: float, v: Array) -> Array:
+        """The derivative applied to a direction (v_y, v_lam)."""
+        value, slope = self.factor(y)
+        H_y, H_lam = self._evaluator.derivative(y, lam)
+        H = np.asarray(self.homotopy.residual(y, lam), dtype=float)
+        image: Array = value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1]))
+        return image
+
     def bordered(self, y: Array, lam: float, border: Array) -> DeflatedSystem:
         """The homotopy's own bordered matrix factored, and changed by a matrix of rank one (Sherman and Morrison)."""
         value, slope = self.factor(y)

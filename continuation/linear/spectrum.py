@@ -36,9 +36,9 @@ DIGITS, CONVERGED = 1e-4, 1e-12
 """Eigenvalues are computed until they, and their real parts, have four digits, so that it is known on which side they
 are. Near the axis these are as many as an event needs that is located to 1e-10: down to the second, relative."""
 
-DIMENSIONS, LOOK = 40, 6
-"""At most so many dimensions of the Krylov space for each eigenvalue and one more; 40 in all are usual for six. After
-so many more it is looked whether they are enough: the small eigenvalue problem costs as much as ten solves."""
+DIMENSIONS, LOOK = 40, 8
+"""At most so many dimensions of the Krylov space for each eigenvalue and one more; 30 in all are usual for six.
+After so many more it is looked whether they are enough: the small eigenvalue problem costs as much as ten solves."""
 
 ROUND_OFF = 1e-14
 """A vector that loses all but this to the ones before it has no direction of its own."""
@@ -207,13 +207,14 @@ def dominant(
     for j in range(1, most + 1):
         x = apply(Q[j - 1])
         size = float(np.linalg.norm(x))
+        # Always twice: once leaves copies of eigenvalues that are none.
         for _ in range(2):
             part = Q[:j] @ x
             H[:j, j - 1] += part
             x = x - part @ Q[:j]
         H[j, j - 1] = float(np.linalg.norm(x))
         exhausted = j == n or H[j, j - 1] <= ROUND_OFF * size
-        if exhausted or j == most or (j >= 2 * k and (j - 2 * k) % LOOK == 0):
+        if exhausted or j == most or (j >= 4 * k and (j - 4 * k) % LOOK == 0):
             theta, vectors = np.linalg.eig(H[:j, :j])
             largest = np.argsort(-np.abs(theta))[:k]
             error = H[j, j - 1] * np.abs(vectors[-1, largest])

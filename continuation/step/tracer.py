@@ -142,14 +142,13 @@ class Tracer:
         self._pieces = Pieces(homotopy) if isinstance(homotopy, SupportsPieces) else None
         leaving = None if self._start is None else np.asarray(self._start[1], dtype=float)
         straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
-        tolerance, room = self.settings.tolerance, self.settings.room
-        self._solver = PathSolver(self._evaluator, tolerance, max_step_of(homotopy), straight, room)
+        kept, farthest = self.settings, max_step_of(homotopy)
+        self._solver = PathSolver(self._evaluator, kept.tolerance, farthest, straight, kept.room)
         self._recorder = StepRecorder(self._evaluator, observing(homotopy, self._bound.events))
         self._advance = Advance(self._solver, self._bound, self._recorder, self._spent, self._pieces)
         self._check = asked["check_jacobian"]
         self._clock: float | None = None
-        self._handed = 0
-        self._reason = ""
+        self._handed, self._reason = 0, ""
 
     @property
     def seconds(self) -> float:

@@ -26,7 +26,7 @@ class Brusselator:
     """
 
     points: int = 1000
-    ends: float = 1.0
+    ends: float = 1.2
     target: float = 6.2
 
     @property
@@ -73,31 +73,29 @@ def traced(brusselator, **options):
 
 
 def main(points=1000, repetitions=3):
-    brusselator = Brusselator(points)
-    alone, watched = [], []
-    for _ in range(repetitions):
-        plain, seconds = traced(brusselator)
-        alone.append(seconds)
-        path, seconds = traced(brusselator, observers=[continuation.Stability()])
-        watched.append(seconds)
-    print(f"N = {2 * points}: {len(plain)} points in {min(alone):.2f} s, with stability {min(watched):.2f} s, ", end="")
-    print(
-        f"{min(watched) / min(alone):.2f} times as much; {plain.counts.factorizations} and "
-        f"{path.counts.factorizations} factorisations"
-    )
+    for max_step in (0.1, 0.05, 0.02):
+        compare(Brusselator(points), repetitions, max_step)
+    uniform = Brusselator(points, ends=1.0)
+    path = continuation.trace(uniform, observers=[continuation.Stability()])
     found = [event for event in path.events if event.kind == continuation.Kind.HOPF]
     for mode, event in enumerate(found, start=1):
-        B, frequency = brusselator.hopf(mode)
-        print(
-            f"mode {mode}: B = {event.lam:.12f}, off by {abs(event.lam - B):.0e}, "
-            f"frequency off by {abs(event.observed['frequency'] - frequency):.0e}"
-        )
-    print(
-        "unstable:",
-        *(int(step.observed["unstable"]) for step in path.steps),
-        "covered:",
-        all(step.observed["covered"] for step in path.steps),
-    )
+        B, frequency = uniform.hopf(mode)
+        print(f"uniform state, mode {mode}: B = {event.lam:.12f}, off by {abs(event.lam - B):.0e}, "
+              f"frequency off by {abs(event.observed['frequency'] - frequency):.0e}")
+
+
+def compare(brusselator, repetitions, max_step):
+    """One line: a trace with and without stability, in turn, and the smallest time of each."""
+    alone, watched = [], []
+    for _ in range(repetitions):
+        plain, seconds = traced(brusselator, max_step=max_step)
+        alone.append(seconds)
+        path, seconds = traced(brusselator, max_step=max_step, observers=[continuation.Stability()])
+        watched.append(seconds)
+    hopf = sum(event.kind == continuation.Kind.HOPF for event in path.events)
+    print(f"N = {2 * brusselator.points}: {len(path)} points and {hopf} Hopf points, {min(alone):.2f} s, with stability "
+          f"{min(watched):.2f} s, {min(watched) / min(alone):.2f} times as much; {plain.counts.factorizations} and "
+          f"{path.counts.factorizations} factorisations, {plain.counts.solves} and {path.counts.solves} solves")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,273 @@
+"""Diagrams: complete, no branch twice, and the same in several processes."""
+
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from attrs import frozen
+
+from continuation import Budget, Kind, Stability, diagram, from_functions
+from continuation.archive import open_archive
+from continuation.linear import Banded
+from continuation.status import Status
+from problems.bifurcation import FreudensteinRoth, Pitchfork
+
+from ..kinks.util import Folded
+
+
+@frozen
+class ChafeeInfante:
+    """u'' + lam (u - u^3) = 0 on (0, pi), zero at both ends, second differences."""
+
+    n: int
+
+    @property
+    def h(self):
+        return np.pi / (self.n + 1)
+
+    def start(self):
+        return np.zeros(self.n), 0.2
+
+    def residual(self, y, lam):
+        return np.diff(np.concatenate(([0.0], y, [0.0])), 2) / self.h**2 + lam * (y - y**3)
+
+    def jacobian(self, y, lam):
+        bands = np.full((3, self.n), self.h**-2)
+        bands[1] = -2.0 * self.h**-2 + lam * (1.0 - 3.0 * y * y)
+        return Banded(bands, 1, 1), y - y**3
+
+    def crossings(self):
+        return 4.0 / self.h**2 * np.sin(0.5 * np.arange(1, 6) * self.h) ** 2
+
+
+@frozen
+class Forks:
+    """Pitchforks on a trunk: (lam - k) y_k - y_k^3, or with |y|^2 y_k, so that no branch leaves an arm."""
+
+    places: tuple[float, ...]
+    coupled: bool = False
+
+    def start(self):
+        return np.zeros(len(self.places)), 0.5
+
+    def residual(self, y, lam):
+        return (lam - np.array(self.places)) * y - (y @ y if self.coupled else y * y) * y
+
+    def jacobian(self, y, lam):
+        own = lam - np.array(self.places)
+        if self.coupled:
+            return np.diag(own - y @ y) - 2.0 * np.outer(y, y), y.copy()
+        return np.diag(own - 3.0 * y * y), y.copy()
+
+
+def outline(found):
+    return [(b.origin, b.generation, b.path.status, len(b.path), b.path.u.tobytes()) for b in found.branches]
+
+
+def amplitude(lam):
+    """The largest u of the first branch: half a period of u'' + lam (u - u^3) = 0, an elliptic integral, is pi."""
+    from scipy.optimize import brentq
+    from scipy.special import ellipk
+
+    def half_period(a):
+        m = a * a / (2.0 - a * a)
+        return 2.0 * ellipk(m) / np.sqrt(lam * (1.0 - 0.5 * a * a)) - np.pi
+
+    return brentq(half_period, 1e-9, 1.0 - 1e-12)
+
+
+def test_the_diagram_of_a_cubic_equation_has_its_five_branch_points_to_second_order():
+    errors = []
+    for n in (19, 39):
+        homotopy = ChafeeInfante(n)
+        found = diagram(homotopy, box={"lam": (0.0, 30.0)}, stability=Stability())
+        assert found.complete
+        assert len(found) == 6
+        assert [point.label for point in found.points] == ["BP1", "BP2", "BP3", "BP4", "BP5"]
+        assert [point.branches for point in found.points] == [(0, k) for k in range(1, 6)]
+        places = np.array([point.event.lam for point in found.points])
+        np.testing.assert_allclose(places, homotopy.crossings(), rtol=0, atol=1e-10)
+        errors.append(np.abs(places - np.arange(1, 6) ** 2))
+        assert [branch.path.endpoint.observed["unstable"] for branch in found.branches] == [5, 0, 1, 2, 3, 4]
+    np.testing.assert_allclose(errors[0] / errors[1], 4.0, rtol=0.05)
+
+
+def test_the_amplitude_of_the_first_branch_is_that_of_elliptic_integrals():
+    errors = []
+    for n in (39, 79):
+        found = diagram(ChafeeInfante(n), box={"lam": (0.0, 3.0)})
+        (first,) = [branch for branch in found.branches if branch.generation]
+        assert first.path.endpoint.lam == 3.0
+        errors.append(abs(np.abs(first.path.endpoint.y).max() - amplitude(3.0)))
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+
+
+def test_ten_pitchforks_on_a_trunk_are_eleven_branches():
+    found = diagram(Forks(tuple(range(1, 11)), coupled=True), box={"lam": (0.0, 12.0)})
+    assert found.complete, found.message
+    assert len(found) == 11
+    np.testing.assert_allclose([p.event.lam for p in found.points], range(1, 11), rtol=0, atol=1e-10)
+    assert [branch.generation for branch in found.branches] == [0, *10 * [1]]
+    for k, branch in enumerate(found.branches[1:], start=1):
+        # One smooth curve through the branch point, from one end of the box to the other.
+        ends = branch.path.y[[0, -1], k - 1]
+        np.testing.assert_allclose(sorted(ends), [-np.sqrt(12.0 - k), np.sqrt(12.0 - k)], atol=1e-9)
+
+
+def test_branches_that_leave_branches_are_all_there_and_none_twice():
+    # The k-th unknown leaves each of the 3^(k-1) states of those before it.
+    found = diagram(Forks((1.0, 2.0, 3.0, 4.0)), box={"lam": (0.0, 6.0)})
+    assert found.complete, found.message
+    assert len(found) == 1 + (3**4 - 1) // 2
+    assert len(found.of_kind(Kind.BRANCH_POINT)) == (3**4 - 1) // 2 == len(found.points)
+    ends = np.vstack([y for branch in found.branches for y in branch.path.y[[0, -1]] if branch.generation])
+    states = {tuple(np.sign(np.round(y, 6)).astype(int)) for y in ends}
+    assert len(states) == len(ends) == 3**4 - 1
+    assert len(found.at(5.5)) == 3**4
+
+
+@pytest.mark.parametrize("executor", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_several_workers_find_the_same_branches_in_the_same_order(executor):
+    homotopy, box = Forks((1.0, 2.0, 3.0)), {"lam": (0.0, 5.0)}
+    with executor(2) as workers:
+        found = diagram(homotopy, box=box, executor=workers)
+    assert outline(found) == outline(diagram(homotopy, box=box))
+
+
+def test_a_branch_that_meets_another_twice_is_traced_once_whoever_traces_it():
+    def slopes(y, lam):
+        line, circle = y - 0.5 * lam, y * y + lam * lam - 1.0
+        return (circle + 2.0 * y * line)[:, None], -0.5 * circle + 2.0 * lam * line
+
+    homotopy = from_functions(lambda y, lam: (y - 0.5 * lam) * (y * y + lam * lam - 1.0), slopes, start=([-0.75], -1.5))
+    alone = diagram(homotopy, box={"lam": (-2.0, 2.0)})
+    with ThreadPoolExecutor(4) as workers:
+        together = diagram(homotopy, box={"lam": (-2.0, 2.0)}, executor=workers)
+    # Four rays leave the line, and all are the circle.
+    assert together.counts.accepted > alone.counts.accepted
+    assert outline(together) == outline(alone)
+    assert [branch.path.status for branch in alone.branches] == [Status.STOPPED_AT_EVENT, Status.CLOSED]
+    assert [(p.label, p.branches) for p in alone.points] == [
+        ("BP1", (0, 1)), ("BP2", (0, 1)), ("LP1", (1,)), ("LP2", (1,)),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("ranks", "branches"), [(2, 5), (3, 14)])
+def test_all_branches_leave_a_multiple_branch_point(ranks, branches):
+    # (lam - 1) y_k = y_k^3: of the 3^ranks - 1 states two are the ends of one curve.
+    found = diagram(Forks(ranks * (1.0,)), box={"lam": (0.0, 3.0)})
+    assert found.complete, found.message
+    assert len(found) == branches
+    (point,) = found.points
+    assert point.event.kind == Kind.SINGULAR_POINT
+    states = {tuple(np.round(y, 6)) for b in found.branches[1:] for y in b.path.y[[0, -1]]}
+    assert len(states) == 3**ranks - 1
+    assert {abs(x) for state in states for x in state} == {0.0, round(np.sqrt(2.0), 6)}
+
+
+def test_a_continuum_of_branches_and_too_large_a_kernel_are_said():
+    round_about = from_functions(lambda y, lam: lam * y - y * (y[0] * y[0] + y[1] * y[1]), start=(np.zeros(2), -1.0))
+    found = diagram(round_about, box={"lam": (-2.0, 2.0)})
+    assert not found.complete
+    assert "kernel of H' has dimension 3 there" in found.message
+    assert "continuum" in found.message
+    found = diagram(Forks(4 * (1.0,)), box={"lam": (0.0, 2.0)})
+    assert not found.complete
+    assert "kernel of H' has dimension 5 there; up to 4 are resolved" in found.message
+
+
+def test_what_hangs_on_nothing_is_found_by_deflation():
+    homotopy, box = Pitchfork(imperfection=0.01), {"lam": (-2.0, 2.0)}
+    assert len(diagram(homotopy, box=box)) == 1
+    found = diagram(homotopy, box=box, deflate=[1.0])
+    assert found.complete
+    assert [branch.origin for branch in found.branches] == ["", ""]
+    (fold,) = found.points
+    # lam y - y^3 + eps has a double root at 27 eps^2 = 4 lam^3.
+    assert fold.event.lam == pytest.approx((27.0 * 0.01**2 / 4.0) ** (1.0 / 3.0), abs=1e-10)
+    np.testing.assert_allclose(np.sort(found.at(1.0).ravel()), np.sort(np.roots([1.0, 0.0, -1.0, -0.01])), atol=1e-3)
+
+
+def test_a_start_on_a_known_branch_adds_nothing_and_another_one_its_own():
+    homotopy, box = Pitchfork(imperfection=0.01), {"lam": (-2.0, 2.0)}
+    assert len(diagram(homotopy, box=box, starts=[([1.0], 1.0)])) == 1
+    assert len(diagram(homotopy, box=box, starts=[([-1.0], 1.0), ([0.0], 1.0)])) == 2
+
+
+def test_a_curve_without_branches_is_one_branch():
+    found = diagram(FreudensteinRoth(), box={"lam": (-1.0, 2.0)})
+    assert found.complete
+    assert [point.label for point in found.points] == ["LP1", "LP2"]
+    assert (len(found), found.branches[0].path.lam[[0, -1]].tolist()) == (1, [-1.0, 2.0])
+
+
+def test_limits_are_kept_and_said():
+    homotopy, box = Forks((1.0, 2.0, 3.0)), {"lam": (0.0, 5.0)}
+    few = diagram(homotopy, box=box, generations=1)
+    assert (len(few), few.complete) == (4, False)
+    assert "beyond generation 1" in few.message
+    few = diagram(homotopy, box=box, branches=2)
+    assert "the limit of 2 branches" in few.message
+    short = diagram(homotopy, box=box, budget=Budget(steps=3))
+    assert not short.complete
+    assert "budget is used up" in short.message
+
+
+def test_branches_leave_a_kink():
+    # |lam| - |y| = 0: from the lower left one branch, and the two others from the kink in the middle.
+    crossed = Folded(((0, 0),), ((1, -1),), ((1, 0), (0, 1)), (0,), (0, 0), (-1, 1))
+    found = diagram(crossed, box={"lam": (-2.0, 2.0)})
+    assert found.complete, found.message
+    assert [point.label for point in found.points] == ["KP1"]
+    ends = {
+        tuple(np.sign(u).astype(int)) for branch in found.branches for u in branch.path.u[[0, -1]] if np.abs(u).all()
+    }
+    assert ends == {(a, b) for a in (-1, 1) for b in (-1, 1)}
+
+
+def test_one_archive_holds_all_branches_and_the_picture_names_the_points(tmp_path):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    homotopy = Forks((1.0, 2.0), coupled=True)
+    found = diagram(homotopy, box={"lam": (0.0, 3.0)}, stability=Stability(), archive=tmp_path / "branches.h5")
+    with open_archive(tmp_path / "branches.h5") as archive:
+        assert len(archive) == 3
+        for branch, stored in zip(found.branches, archive):
+            np.testing.assert_array_equal(stored.u, branch.path.u)
+            assert [s.observed["unstable"] for s in stored.steps] == [s.observed["unstable"] for s in branch.path.steps]
+            assert [(e.kind, e.lam) for e in stored.events] == [(e.kind, e.lam) for e in branch.path.events]
+    axes = found.plot(value=0)
+    assert [text.get_text() for text in axes.texts] == ["BP1", "BP2"]
+    assert {line.get_linestyle() for line in axes.lines} >= {"-", "--"}
+    assert found.plot(value=0, labels=False).texts[:] == []
+    pyplot.close("all")
+
+
+def test_a_branch_goes_through_the_point_that_it_was_found_at():
+    found = diagram(Forks((1.0,)), box={"lam": (0.0, 3.0)})
+    path = found.branches[1].path
+    assert path.status is Status.STOPPED_AT_EVENT
+    assert np.diff(path.arclength).min() > 0.0
+    middle = path.u[np.argmin(path.lam)]
+    np.testing.assert_allclose(middle, [0.0, 1.0], atol=1e-10)
+    np.testing.assert_allclose(path.y[:, 0] ** 2, path.lam - 1.0, atol=1e-9)
+    # The curve between the points, the branch point among them, is the parabola too.
+    between = path(np.linspace(0.0, path.arclength[-1], 50))
+    np.testing.assert_allclose(between[:, 0] ** 2, between[:, 1] - 1.0, atol=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({}, "box: expected one"),
+        ({"box": {"lam": (0.5, 2.0)}}, "box: expected each start inside"),
+        ({"box": {"lam": (0.0, 2.0)}, "branches": 0}, "branches: expected a positive integer"),
+        ({"box": {"lam": (0.0, 2.0)}, "direction": 1}, "direction: expected no such option here"),
+        ({"box": {"lam": (0.0, 2.0)}, "executor": 3}, "executor: expected a concurrent.futures.Executor"),
+        ({"box": {"lam": (0.0, 2.0)}, "starts": [3]}, "starts: expected pairs"),
+        ({"box": {"lam": (0.0, 2.0)}, "deflate": ["x"]}, "deflate: expected values of the parameter"),
+    ],
+    ids=["no box", "start on a face", "branches", "direction", "executor", "starts", "deflate"],
+)
+def test_bad_input_is_refused(options, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        diagram(Forks((1.0,)), **options)
