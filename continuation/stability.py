@@ -8,6 +8,7 @@ the tracer finds by itself, a complex pair at Hopf points.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -25,8 +26,18 @@ from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
-KEPT = 6
-"""Spectra that are remembered: the ends of an arc, and the event that is being looked at."""
+SMALL, INSIDE = 31, (0.25, 0.5, 0.75)
+"""Up to 30 unknowns, where eigenvalues take less time than a step, an arc is looked at between its ends too: a pair may
+cross, become real, and one of the two come back through a turning point, within one step (MatCont's catalyst)."""
+
+BESIDE = 0.02
+"""So far from where it lies on an arc, in its lengths, an event may change what is seen on the segment."""
+
+CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
+"""How many eigenvalues change sides there, at most."""
+
+KEPT = 12
+"""Spectra that are remembered: those along an arc, and the event that is being looked at."""
 
 ON_AXIS = 1e-6
 """The real part of a Hopf point's pair, relative to its modulus: more, and a pair appeared or vanished, and none
@@ -48,7 +59,7 @@ class HopfPoint:
     side : {1, -1}, default 1
         Of dy/dt = side H(y, lam): a Hopf point does not depend on it, the counts stored do.
     k : int, optional
-        So many eigenvalues nearest to the right edge are computed, by Arnoldi's method. By default all where there are
+        So many eigenvalues on the right are computed, by Arnoldi's method. By default all where there are
         at most 100, else 6.
     terminal : int, default 0
         The trace ends at the k-th occurrence; 0 for never.
@@ -178,13 +189,22 @@ class BoundHopf:
 
     def found_on(self, solver: PathSolver, arc: Arc) -> list[Linearization]:
         """The Hopf points of an arc, in order: of each pair that changes sides, where its real part vanishes."""
-        before, after = self.at(arc.a.u), self.at(arc.b.u)
-        p, q = before.unstable_pairs, after.unstable_pairs
-        if p == q or before.unstable == after.unstable:
-            return []
-        points = [self._located(solver, arc, rank) for rank in range(min(p, q), max(p, q))]
-        wanted = [point for point in points if point is not None and (q - p) * self.direction >= 0]
-        return sorted(wanted, key=lambda point: position(arc, point.u))
+        found: list[Linearization] = []
+        for (left, before), (right, after) in pairwise(self._looks(arc)):
+            p, q = before.unstable_pairs, after.unstable_pairs
+            # Real eigenvalues that become a pair, or a pair that becomes real, change no other number.
+            if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
+                continue
+            points = [self._located(solver, arc, left, right, rank) for rank in range(min(p, q), max(p, q))]
+            known = [point for point in points if point is not None]
+            found += sorted(known, key=lambda point: position(arc, point.u))
+        return found
+
+    def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
+        """Spectra along an arc: at its ends, and between them on its segment where eigenvalues cost next to nothing."""
+        inside = INSIDE if arc.a.u.size <= SMALL else ()
+        found = ((t, self.at(arc.segment.at(t))) for t in inside)
+        return [(0.0, self.at(arc.a.u)), *found, (1.0, self.at(arc.b.u))]
 
     def _real_part(self, u: Array, rank: int) -> float:
         """Of the pair of a rank, the rightmost first: smooth where that pair crosses alone."""
@@ -194,7 +214,7 @@ class BoundHopf:
         pair = found.pairs[rank]
         return float(pair.real) if abs(pair.real) > RESOLVED * abs(pair) else 0.0
 
-    def _located(self, solver: PathSolver, arc: Arc, rank: int) -> Linearization | None:
+    def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
         """Where the real part of the pair of a rank vanishes; None where it jumps, as a pair out of real ones does.
 
         Brent's method on points of the path: few spectra, which cost more than all the rest.
@@ -205,15 +225,21 @@ class BoundHopf:
             u = ends[t] if t in ends else solver.project(arc.a, arc.segment.at(t), arc.border)[0]
             return self._real_part(u, rank)
 
-        t = float(brentq(real_part, 0.0, 1.0, xtol=CLOSE, rtol=CLOSE, disp=False))
+        if real_part(left) * real_part(right) > 0.0:
+            # What the segment shows is not so on the path itself.
+            return None
+        t = float(brentq(real_part, left, right, xtol=CLOSE, rtol=CLOSE, disp=False))
         at = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
         pairs = self.at(at.u).pairs
         return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
 
-    def accounts_for(self, arc: Arc, kinds: Sequence[Kind]) -> bool:
+    def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
         """Whether the events found on an arc explain how the number of unstable eigenvalues changes along it."""
-        before, after = self.at(arc.a.u), self.at(arc.b.u)
-        if before.critical or after.critical or not (before.covered and after.covered):
-            return True
-        explained = sum({Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1}.get(kind, 0) for kind in kinds)
-        return Kind.SINGULAR_POINT in kinds or abs(after.unstable - before.unstable) <= explained
+        length = position(arc, arc.b.u)
+        places = [(kind, position(arc, point.u) / length) for kind, point in found]
+        for (left, before), (right, after) in pairwise(self._looks(arc)):
+            sure = before.covered and after.covered and not (before.critical or after.critical)
+            near = [CROSSING.get(kind, 0) for kind, t in places if left - BESIDE <= t <= right + BESIDE]
+            if sure and abs(after.unstable - before.unstable) > sum(near):
+                return False
+        return True

@@ -31,8 +31,8 @@ def found_by_events(
     """
     watching = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]
-    kinds = [events[i].kind for i, _ in (*found, *own)]
-    return own, all(event.accounts_for(arc, kinds) for _, event in watching)
+    known = [(events[i].kind, point) for i, point in (*found, *own)]
+    return own, all(event.accounts_for(arc, known) for _, event in watching)
 
 
 def monitored(event: Event, point: Linearization) -> float:

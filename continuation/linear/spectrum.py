@@ -26,17 +26,18 @@ OFF_AXIS = 1e-10
 """The real part, relative to the largest of the eigenvalues known, from which an eigenvalue counts as unstable: events
 are located to that."""
 
-SHIFT = 0.017
-"""By how much more than the bound on real parts the shift is: no eigenvalue of a symmetric matrix lies on it."""
+SHIFT = 0.517
+"""Of the bound on real parts: in the middle of where unstable eigenvalues may be, and not on a round number."""
 
 NEAR = 1e-6
 """At least so far is the shift from zero, relative to the diagonal: a singular matrix has eigenvalues all the same."""
 
-DIGITS, CONVERGED = 1e-4, 1e-12
-"""Eigenvalues are computed until they, and their real parts, have four digits, so that it is known on which side they
-are. Near the axis these are as many as an event needs that is located to 1e-10: down to the second, relative."""
+SURE, DIGITS, CONVERGED = 0.1, 1e-4, 1e-12
+"""Eigenvalues are computed until the error of their real parts, relative to these, is the first, so that it is known on
+which side they are; for the rightmost and the one nearest to the axis, the second. Near the axis that is as good as an
+event needs that is located to 1e-10: down to the last, relative to the eigenvalue."""
 
-DIMENSIONS, LOOK = 40, 8
+DIMENSIONS, LOOK = 40, 6
 """At most so many dimensions of the Krylov space for each eigenvalue and one more; 30 in all are usual for six.
 After so many more it is looked whether they are enough: the small eigenvalue problem costs as much as ten solves."""
 
@@ -95,8 +96,8 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """The eigenvalues of ``side * matrix`` that decide on stability.
 
     Of a `Symmetric` matrix the inertia of its LDL' factorisation (Sylvester's law); of a small one all, by the QR
-    method; of others the k nearest to a real number on the right of all of them, by Arnoldi's method on the inverse
-    (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 5.3). Bendixson's theorem bounds real
+    method; of others the k nearest to a shift in the middle of where unstable ones may be, by Arnoldi's method on the
+    inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 5.3). Bendixson's theorem bounds real
     and imaginary parts by the eigenvalues of the symmetric and of the skew part, which Gershgorin's discs bound: where
     the disc that Arnoldi's method has emptied covers what is left on the right, the count is complete.
 
@@ -158,18 +159,22 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 
 
 def _nearest(matrix: Matrix, k: int) -> Spectrum:
-    """The k eigenvalues nearest to a shift at the right edge of where they can be."""
+    """The k eigenvalues nearest to a shift in the middle of where unstable ones can be."""
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
     # Where all are stable the shift is not much farther away than what oscillates, and no eigenvalue itself.
-    shift = (1.0 + SHIFT) * max(real, 0.1 * imaginary, NEAR * float(np.abs(matrix.diagonal()).max()))
-    inverse, corner = _solver(matrix, shift), float(np.hypot(shift, imaginary))
+    shift = SHIFT * max(real, 0.1 * imaginary, NEAR * float(np.abs(matrix.diagonal()).max()))
+    inverse, corner = _solver(matrix, shift), float(np.hypot(max(shift, real - shift), imaginary))
     wanted, solves = min(k, n), 0
 
     def known(theta: Any, error: Array) -> bool:
-        moduli, real_parts = np.abs(theta), np.abs((shift + 1.0 / theta).real)
-        off = error / moduli**2
-        return bool(((error <= DIGITS * moduli) & (off <= DIGITS * real_parts) | (error <= CONVERGED * moduli)).all())
+        real_parts = (shift + 1.0 / theta).real
+        off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
+        # The ones that are stored, and that cross: the rightmost, and the nearest to the axis.
+        kept = [int(np.argmax(real_parts)), int(np.argmin(np.abs(real_parts)))]
+        wanted = np.full(theta.size, SURE)
+        wanted[kept] = DIGITS
+        return bool(((off <= wanted) | (error <= CONVERGED * np.abs(theta))).all())
 
     while True:
         theta, more = dominant(inverse, generic_vector(n), wanted, known)
@@ -214,7 +219,7 @@ def dominant(
             x = x - part @ Q[:j]
         H[j, j - 1] = float(np.linalg.norm(x))
         exhausted = j == n or H[j, j - 1] <= ROUND_OFF * size
-        if exhausted or j == most or (j >= 4 * k and (j - 4 * k) % LOOK == 0):
+        if exhausted or j == most or (j >= 3 * k and (j - 3 * k) % LOOK == 0):
             theta, vectors = np.linalg.eig(H[:j, :j])
             largest = np.argsort(-np.abs(theta))[:k]
             error = H[j, j - 1] * np.abs(vectors[-1, largest])

@@ -17,6 +17,8 @@ from continuation import (
     trace_both,
 )
 from continuation.archive import open_archive, resume
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import Banded, Symmetric, factor_bordered
 from continuation.linear.spectrum import bounds, spectrum
 
@@ -143,6 +145,28 @@ def test_what_stability_costs_on_a_large_sparse_branch():
     assert watched.counts.solves <= alone.counts.solves + 40 * len(alone)
     assert {step.observed["unstable"] for step in watched.steps} == {0.0}
     assert all(step.observed["covered"] for step in watched.steps)
+
+
+@every_preset
+def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(preset):
+    # MatCont's catalytic oscillator: long steps have a Hopf point, the split of its pair and a turning point in one.
+    def catalyst(u, q2):
+        z = 1.0 - u[0] - u[1] - u[2]
+        oxidised = 10.0 * u[0] * u[1]
+        return np.stack(
+            [5.0 * z * z - 2.0 * u[0] ** 2 - oxidised, q2 * z - 0.1 * u[1] - oxidised, 0.0675 * (z - 0.4 * u[2])]
+        )
+
+    homotopy = from_functions(catalyst, start=([0.001137, 0.891483, 0.062345], 2.204678), target=None)
+    options = {"box": {"lam": (0.95, 2.5), 0: (None, 0.12)}, "direction": -1, "preset": preset}
+    path = trace(homotopy, observers=[Stability()], **options)
+    places = [event.lam for event in path.events if event.kind in (Kind.HOPF, Kind.TURNING_POINT)]
+    np.testing.assert_allclose(places, [1.051558, 1.042049, 1.052200, 1.040991], atol=1e-6)
+    found = hopf_points(path)
+    assert len(found) == 2
+    for event in found:
+        values = np.linalg.eigvals(Evaluator(homotopy, Counts()).derivative(event.y, event.lam)[0])
+        assert np.abs(values.real).min() < 1e-10
 
 
 # -- the eigenvalues ------------------------------------------------------------------------------------------
