@@ -97,9 +97,9 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
 
     Of a `Symmetric` matrix the inertia of its LDL' factorisation (Sylvester's law); of a small one all, by the QR
     method; of others the k nearest to a shift in the middle of where unstable ones may be, by Arnoldi's method on the
-    inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 5.3). Bendixson's theorem bounds real
-    and imaginary parts by the eigenvalues of the symmetric and of the skew part, which Gershgorin's discs bound: where
-    the disc that Arnoldi's method has emptied covers what is left on the right, the count is complete.
+    inverse (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, Section 5.3). Bendixson's theorem
+    bounds real and imaginary parts by the eigenvalues of the symmetric and of the skew part, which Gershgorin's discs
+    bound: where the disc that Arnoldi's method has emptied covers what is left on the right, the count is complete.
 
     Parameters
     ----------
