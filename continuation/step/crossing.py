@@ -164,7 +164,9 @@ class Crossings:
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         if at > 1.0:
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
-        if not flipped:
+        if not flipped or doubtful:
+            # With a second crossing behind it the sign is that of the other branch: how well the corrector contracts
+            # tells the two apart.
             return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
         return self._point(arc, found, at)
 
