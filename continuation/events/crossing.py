@@ -8,6 +8,7 @@ alone. On a straight branch of an H that is affine in the parameter the places a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -101,26 +102,44 @@ def _eigenvalues(
     """The real eigenvalues of C beyond right, or below left, and their vectors in the metric, as columns."""
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
-    Q, H = np.zeros((n + 1, a.u.size)), np.zeros((n + 1, n))
-    Q[0] = start / np.linalg.norm(start)
+    Q, H = np.empty((n + 1, a.u.size)), np.zeros((n + 1, n))
+    Q[0] = start / math.sqrt(np.dot(start, start))
     for k in range(n):
         q = Q[k] / scale
         x = Q[k] - scale * a.solve(apply(q), float(np.dot(border, q)))
-        size = float(np.linalg.norm(x))
+        size = math.sqrt(np.dot(x, x))
         for _ in range(2):
             part = Q[: k + 1] @ x
             H[: k + 1, k] += part
             x = x - part @ Q[: k + 1]
-        H[k + 1, k] = float(np.linalg.norm(x))
-        whole = k + 1 == a.u.size or H[k + 1, k] <= EXHAUSTED * size
+        H[k + 1, k] = left_over = math.sqrt(np.dot(x, x))
+        whole = k + 1 == a.u.size or left_over <= EXHAUSTED * size
+        if not whole and (k == 0 or (k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left))):
+            if k:
+                return np.empty(0), np.empty((a.u.size, 0))
+            Q[1] = x / left_over
+            continue
         values, vectors = np.linalg.eig(H[: k + 1, : k + 1])
         error = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
         told = (values.real + error > right) | (values.real - error < left)
         known = error <= accuracy * np.abs(values)
-        seen = k > 1 or (k > 0 and H[k + 1, k] <= UNSEEN * right)
-        if whole or (seen and known[told].all()):
+        if whole or ((k > 1 or left_over <= UNSEEN * right) and known[told].all()):
             break
-        Q[k + 1] = x / H[k + 1, k]
+        Q[k + 1] = x / left_over
     real = np.abs(values.imag) <= error + EXHAUSTED * np.abs(values)
     wanted = real & ((values.real > right) | (values.real < left))
     return values[wanted].real, Q[: k + 1].T @ vectors[:, wanted].real
+
+
+def _nothing_told(H: Array, right: float, left: float) -> bool:
+    """Whether two dimensions show no eigenvalue that is asked for: their two in closed form, for the time of a step."""
+    a, b, c, d = float(H[0, 0]), float(H[0, 1]), float(H[1, 0]), float(H[1, 1])
+    middle, discriminant = 0.5 * (a + d), 0.25 * (a - d) ** 2 + b * c
+    root = math.sqrt(abs(discriminant))
+    for sign in (-1.0, 1.0):
+        real, imaginary = (middle + sign * root, 0.0) if discriminant >= 0.0 else (middle, root)
+        # The last component of the eigenvector (value - d, c), of unit length, by what leads out of the space.
+        error = float(H[2, 1]) * abs(c) / (math.hypot(real - d, imaginary, c) or 1.0)
+        if real + error > right or real - error < left:
+            return False
+    return True

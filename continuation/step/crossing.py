@@ -121,7 +121,8 @@ class Crossings:
             Where the path ends on the arc, if it does: what lies beyond does not count.
         """
         # An arc that was cut, as at a kink, is the beginning of what was predicted.
-        attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
+        if arc.b is not attempt.point:
+            attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
         looked = self._looked(arc, attempt, prediction)
         places = max(([t for t in found if t < BEYOND] for found in looked.values()), key=len, default=[])
         if flipped and not places and (apply := self._derivative(arc.b.u)) is not None:
