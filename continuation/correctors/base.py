@@ -114,9 +114,7 @@ ROUNDS = 10
 
 def level(r: Array, terms: Array) -> float:
     """The largest component of a residual beside the round-off of its terms, as `Evaluator.round_off` sees it."""
-    size = np.abs(r)
-    live = size > 0.0
-    return float((size[live] / np.maximum(terms[live], TINY)).max()) if live.any() else 0.0
+    return float((np.abs(r) / np.maximum(terms, TINY)).max())
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
