@@ -23,8 +23,8 @@ CONVERGED = 0.05
 """Of an eigenvalue: it tells about where the crossing lies, and Newton's method does the rest."""
 
 UNSEEN = 0.1
-"""Of the eigenvalues asked for: where the second dimension leads out of the two by more, a third is asked. Without it
-a tenth of the crossings just behind an arc is overlooked, with it one or two of a hundred (400 crossings)."""
+"""Of the eigenvalues asked for: where the last dimension leads out of the space by more, what it shows must be so in
+the next one too. Without that a tenth of the crossings just behind an arc is overlooked (400 crossings)."""
 
 EXHAUSTED = 1e-10
 """A vector that loses all but this to the ones before it has no direction of its own."""
@@ -41,6 +41,7 @@ def singular_places(
     ahead: float,
     behind: float = np.inf,
     accuracy: float = CONVERGED,
+    turned: int = 0,
 ) -> list[float]:
     """Where on the way from M_a to another bordered matrix M there are singular ones: t in order, 1 at M itself.
 
@@ -58,9 +59,12 @@ def singular_places(
         Beyond 1, and below 0, the places are extrapolated: they are told from -behind to ahead, if that is finite.
     accuracy : float
         Of the eigenvalues, relative.
+    turned : int
+        Another one for another vector: one in a thousand has next to no part along an eigenvector.
     """
     right, left_end = 1.0 / ahead, -1.0 / behind if np.isfinite(behind) else -np.inf
-    values, _ = _eigenvalues(a, apply, border, right, left_end, generic_vector(a.u.size), accuracy)
+    start = np.roll(generic_vector(a.u.size), turned)
+    values, _ = _eigenvalues(a, apply, border, right, left_end, start, accuracy)
     return sorted(float(1.0 / value) for value in values)
 
 
@@ -104,6 +108,7 @@ def _eigenvalues(
     n = min(PRODUCTS, a.u.size)
     Q, H = np.empty((n + 1, a.u.size)), np.zeros((n + 1, n))
     Q[0] = start / math.sqrt(np.dot(start, start))
+    converged = False
     for k in range(n):
         q = Q[k] / scale
         x = Q[k] - scale * a.solve(apply(q), float(np.dot(border, q)))
@@ -123,7 +128,8 @@ def _eigenvalues(
         error = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
         told = (values.real + error > right) | (values.real - error < left)
         known = error <= accuracy * np.abs(values)
-        if whole or ((k > 1 or left_over <= UNSEEN * right) and known[told].all()):
+        before, converged = converged, bool(known[told].all())
+        if whole or (converged and (before or left_over <= UNSEEN * right)):
             break
         Q[k + 1] = x / left_over
     real = np.abs(values.imag) <= error + EXHAUSTED * np.abs(values)

@@ -211,10 +211,11 @@ class Crossings:
         contracts = attempt.correction.contraction <= RELIABLE
         least, found = CHANGED if contracts else 0.5 * CHANGED, {}
         series = hasattr(prediction, "segment")
-        for at in EIGHTHS if series else LOOKS:
+        for k, at in enumerate(EIGHTHS if series else LOOKS):
             if (apply := self._derivative(prediction(at * attempt.h))) is None:
                 break
-            found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, max(BEYOND / at, 1.0 / least))]
+            ahead = max(BEYOND / at, 1.0 / least)
+            found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, ahead, turned=k)]
             if not found[LOOKS[0]] and not series:
                 break
         if series:
