@@ -1,5 +1,8 @@
 """Stability along paths: Hopf points in closed form, counts that are stored, kept and drawn, and what a count shows."""
 
+import runpy
+from pathlib import Path as File
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -167,6 +170,15 @@ def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(pre
     for event in found:
         values = np.linalg.eigvals(Evaluator(homotopy, Counts()).derivative(event.y, event.lam)[0])
         assert np.abs(values.real).min() < 1e-10
+
+
+def test_the_benchmark_runs(capsys):
+    file = File(__file__).parents[2] / "examples" / "benchmarks" / "stability" / "brusselator.py"
+    runpy.run_path(str(file))["main"](20, 1)
+    *compared, first, second, third = capsys.readouterr().out.splitlines()
+    assert [line.split(",")[1] for line in compared] == [" 0 Hopf points", " 2 Hopf points", " 2 Hopf points"]
+    for line in (first, second, third):
+        assert float(line.split("off by ")[1].split(",")[0]) < 1e-10
 
 
 # -- the eigenvalues ------------------------------------------------------------------------------------------
