@@ -165,7 +165,7 @@ class Search:
         for start in starts:
             self._begin(start)
         for lam in deflate:
-            known = [solved(self.homotopy, lam, y) for y in Diagram(self.branches).at(lam)]
+            known = self._solutions(lam)
             for y in others(self.homotopy, lam, known, self._guesses(known)):
                 self._begin((y, lam))
         found = Diagram(self.branches, self._points(), not self.missing, "", self.counts)
@@ -186,9 +186,10 @@ class Search:
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
         if self._known(u):
             return
-        ahead, behind = (path for _, path in self._traced([Task(start, 1), Task(start, -1)]))
-        whole = ahead
+        both = (path for _, path in self._traced([Task(start, 1), Task(start, -1)]))
+        whole = ahead = next(both)
         if ahead.status is not Status.CLOSED:
+            behind = next(both)
             self._meet(behind)
             whole = behind.reversed().join(ahead)
         self._meet(ahead)
@@ -201,11 +202,23 @@ class Search:
 
     def _known(self, u: Array) -> bool:
         """Whether a branch has the point: Newton's method leads there from what is interpolated."""
-        near = Diagram(self.branches).at(float(u[-1]))
-        if not len(near):
-            return False
-        y = solved(self.homotopy, float(u[-1]), u[:-1])
-        return any(same_solution(y, solved(self.homotopy, float(u[-1]), other)) for other in near)
+        known = self._solutions(float(u[-1]))
+        (y,) = self._polished(float(u[-1]), [u[:-1]])
+        return any(same_solution(y, other) for other in known)
+
+    def _solutions(self, lam: float) -> list[Array]:
+        """Those of the branches at a value of the parameter."""
+        return self._polished(lam, list(Diagram(self.branches).at(lam)))
+
+    def _polished(self, lam: float, guesses: list[Array]) -> list[Array]:
+        """Solutions from guesses; one from which Newton's method leads nowhere, as beside a fold, stays what it is."""
+        found = []
+        for guess in guesses:
+            try:
+                found.append(solved(self.homotopy, lam, guess))
+            except ArithmeticError:
+                found.append(guess)
+        return found
 
     def _traced(self, tasks: list[Task]) -> Iterator[tuple[Task, Path]]:
         """The paths of tasks, but for those that have become idle when it is their turn."""

@@ -299,6 +299,22 @@ def test_counts_and_frequencies_are_kept_in_archives_and_resuming_goes_on_with_t
         assert [event.observed["frequency"] for event in hopf_points(stored)] == pytest.approx([3.0] * 3, abs=1e-10)
 
 
+def test_a_symmetric_derivative_has_a_count_and_no_more_also_when_resumed(tmp_path):
+    places = np.array([0.3, 0.6, 2.0])
+
+    def jacobian(y, lam):
+        return Symmetric(np.diag(lam - places - 3.0 * y * y)), y.copy()
+
+    homotopy = from_functions(lambda y, lam: (lam - places) * y - y**3, jacobian, start=(np.zeros(3), 0.0), target=1.0)
+    file = tmp_path / "run.h5"
+    short = Budget(steps=2)
+    trace(homotopy, observers=[Stability()], archive=file, max_step=0.1, budget=short)
+    path = resume(file, homotopy, budget=Budget())
+    assert path.status is Status.REACHED_TARGET
+    assert [event.kind for event in path.events] == 2 * [Kind.BRANCH_POINT]
+    assert [step.observed for step in path.steps] == [{"unstable": float((lam > places).sum())} for lam in path.lam]
+
+
 def lines(axes):
     return [
         (line.get_linestyle(), np.asarray(line.get_xdata(), dtype=float))
