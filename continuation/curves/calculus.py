@@ -10,8 +10,14 @@ from attrs import frozen
 
 from continuation.arrays import Array, generic_vector
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import by_differences, difference_along, from_residual, sizes
-from continuation.evaluation.derivatives import by_complex_step, by_jets
+from continuation.evaluation.derivatives import (
+    by_complex_step,
+    by_differences,
+    by_jets,
+    difference_along,
+    from_residual,
+    sizes,
+)
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.functions import DifferentiableHomotopy
 from continuation.events.singularity import SECOND, full_derivative
@@ -20,7 +26,7 @@ MOST = 128
 """Columns up to which second derivatives come from jets, which make all of them; beyond, two Jacobians are cheaper."""
 
 AGREE = 1e-3
-"""Jets are believed where they agree with a difference so well, relative to the largest: what is wrong is wrong by more."""
+"""Jets are believed where they agree with a difference so well, relative to the largest."""
 
 Member = Callable[[Any], Any]
 """From mu to the homotopy."""

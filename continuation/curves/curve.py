@@ -7,71 +7,46 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.bibliography import GOVAERTS
 from continuation.checks import FINITE, complain, real_vector
+from continuation.curves.arguments import as_event, as_point
 from continuation.curves.calculus import Calculus, calculus_at
-from continuation.curves.conditions import AlongTangent, Condition, HopfPoint, Local, Singular, Vanishing
-from continuation.curves.elimination import Eliminated, eliminated
+from continuation.curves.conditions import HopfPoint, Singular
 from continuation.curves.frequency import frequency_at
+from continuation.curves.here import Here
+from continuation.curves.local import Condition
+from continuation.curves.monitors import AlongTangent, Vanishing, without_tangent
+from continuation.curves.points import OtherSwitch, Sign
 from continuation.evaluation.derivatives import sizes
-from continuation.evaluation.evaluator import EvaluationError
-from continuation.events import Event, Monitor, TargetValue
+from continuation.events import Event, Monitor
 from continuation.events.singularity import full_derivative
 from continuation.homotopy import SupportsPieces
 from continuation.labels import Labels
-from continuation.linear import SingularError
+from continuation.linear import BorderedSystem
 from continuation.status import Kind
-from continuation.steps import LocatedEvent
+from continuation.step.start import NEARBY
 
 LAST = 6
 """Points whose factorisations are kept: a corrector asks for the residual and the derivative at one, and events that
 lie on an arc look at its ends again."""
 
 PERSISTS = 1e-6
-"""What mu may do to H at a branch point, along the vector that H' does not reach, beside what it does to H at all: more,
-and branch points do not persist. The root of round-off and of the differences behind it."""
+"""What mu may do to H at a branch point, along the vector that H' does not reach, beside what it does to H at all:
+more, and branch points do not persist. The root of round-off and of the differences behind it."""
 
 NEWTON = 20
 """At most so many increments for the start; they end where they no longer shrink."""
-
-KINDS = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
-"""What an event can be by its kind alone; of others the function is needed."""
-
-
-def _event(value: Any) -> Any:
-    """The event itself, of a located one its kind."""
-    kind = value.kind if isinstance(value, LocatedEvent) else value
-    if kind == Kind.TURNING_POINT and isinstance(value, LocatedEvent) and value.name != "turning point":
-        raise ValueError(f"event: a {value.name} is no fold; give TurningPoint(component), and the point as `at`")
-    if not isinstance(value, LocatedEvent) and not isinstance(value, Kind) and hasattr(value, "monitor"):
-        return value
-    if kind not in KINDS:
-        expected = "a turning point, branch point, Hopf point or kink, located or as a Kind, or an event with a monitor"
-        raise complain(TypeError, "event", expected, value)
-    return Kind(kind)
-
-
-def _point(at: Any) -> tuple[Array, float]:
-    if hasattr(at, "u"):
-        at = (at.u[:-1], float(at.u[-1]))
-    if not isinstance(at, tuple | list) or len(at) != 2 or np.ndim(at[1]):
-        raise complain(TypeError, "at", "a located event, a step, or a pair (y, lam)", at)
-    y, lam = np.atleast_1d(real_vector("at", at[0])), float(real_vector("at", at[1]))
-    if y.ndim != 1 or not (np.isfinite(y).all() and np.isfinite(lam)):
-        raise complain(ValueError, "at", "finite numbers", at)
-    return y, lam
 
 
 @frozen(eq=False, slots=False, init=False)
 class Curve:
     """The curve of an event in a second parameter: H(y, lam; mu) = 0 and g(y, lam; mu) = 0, a homotopy in mu.
 
-    Its unknowns are (y, lam), and beside them the frequency of Hopf points, and an imperfection at branch points, which
-    stays zero. It is traced, stored, plotted and watched like any other; mu is what a trace calls the parameter.
+    Its unknowns are (y, lam), and beside them the frequency of Hopf points. It is traced, stored, plotted and watched
+    like any other; mu is what a trace calls the parameter.
 
     ===========================  =======================================================================
     event                        what holds along the curve
@@ -122,12 +97,13 @@ class Curve:
     """
 
     family: Any
-    event: Any
+    event: Any = field(converter=as_event)
     at: tuple[Array, float] = field(repr=False)
     mu: float = field(validator=FINITE)
     frequency: float | None
     size: Array = field(repr=False)
     target: None = field(default=None, init=False, repr=False)
+    _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
 
     def __init__(
         self,
@@ -143,16 +119,17 @@ class Curve:
         at = event if at is None else at
         if mu is None and (mu := getattr(family, "value", None)) is None:
             raise complain(ValueError, "mu", "a number, since the family has no value of its own", mu)
-        y, lam = _point(at)
+        y, lam = as_point(at)
         if size is None:
             weights = getattr(at, "weights", None)
             size = sizes(np.append(y, lam)) if weights is None else 1.0 / np.sqrt(weights)
         size = real_vector("size", size)
         if size.shape != (y.size + 1,) or not (size > 0.0).all():
             raise complain(ValueError, "size", f"{y.size + 1} positive numbers", size)
-        self.__attrs_init__(family, _event(event), (y, lam), mu, frequency, size)  # type: ignore[attr-defined]
-        object.__setattr__(self, "_recent", {})
-        member = family(self.mu)
+        self.__attrs_init__(family, event, (y, lam), mu, frequency, size)
+
+    def __attrs_post_init__(self) -> None:
+        member = self.family(self.mu)
         if hasattr(member, "observe"):
             object.__setattr__(self, "observe", self._observed)
         if hasattr(member, "max_step"):
@@ -162,22 +139,29 @@ class Curve:
         return Curve, (self.family, self.event, self.at, self.mu, self.frequency, self.size)
 
     def start(self) -> tuple[Array, float]:
-        """The point (y, lam), with the frequency or the imperfection 0, and mu.
+        """The point (y, lam), with the frequency, and mu, brought onto the curve.
 
         Raises
         ------
         ValueError
             If branch points of the family do not persist when mu moves.
         """
-        return self._corrected.copy(), self.mu
+        y = self._corrected.copy()
+        if self.event == Kind.BRANCH_POINT:
+            here = self._at(y, self.mu)
+            found = abs(float(here.local.base.solve(here.by_parameter, 0.0)[-1])) * np.abs(here.local.column).max()
+            if found > PERSISTS * np.abs(here.by_parameter).max():
+                raise ValueError("family: expected branch points for every mu, as in symmetric problems; these part")
+        return y, self.mu
 
     @cached_property
     def _corrected(self) -> Array:
-        """The point brought onto the curve at its mu, if Newton's method does that; a path that is straight to
-        infinity, as some curves are, gives a trace no length to measure by how far off its start is."""
-        y = np.append(np.append(*self.at), self._beside)
+        """The point brought onto the curve at its mu, if Newton's method does that."""
+        y = np.append(*self.at)
+        if self.event == Kind.HOPF:
+            y = np.append(y, self._frequency)
         unit = np.append(np.zeros(y.size), 1.0)
-        best, least = y, np.inf
+        best, least = y, NEARBY
         for _ in range(NEWTON):
             try:
                 with np.errstate(all="ignore"):
@@ -189,23 +173,6 @@ class Curve:
                 break
             y, best, least = y - z, y, size
         return best
-
-    @cached_property
-    def _beside(self) -> Array:
-        if self.event == Kind.HOPF:
-            return np.array([self._frequency])
-        if self.event != Kind.BRANCH_POINT:
-            return np.empty(0)
-        condition, calculus = self._condition, self._calculus
-        local = condition.at(calculus.u0[:-1], 0.0, self.mu)
-        H_mu = calculus.by_parameter(calculus.u0[:-1], self.mu)
-        found = abs(float(local.base.solve(H_mu, 0.0)[-1])) * float(np.abs(local.column).max())
-        if found > PERSISTS * float(np.abs(H_mu).max()):
-            raise ValueError(
-                "family: expected branch points for every mu, as in symmetric problems; here they part when mu moves "
-                "(the turning points beside it are curves)"
-            )
-        return np.zeros(1)
 
     @cached_property
     def _frequency(self) -> float:
@@ -254,22 +221,13 @@ class Curve:
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:
         """The function that vanishes, of (y, lam, mu) as one vector or jet; None where it looks at the tangent too."""
-        event, k = self.event, self._switch
+        k = self._switch
         if k is not None:
             return lambda U: self.family(U[-1]).switches(U[:-2], U[-2])[k]
-        if isinstance(event, Kind):
-            return None
-        if isinstance(event, TargetValue):
-            place = event.component if event.component >= 0 else event.component + self.size.size
-            return lambda U: U[place] - event.value
-        unknown = np.full(self.size.size, np.nan)
-        if not np.isfinite(event.monitor(np.append(*self.at), unknown)):
-            return None
-        function = event.function if isinstance(event, Monitor) else event.monitor
-        return lambda U: function(U[:-1], unknown)
+        return None if isinstance(self.event, Kind) else without_tangent(self.event, np.append(*self.at))
 
     def residual(self, y: Array, lam: float) -> Array:
-        """H, with the imperfection if there is one, and what is to vanish; shape (N + 1,) or (N + 2,).
+        """H and what is to vanish; shape (N + 1,), or (N + 2,) for Hopf points.
 
         Parameters
         ----------
@@ -282,9 +240,7 @@ class Curve:
             # Jets and intervals.
             U = np.concatenate([y, np.stack([lam])])
             return np.concatenate([self._calculus.residual(U), np.stack([self._plain(U)])])
-        local, u = self._at(y, lam), y[: self.size.size]
-        H = np.array(self._member(lam).residual(u[:-1].copy(), float(u[-1])), dtype=float)
-        return np.concatenate([H + local.column @ y[u.size :], local.values])
+        return self._at(y, lam).residual()
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """The derivative by the unknowns, dense or sparse as the family's, and by mu.
@@ -294,13 +250,7 @@ class Curve:
         y : ndarray
         lam : float
         """
-        local, u = self._at(y, lam), y[: self.size.size]
-        full = full_derivative(self._calculus.evaluator(lam), u)
-        last = np.append(self._calculus.by_parameter(u, lam), local.rows[:, -1])
-        if sp.issparse(full):
-            top = sp.hstack([full, sp.csc_array(local.column)])
-            return sp.vstack([top, sp.csc_array(local.rows[:, :-1])], format="csc"), last
-        return np.vstack([np.hstack([full, local.column]), local.rows[:, :-1]]), last
+        return self._at(y, lam).matrices()
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """The derivative applied to a direction.
@@ -312,14 +262,9 @@ class Curve:
         v : ndarray
             One longer than y.
         """
-        local, u = self._at(y, lam), y[: self.size.size]
-        apply = self._calculus.evaluator(lam).differential(u)
-        if apply is None:
-            raise EvaluationError("the family has a factorisation of its own and no `differential`")
-        H = apply(v[: u.size]) + local.column @ v[u.size : -1] + v[-1] * self._calculus.by_parameter(u, lam)
-        return np.concatenate([H, local.rows @ v])
+        return self._at(y, lam).times(v)
 
-    def bordered(self, y: Array, lam: float, border: Array) -> Eliminated:
+    def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """The derivative with a border, factored by elimination.
 
         Parameters
@@ -329,29 +274,19 @@ class Curve:
         border : ndarray
             One longer than y.
         """
-        local, u = self._at(y, lam), y[: self.size.size]
-        calculus = self._calculus
-        apply = calculus.evaluator(lam).differential(u)
-        if apply is None:
-            raise EvaluationError("the family has a factorisation of its own and no `differential`")
-        H_lam = apply(np.arange(u.size) == u.size - 1.0)
-        columns = np.column_stack([H_lam, local.column, calculus.by_parameter(u, lam)])
-        try:
-            return eliminated(local.base, columns, np.vstack([local.rows, border]))
-        except np.linalg.LinAlgError as error:
-            raise SingularError(str(error)) from error
+        return self._at(y, lam).bordered(border)
 
-    def _at(self, y: Array, lam: float) -> Local:
-        """The condition at a point, kept for a while."""
-        recent: dict[bytes, Local] = self.__dict__["_recent"]
+    def _at(self, y: Array, lam: float) -> Here:
+        """What is known at a point, kept for a while."""
         key = np.append(y, lam).tobytes()
-        if key not in recent:
-            beside = float(y[-1]) if self._condition.beside else 0.0
+        if key not in self._recent:
+            u, beside = np.split(np.array(y, dtype=float), [self.size.size])
             with np.errstate(all="ignore"):
-                recent[key] = self._condition.at(y[: self.size.size].copy(), beside, float(lam))
-            if len(recent) > LAST:
-                del recent[next(iter(recent))]
-        return recent[key]
+                local = self._condition.at(u, float(beside[0]) if beside.size else 0.0, float(lam))
+            self._recent[key] = Here(self._calculus, u, beside, float(lam), local)
+            if len(self._recent) > LAST:
+                del self._recent[next(iter(self._recent))]
+        return self._recent[key]
 
     @cached_property
     def events(self) -> tuple[Event, ...]:
@@ -398,39 +333,3 @@ class Curve:
         """How far the member's path may go: mu stands still for it."""
         n = self.size.size
         return float(self._member(u[-1]).max_step(u[:n], v[:n]))
-
-
-@frozen(eq=False)
-class Sign:
-    """Where a number changes its sign that a condition gives along with its values."""
-
-    curve: Curve = field(repr=False)
-    name: str
-    terminal: int = field(default=0, init=False)
-    direction: int = field(default=0, init=False)
-    kind: Kind = field(default=Kind.EVENT, init=False)
-
-    def monitor(self, u: Array, v: Array) -> float:
-        """The number."""
-        return self.curve._at(u[:-1], float(u[-1])).sign(self.name)
-
-
-@frozen(eq=False)
-class OtherSwitch:
-    """Where another switch of a piecewise smooth map vanishes: there the curve leaves the piece that it was begun on."""
-
-    curve: Curve = field(repr=False)
-    index: int
-    terminal: int = field(default=1, init=False)
-    direction: int = field(default=0, init=False)
-    kind: Kind = field(default=Kind.EVENT, init=False)
-
-    @property
-    def name(self) -> str:
-        """Which of them."""
-        return f"switch {self.index} vanishes"
-
-    def monitor(self, u: Array, v: Array) -> float:
-        """The switch."""
-        n = self.curve.size.size - 1
-        return float(self.curve.family(float(u[-1])).switches(u[:n], float(u[n]))[self.index])

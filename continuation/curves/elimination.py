@@ -6,7 +6,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.curves.conditions import Base
+from continuation.curves.local import Base
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 
 
@@ -37,7 +37,8 @@ class Eliminated:
     @property
     def sign(self) -> int:
         """Sign of the determinant."""
-        return self.base.sign * self.small.sign
+        sign: int = self.base.sign * self.small.sign
+        return sign
 
     def solve(self, r: Array, rho: float) -> Array:
         """The solution z, shape (N + m,).
@@ -53,6 +54,28 @@ class Eliminated:
         q = self.small.solve(np.append(-x[n], left[:-1]), float(left[-1]))
         y = x[:n] + self.solved[:n] @ q
         return np.concatenate([y, q[1:]])
+
+
+@frozen(eq=False)
+class Hiding:
+    """The same where the unknown beside follows from the others, and is not asked for."""
+
+    whole: Eliminated
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return self.whole.sign
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The solution without that unknown.
+
+        Parameters
+        ----------
+        r : ndarray, shape (N + 1,)
+        rho : float
+        """
+        return np.delete(self.whole.solve(np.append(r, 0.0), rho), -2)
 
 
 def eliminated(base: Base, columns: Array, rows: Array) -> Eliminated:

@@ -17,8 +17,8 @@ class Family:
 
     A family is anything that maps a number mu to a homotopy: a class with one argument, a function. What most people
     have is a homotopy written as a class with its constants for attributes, and then nothing at all is to be written:
-    ``Family(homotopy, "eps")``. This form has a name for the axis, a value to begin with, and can be pickled and kept in
-    an archive, which a lambda cannot.
+    ``Family(homotopy, "eps")``. This form has a name for the axis, a value to begin with, and can be pickled and
+    kept in an archive, which a lambda cannot.
 
     An attrs class is made anew (`attrs.evolve`), so what it derives from the attribute follows; of any other object a
     shallow copy gets the new value. If the residual is written in plain numpy, and the class takes what it is given as

@@ -1,0 +1,40 @@
+"""What a curve is asked for: an event, and a point where it begins."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.checks import complain, real_vector
+from continuation.status import Kind
+from continuation.steps import LocatedEvent
+
+KINDS = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
+"""What an event can be by its kind alone; of others the function is needed."""
+
+
+def as_event(value: Any) -> Any:
+    """The event itself; of a located one its kind, and of a number the kind it stands for."""
+    kind = value.kind if isinstance(value, LocatedEvent) else value
+    if kind == Kind.TURNING_POINT and isinstance(value, LocatedEvent) and value.name != "turning point":
+        raise ValueError(f"event: a {value.name} is no fold; give TurningPoint(component), and the point as `at`")
+    if not isinstance(value, LocatedEvent) and not isinstance(value, Kind) and hasattr(value, "monitor"):
+        return value
+    if kind not in KINDS:
+        expected = "a turning point, branch point, Hopf point or kink, located or as a Kind, or an event with a monitor"
+        raise complain(TypeError, "event", expected, value)
+    return Kind(kind)
+
+
+def as_point(at: Any) -> tuple[Array, float]:
+    """The pair (y, lam), of numbers."""
+    if hasattr(at, "u"):
+        at = (at.u[:-1], float(at.u[-1]))
+    if not isinstance(at, tuple | list) or len(at) != 2 or np.ndim(at[1]):
+        raise complain(TypeError, "at", "a located event, a step, or a pair (y, lam)", at)
+    y, lam = np.atleast_1d(real_vector("at", at[0])), float(real_vector("at", at[1]))
+    if y.ndim != 1 or not (np.isfinite(y).all() and np.isfinite(lam)):
+        raise complain(ValueError, "at", "finite numbers", at)
+    return y, lam
