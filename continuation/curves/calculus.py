@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array, generic_vector
 from continuation.counts import Counts
@@ -47,8 +47,8 @@ class Calculus:
         (y, lam, mu), where that was decided.
     extent : ndarray, shape (N + 1,)
         How far y and lam go, about: what steps of differences are measured by.
-    reach : float
-        The step of differences in mu, relative to its size.
+    reach, bend : float
+        Steps of differences in mu, of H and of H' v, relative to its size.
     """
 
     family: Member
@@ -57,6 +57,7 @@ class Calculus:
     u0: Array
     extent: Array
     reach: float
+    bend: float
 
     def member(self, mu: float) -> Any:
         """The homotopy at mu, with a derivative."""
@@ -85,7 +86,7 @@ class Calculus:
             U = np.append(u, mu)
             slope: Array = jets.taylor(self.residual, U, 1, np.arange(U.size) == u.size)[1]
             return slope
-        h = self._step(mu)
+        h = self.reach * self._size(mu)
         ahead, behind = (np.array(self.family(m).residual(u[:-1], float(u[-1]))) for m in (mu + h, mu - h))
         return np.asarray((ahead - behind) / (2.0 * h), dtype=float)
 
@@ -113,14 +114,14 @@ class Calculus:
     def _by_two_jacobians(self, u: Array, mu: float, v: Array, left: Array) -> Array:
         """By central differences of H' along v, and of H' v along mu."""
         extent = np.maximum(self.extent, np.abs(u - self.u0[:-1]))
-        eps, h = SECOND / float(np.abs(v / extent).max()), self._step(mu)
+        eps, h = SECOND / float(np.abs(v / extent).max()), self.bend * self._size(mu)
         evaluator = self.evaluator(mu)
         ahead, behind = (full_derivative(evaluator, u + e * v).T @ left for e in (eps, -eps))
         later, before = (full_derivative(self.evaluator(m), u) @ v for m in (mu + h, mu - h))
         return np.append((ahead - behind) / (2.0 * eps), left @ (later - before) / (2.0 * h))
 
-    def _step(self, mu: float) -> float:
-        return self.reach * max(abs(mu), float(sizes(self.u0[-1:])[0]))
+    def _size(self, mu: float) -> float:
+        return max(abs(mu), float(sizes(self.u0[-1:])[0]))
 
 
 def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
@@ -138,17 +139,22 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     source = "" if own else from_residual(homotopy.residual, (u[:-1], float(u[-1]))).source
     U = np.append(u, mu)
 
+    v, left = extent * generic_vector(u.size), np.ones(u.size - 1)
+
     def at(y: Array, m: float) -> Any:
         return family(m).residual(y[:-1], float(y[-1]))
+
+    def bent(y: Array, m: float) -> Any:
+        return full_derivative(first.evaluator(m), y) @ v
 
     along = np.zeros_like(U)
     along[-1] = sizes(U[-1:])[0]
     slope, reach = difference_along(at, U, along)
-    plain = Calculus(family, source, False, U, extent, reach)
-    with_jets = Calculus(family, source, True, U, extent, reach)
+    first = Calculus(family, source, False, U, extent, reach, reach)
+    plain = evolve(first, bend=difference_along(bent, U, along)[1])
+    with_jets = evolve(plain, jets=True)
     if U.size > MOST:
         return plain
-    v, left = extent * generic_vector(u.size), np.ones(u.size - 1)
     try:
         with np.errstate(all="ignore"):
             agree = _alike(with_jets.by_parameter(u, mu), slope / along[-1])

@@ -19,7 +19,7 @@ class Singular:
 
     Folds: s = 0 in [[H_y, b], [c', 0]] (v, s) = (0, 1) (Griewank and Reddien, SIAM J. Numer. Anal. 21, 1984).
 
-    Branch points: w'H_lam = 0 besides, one equation too many, since H = 0 loses a rank there. It is added to H, along b:
+    Branch points: w'H_lam = 0 besides, one equation too many, since H = 0 loses a rank. It is added to H, along b:
     H + (w'H_lam) b = 0 and s = 0 are regular at every simple branch point whose branches cross at an angle,
     pitchforks among them, and no symmetry has to be named. Where the family keeps its branch points, as symmetric ones
     do, w'H_lam is zero all along. (Moore, SIAM J. Numer. Anal. 17, 1980, has an unknown of its own for that number.)

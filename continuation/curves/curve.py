@@ -27,7 +27,6 @@ from continuation.homotopy import SupportsPieces
 from continuation.labels import Labels
 from continuation.linear import BorderedSystem
 from continuation.status import Kind
-from continuation.step.start import NEARBY
 
 LAST = 6
 """Points whose factorisations are kept: a corrector asks for the residual and the derivative at one, and events that
@@ -39,6 +38,9 @@ more, and branch points do not persist. The root of round-off and of the differe
 
 NEWTON = 20
 """At most so many increments for the start; they end where they no longer shrink."""
+
+FAR = 10.0
+"""A first increment longer than this, beside the size of the point, is that of a singular system."""
 
 
 @frozen(eq=False, slots=False, init=False)
@@ -161,7 +163,7 @@ class Curve:
         if self.event == Kind.HOPF:
             y = np.append(y, self._frequency)
         unit = np.append(np.zeros(y.size), 1.0)
-        best, least = y, NEARBY
+        best, least = y, FAR
         for _ in range(NEWTON):
             try:
                 with np.errstate(all="ignore"):

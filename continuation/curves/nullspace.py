@@ -24,48 +24,81 @@ REFRESHED = 4
 """At most so often: each time the angle falls to that of round-off, or the matrix loses two ranks."""
 
 
+LAST = 1e-4
+"""The largest entry of a sparse matrix' last row, a border, beside the others': not eliminated early, it does not fill
+the factors (2000 unknowns in a band: 12 thousand entries, 20 with the border, 1.7 million with it unscaled)."""
+
+
 @frozen(eq=False)
 class Factors:
-    """LU of a square matrix, dense or sparse, real or complex."""
+    """LU of a square matrix, dense or sparse, real or complex.
 
+    Attributes
+    ----------
+    matrix : ndarray or sparse array
+        With its last row scaled, if it is sparse.
+    lu : object
+        Its factors.
+    last : float
+        What the last row was multiplied by.
+    """
+
+    matrix: Matrix
     lu: Any
-    sparse: bool
+    last: float = 1.0
 
     def solve(self, rhs: Array, adjoint: bool = False) -> Array:
         """The solution of A x = rhs, or of A* x = rhs."""
-        if self.sparse:
-            x: Array = self.lu.solve(rhs, "H" if adjoint else "N")
+        if sp.issparse(self.matrix):
+            x = self._sparse(rhs, adjoint)
         else:
             x = lu_solve(self.lu, rhs, trans=2 if adjoint else 0, check_finite=False)
         if not np.isfinite(x).all():
             raise SingularError("the bordered solution is not finite")
         return x
 
+    def _sparse(self, rhs: Array, adjoint: bool) -> Array:
+        """With one correction, since a small last row is a weak pivot."""
+        rhs = rhs.astype(self.matrix.dtype)
+        if not adjoint:
+            rhs[-1] *= self.last
+        how, matrix = ("H", self.matrix.conj().T) if adjoint else ("N", self.matrix)
+        x: Array = self.lu.solve(rhs, how)
+        x = x + self.lu.solve(rhs - matrix @ x, how)
+        if adjoint:
+            x[-1] *= self.last
+        return x
+
     @property
     def sign(self) -> int:
         """Sign of the determinant of a real matrix."""
-        if self.sparse:
+        if sp.issparse(self.matrix):
             return SuperLU(self.lu).sign
         lu, pivots = self.lu
         return lu_sign(pivots, lu.diagonal())
 
 
 def factor(matrix: Matrix) -> Factors:
-    """Factor it; SingularError where that is impossible.
+    """Factor a matrix whose last row is a border; SingularError where that is impossible.
 
     Parameters
     ----------
     matrix : ndarray or sparse array, shape (n, n)
     """
     if sp.issparse(matrix):
+        rows = sp.csr_array(matrix)
+        end = rows.indptr[-2]
+        last = LAST * float(np.abs(rows.data[:end]).max()) / float(np.abs(rows.data[end:]).max())
+        rows.data[end:] *= last
+        columns = sp.csc_array(rows)
         try:
-            return Factors(splu(sp.csc_array(matrix)), True)
+            return Factors(columns, splu(columns), last)
         except RuntimeError as error:
             raise SingularError(str(error)) from error
     with warnings.catch_warnings():
         warnings.simplefilter("error", LinAlgWarning)
         try:
-            return Factors(lu_factor(matrix, check_finite=False), False)
+            return Factors(matrix, lu_factor(matrix, check_finite=False))
         except (LinAlgWarning, ValueError) as error:
             raise SingularError(str(error)) from error
 
