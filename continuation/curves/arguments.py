@@ -16,11 +16,12 @@ KINDS = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 
 
 def as_event(value: Any) -> Any:
-    """The event itself; of a located one its kind, and of a number the kind it stands for."""
-    kind = value.kind if isinstance(value, LocatedEvent) else value
-    if kind == Kind.TURNING_POINT and isinstance(value, LocatedEvent) and value.name != "turning point":
-        raise ValueError(f"event: a {value.name} is no fold; give TurningPoint(component), and the point as `at`")
-    if not isinstance(value, LocatedEvent) and not isinstance(value, Kind) and hasattr(value, "monitor"):
+    """The kind of an event where that says what holds, else the event itself."""
+    kind = getattr(value, "kind", value)
+    if isinstance(value, LocatedEvent):
+        if kind == Kind.TURNING_POINT and value.name != "turning point":
+            raise ValueError(f"event: a {value.name} is no fold; give TurningPoint(component), and the point as `at`")
+    elif hasattr(value, "monitor") and (kind not in KINDS or getattr(value, "component", -1) != -1):
         return value
     if kind not in KINDS:
         expected = "a turning point, branch point, Hopf point or kink, located or as a Kind, or an event with a monitor"

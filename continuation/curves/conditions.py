@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
+from typing import Any
+
 import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
@@ -114,5 +117,10 @@ class HopfPoint:
             row = np.insert(-(real + 1j * imaginary), u.size, 1j * (w @ v))
             return np.array([row.real, row.imag])
 
-        values = np.array([near.s.real, near.s.imag])
-        return Local(values, gradients, lambda: self.tangential.factored(u, mu)[0], np.zeros((w.size, 1)))
+        values, signs = np.array([near.s.real, near.s.imag]), {"zero-Hopf": lambda _: float(kernel()[1][-1])}
+
+        @cache
+        def kernel() -> tuple[Any, Array]:
+            return self.tangential.factored(u, mu)
+
+        return Local(values, gradients, lambda: kernel()[0], np.zeros((w.size, 1)), signs=signs)

@@ -29,8 +29,8 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 LAST = 6
-"""Points whose factorisations are kept: a corrector asks for the residual and the derivative at one, and events that
-lie on an arc look at its ends again."""
+"""Points, and members, that are kept: a corrector asks for the residual and the derivative at one, and events that lie
+on an arc look at its ends again."""
 
 PERSISTS = 1e-6
 """What mu may do to H at a branch point, along the vector that H' does not reach, beside what it does to H at all:
@@ -62,9 +62,9 @@ class Curve:
     ``Monitor(function)``        the function of point and tangent vanishes
     ===========================  =======================================================================
 
-    Along fold curves cusps and Bogdanov-Takens points are located; a Hopf curve ends where its frequency is zero, which
-    is a Bogdanov-Takens point. A cusp is a turning point of both parameters; where mu alone turns on a fold curve, two
-    branches cross in the family's member there, or a closed curve of it shrinks to a point.
+    Along fold curves cusps and Bogdanov-Takens points are located. A cusp is a turning point of both parameters; where
+    mu alone turns, two branches of the family's member cross there, or a closed curve of it shrinks to a point. A Hopf
+    curve ends where its frequency is zero, a Bogdanov-Takens point; where H_y is singular on it is a "zero-Hopf" point.
 
     Nothing is densified: the system is solved by elimination with the family's own factorisation, or, where H_y is
     singular, one of H_y with a border of its own; second derivatives come from jets (up to 128 unknowns), or from two
@@ -106,6 +106,7 @@ class Curve:
     size: Array = field(repr=False)
     target: None = field(default=None, init=False, repr=False)
     _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
+    _members: dict[float, Any] = field(factory=dict, init=False, repr=False)
 
     def __init__(
         self,
@@ -202,8 +203,13 @@ class Curve:
         return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at))))
 
     def _member(self, mu: Any) -> Any:
+        if isinstance(mu, float) and mu in self._members:
+            return self._members[mu]
         member = self.family(mu)
-        return member if self._signs is None else member.piece(self._signs)
+        member = member if self._signs is None else member.piece(self._signs)
+        if isinstance(mu, float):
+            _keep(self._members, mu, member)
+        return member
 
     @cached_property
     def _calculus(self) -> Calculus:
@@ -285,9 +291,7 @@ class Curve:
             u, beside = np.split(np.array(y, dtype=float), [self.size.size])
             with np.errstate(all="ignore"):
                 local = self._condition.at(u, float(beside[0]) if beside.size else 0.0, float(lam))
-            self._recent[key] = Here(self._calculus, u, beside, float(lam), local)
-            if len(self._recent) > LAST:
-                del self._recent[next(iter(self._recent))]
+            _keep(self._recent, key, Here(self._calculus, u, beside, float(lam), local))
         return self._recent[key]
 
     @cached_property
@@ -297,7 +301,7 @@ class Curve:
         if self.event == Kind.TURNING_POINT:
             found = [Sign(self, name) for name in ("cusp", "Bogdanov-Takens")]
         if self.event == Kind.HOPF:
-            found = [Monitor(lambda u, v: u[-2], "Bogdanov-Takens", terminal=1)]
+            found = [Monitor(lambda u, v: u[-2], "Bogdanov-Takens", terminal=1), Sign(self, "zero-Hopf")]
         if self._signs is not None:
             found += [OtherSwitch(self, i) for i in range(self._signs.size) if i != self._switch]
         return tuple(found)
@@ -335,3 +339,10 @@ class Curve:
         """How far the member's path may go: mu stands still for it."""
         n = self.size.size
         return float(self._member(u[-1]).max_step(u[:n], v[:n]))
+
+
+def _keep(recent: dict[Any, Any], key: Any, value: Any) -> None:
+    """Put it beside the last few."""
+    recent[key] = value
+    if len(recent) > LAST:
+        del recent[next(iter(recent))]

@@ -85,7 +85,7 @@ def test_structures_give_one_curve(kind):
     found = []
     for member in (GelfandBanded(kind=kind), GelfandBanded(kind="dense")):
         curve = Curve(Family(member, "eps"), first_fold(member))
-        found.append(continuation.trace(curve, box={"lam": (0.15, None)}))
+        found.append(continuation.trace(curve, box={"y": (None, 7.0)}))
     ours, dense = found
     assert len(ours) == len(dense)
     np.testing.assert_allclose(ours.u, dense.u, rtol=1e-5, atol=1e-9)

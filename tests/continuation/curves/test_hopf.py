@@ -6,7 +6,7 @@ import pytest
 import continuation
 from continuation import Curve, Family, Kind, LocatedEvent, Status
 
-from .util import Brusselator, CuspForm, Diffusing, Lorenz, TakensBogdanov, VanDerPol, named
+from .util import Brusselator, CuspForm, Diffusing, Lorenz, TakensBogdanov, VanDerPol, ZeroHopf, named
 
 
 def test_lorenz():
@@ -51,6 +51,15 @@ def test_it_ends_where_its_frequency_is_zero():
     assert np.abs(frequency**2 - 2.0 * mu).max() <= 1e-10
     (end,) = named(path, "Bogdanov-Takens")
     assert np.abs(end.u).max() <= 1e-10
+
+
+def test_it_passes_where_the_equilibrium_turns():
+    curve = Curve(Family(ZeroHopf(), "mu"), Kind.HOPF, (np.array([-1.0, 0.0, 0.0]), 1.0))
+    path = continuation.trace(curve, direction=-1, box={"lam": (-1.5, None)}, tolerance=1e-12)
+    assert np.abs(path.y[:, 3] - path.lam**2).max() <= 1e-10
+    assert np.abs(path.y[:, 4] - 2.0).max() <= 1e-10
+    (point,) = named(path, "zero-Hopf")
+    assert np.abs(point.u - [0.0, 0.0, 0.0, 0.0, 2.0, 0.0]).max() <= 1e-10
 
 
 @pytest.mark.parametrize(("n", "accuracy"), [(10, 1e-10), (300, 1e-9)])

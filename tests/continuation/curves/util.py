@@ -100,6 +100,21 @@ class TakensBogdanov:
 
 
 @frozen
+class ZeroHopf:
+    """Folds at lam = 0, Hopf points where lam = mu^2 with frequency 2: they meet at mu = 0."""
+
+    mu: float = 1.0
+    target = None
+
+    def start(self):
+        return np.array([2.0, 0.0, 0.0]), 4.0
+
+    def residual(self, y, lam):
+        growth = self.mu + y[0]
+        return np.stack([lam - y[0] ** 2, growth * y[1] - 2.0 * y[2], 2.0 * y[1] + growth * y[2]])
+
+
+@frozen
 class Coupled:
     """Two pitchforks, coupled: from the branch y_1 = -y_2 another one leaves at lam = 3 mu, where y_1^2 = mu."""
 
