@@ -8,6 +8,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.checks import complain, real_vector
+from continuation.evaluation.derivatives import sizes
 from continuation.status import Kind
 from continuation.steps import LocatedEvent
 
@@ -39,3 +40,14 @@ def as_point(at: Any) -> tuple[Array, float]:
     if y.ndim != 1 or not (np.isfinite(y).all() and np.isfinite(lam)):
         raise complain(ValueError, "at", "finite numbers", at)
     return y, lam
+
+
+def as_size(size: Any, at: Any, u: Array) -> Array:
+    """How far each component goes: what was given, else the metric of the located event, else the point's size."""
+    if size is None:
+        weights = getattr(at, "weights", None)
+        return sizes(u) if weights is None else np.asarray(1.0 / np.sqrt(weights))
+    found = real_vector("size", size)
+    if found.shape != u.shape or not (found > 0.0).all():
+        raise complain(ValueError, "size", f"{u.size} positive numbers", size)
+    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -11,16 +11,14 @@ from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.bibliography import GOVAERTS
-from continuation.checks import FINITE, complain, real_vector
-from continuation.curves.arguments import as_event, as_point
+from continuation.checks import FINITE, complain
+from continuation.curves.arguments import as_event, as_point, as_size
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import HopfPoint, Singular
 from continuation.curves.frequency import frequency_at
 from continuation.curves.here import Here
 from continuation.curves.local import Condition
 from continuation.curves.monitors import AlongTangent, Vanishing, without_tangent
-from continuation.curves.points import OtherSwitch, Sign
-from continuation.evaluation.derivatives import sizes
 from continuation.events import Event, Monitor
 from continuation.events.singularity import full_derivative
 from continuation.homotopy import SupportsPieces
@@ -123,13 +121,7 @@ class Curve:
         if mu is None and (mu := getattr(family, "value", None)) is None:
             raise complain(ValueError, "mu", "a number, since the family has no value of its own", mu)
         y, lam = as_point(at)
-        if size is None:
-            weights = getattr(at, "weights", None)
-            size = sizes(np.append(y, lam)) if weights is None else 1.0 / np.sqrt(weights)
-        size = real_vector("size", size)
-        if size.shape != (y.size + 1,) or not (size > 0.0).all():
-            raise complain(ValueError, "size", f"{y.size + 1} positive numbers", size)
-        self.__attrs_init__(family, event, (y, lam), mu, frequency, size)
+        self.__attrs_init__(family, event, (y, lam), mu, frequency, as_size(size, at, np.append(y, lam)))
 
     def __attrs_post_init__(self) -> None:
         member = self.family(self.mu)
@@ -298,13 +290,22 @@ class Curve:
     def events(self) -> tuple[Event, ...]:
         """Degenerate points: cusps and Bogdanov-Takens points; where another switch of a piecewise map vanishes."""
         found: list[Event] = []
-        if self.event == Kind.TURNING_POINT:
-            found = [Sign(self, name) for name in ("cusp", "Bogdanov-Takens")]
         if self.event == Kind.HOPF:
-            found = [Monitor(lambda u, v: u[-2], "Bogdanov-Takens", terminal=1), Sign(self, "zero-Hopf")]
-        if self._signs is not None:
-            found += [OtherSwitch(self, i) for i in range(self._signs.size) if i != self._switch]
+            found = [Monitor(_frequency, "Bogdanov-Takens", 1), Monitor(partial(self._sign, "zero-Hopf"), "zero-Hopf")]
+        if self.event == Kind.TURNING_POINT:
+            found = [Monitor(partial(self._sign, name), name) for name in ("cusp", "Bogdanov-Takens")]
+        others = range(0 if self._signs is None else self._signs.size)
+        found += [Monitor(partial(self._other, i), f"switch {i} vanishes", 1) for i in others if i != self._switch]
         return tuple(found)
+
+    def _sign(self, name: str, u: Array, v: Array) -> float:
+        """A number of the condition's."""
+        return self._at(u[:-1], float(u[-1])).local.sign(name)
+
+    def _other(self, i: int, u: Array, v: Array) -> float:
+        """A switch of the family's member."""
+        n = self.size.size - 1
+        return float(self.family(float(u[-1])).switches(u[:n], float(u[n]))[i])
 
     @property
     def parameter_name(self) -> str:
@@ -346,3 +347,8 @@ def _keep(recent: dict[Any, Any], key: Any, value: Any) -> None:
     recent[key] = value
     if len(recent) > LAST:
         del recent[next(iter(recent))]
+
+
+def _frequency(u: Array, v: Array) -> float:
+    """That of a Hopf point on its curve."""
+    return float(u[-2])

@@ -141,12 +141,10 @@ def test_a_border_nearly_orthogonal_is_replaced():
 
 
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
-    member = GelfandBanded(n=12)
-    curve = Curve(Family(member, "eps"), first_fold(member))
-    box = {"lam": (0.0, 0.4)}
-    continuation.trace(curve, archive=tmp_path / "a.h5", budget=Budget(steps=4), box=box)
-    whole = continuation.trace(curve, budget=Budget(steps=7), box=box)
-    again = resume(tmp_path / "a.h5", trust=[GelfandBanded], budget=Budget(steps=7))
+    curve, box = folds(), {"lam": (-1.0, 0.4)}
+    continuation.trace(curve, archive=tmp_path / "a.h5", budget=Budget(steps=3), box=box, direction=-1)
+    whole = continuation.trace(curve, budget=Budget(steps=8), box=box, direction=-1)
+    again = resume(tmp_path / "a.h5", trust=[Imperfect], budget=Budget(steps=8))
     assert named(again, "cusp")
     assert np.array_equal(again.u, whole.u)
     assert [event.name for event in again.events] == [event.name for event in whole.events]

@@ -36,7 +36,7 @@ def test_brusselator():
 
 def test_van_der_pol():
     curve = Curve(Family(VanDerPol(), "k"), Kind.HOPF, (np.zeros(2), 0.05))
-    path = continuation.trace(curve, box={"lam": (None, 9.0)})
+    path = continuation.trace(curve, box={"lam": (None, 1.5)})
     assert np.abs(path.y[:, :3]).max() <= 1e-10
     assert np.abs(path.y[:, 3] - np.sqrt(path.lam)).max() <= 1e-10
 
