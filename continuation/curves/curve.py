@@ -15,6 +15,7 @@ from continuation.checks import FINITE, complain
 from continuation.curves.arguments import as_event, as_point, as_size
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import HopfPoint, Singular
+from continuation.curves.correcting import corrected
 from continuation.curves.frequency import frequency_at
 from continuation.curves.here import Here
 from continuation.curves.local import Condition
@@ -33,12 +34,6 @@ on an arc look at its ends again."""
 PERSISTS = 1e-6
 """What mu may do to H at a branch point, along the vector that H' does not reach, beside what it does to H at all:
 more, and branch points do not persist. The root of round-off and of the differences behind it."""
-
-NEWTON = 20
-"""At most so many increments for the start; they end where they no longer shrink."""
-
-FAR = 10.0
-"""A first increment longer than this, beside the size of the point, is that of a singular system."""
 
 
 @frozen(eq=False, slots=False, init=False)
@@ -125,6 +120,11 @@ class Curve:
 
     def __attrs_post_init__(self) -> None:
         member = self.family(self.mu)
+        unknowns = np.size(member.start()[0])
+        if unknowns != self.at[0].size:
+            raise ValueError(f"at: expected {unknowns} unknowns, as the family has, found {self.at[0].size}")
+        if self.event == Kind.KINK and not isinstance(member, SupportsPieces):
+            raise complain(TypeError, "family", "piecewise smooth homotopies, with `switches` and `piece`", member)
         if hasattr(member, "observe"):
             object.__setattr__(self, "observe", self._observed)
         if hasattr(member, "max_step"):
@@ -153,21 +153,9 @@ class Curve:
     def _corrected(self) -> Array:
         """The point brought onto the curve at its mu, if Newton's method does that."""
         y = np.append(*self.at)
-        if self.event == Kind.HOPF:
-            y = np.append(y, self._frequency)
-        unit = np.append(np.zeros(y.size), 1.0)
-        best, least = y, FAR
-        for _ in range(NEWTON):
-            try:
-                with np.errstate(all="ignore"):
-                    z = self.bordered(y, self.mu, unit).solve(self.residual(y, self.mu), 0.0)[:-1]
-            except ArithmeticError:
-                break
-            size = float(np.abs(z / np.append(self.size, np.ones(y.size - self.size.size))).max())
-            if not size < least:
-                break
-            y, best, least = y - z, y, size
-        return best
+        if self.event != Kind.HOPF:
+            return corrected(self, y, self.mu, self.size)
+        return corrected(self, np.append(y, self._frequency), self.mu, np.append(self.size, self._frequency))
 
     @cached_property
     def _frequency(self) -> float:

@@ -9,10 +9,23 @@ import pytest
 import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.archive import open_archive, resume
+from continuation.curves.nullspace import null_vectors
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 
-from .util import Bent, Coupled, CoupledSparse, CuspForm, GelfandBanded, Imperfect, Lorenz, Ring, first_fold, named
+from .util import (
+    Bent,
+    Coupled,
+    CoupledSparse,
+    CuspForm,
+    Diffusing,
+    GelfandBanded,
+    Imperfect,
+    Lorenz,
+    Ring,
+    first_fold,
+    named,
+)
 
 
 def folds():
@@ -140,6 +153,18 @@ def test_a_border_nearly_orthogonal_is_replaced():
     assert cosine >= 1.0 - 1e-12
 
 
+def test_the_border_does_not_fill_sparse_factors():
+    homotopy = Diffusing(n=300)
+    curve = Curve(Family(homotopy, "A"), Kind.HOPF, homotopy.at(homotopy.hopf[0]))
+    condition = curve._condition
+    y, mu = curve.start()
+    matrix = condition._matrix(y[:-1], y[-1], mu)
+    near = null_vectors(matrix, condition.b, condition.c)
+    assert near.factors.lu.nnz <= 30 * 600
+    np.testing.assert_allclose(matrix @ near.right, -near.s * near.border, atol=1e-9)
+    np.testing.assert_allclose(matrix.conj().T @ near.left, -np.conj(near.s) * condition.c, atol=1e-9)
+
+
 def test_a_resumed_curve_is_the_one_that_was_never_stopped(tmp_path):
     curve, box = folds(), {"lam": (-1.0, 0.4)}
     continuation.trace(curve, archive=tmp_path / "a.h5", budget=Budget(steps=3), box=box, direction=-1)
@@ -225,6 +250,14 @@ WRONG = {
     "sizes of another number": (
         lambda: Curve(Family(CuspForm(), "mu"), Kind.TURNING_POINT, (np.zeros(1), 0.0), size=[1.0]),
         ValueError, "size: expected 2 positive numbers",
+    ),
+    "another number of unknowns": (
+        lambda: Curve(Family(CuspForm(), "mu"), Kind.TURNING_POINT, (np.zeros(2), 0.0)),
+        ValueError, "at: expected 1 unknowns, as the family has, found 2",
+    ),
+    "no kinks": (
+        lambda: Curve(Family(CuspForm(), "mu"), Kind.KINK, (np.zeros(1), 0.0)),
+        TypeError, "family: expected piecewise smooth homotopies",
     ),
     "no such attribute": (lambda: Family(CuspForm(), "nu"), ValueError, "name: expected an attribute of CuspForm"),
     "an attribute that is no number": (lambda: Family(CuspForm(), "target"), TypeError, "target: expected a number to"),
