@@ -170,10 +170,7 @@ class Curve:
         member = self.family(self.mu)
         if not isinstance(member, SupportsPieces):
             return None
-        signs = np.where(member.switches(*self.at) >= 0.0, 1, -1)
-        if self._switch is not None:
-            signs[self._switch] = 1
-        return signs
+        return np.where(member.switches(*self.at) >= 0.0, 1, -1)
 
     @cached_property
     def _switch(self) -> int | None:
