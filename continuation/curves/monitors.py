@@ -91,8 +91,7 @@ class AlongTangent:
             full, border = full_derivative(calculus.evaluator(mu), u), t / extent
             H_lam = extent[-1] * last_column(full) / rows
             M = bordered(self.scaled.times(full[:, :-1]), H_lam, border[:-1], float(border[-1]))
-            across = extent * by_t - float(by_t @ t) * border
-            left = factor(M).solve(across, adjoint=True)[:-1] / rows
+            left = factor(M).solve(extent * by_t, adjoint=True)[:-1] / rows
             return np.asarray(np.append(by_u, 0.0) - calculus.second(u, mu, t, left))[None, :]
 
         values = np.array([self.function(np.append(u, t))])

@@ -11,8 +11,10 @@ from attrs import evolve
 import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.archive import open_archive, resume
+from continuation.counts import Counts
 from continuation.curves.nullspace import null_vectors
 from continuation.evaluation.derivatives import difference_along
+from continuation.evaluation.evaluator import Evaluator, RaisedError
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 
@@ -307,3 +309,5 @@ def test_an_exception_of_the_family_is_said():
     path = continuation.trace(curve, target=3.0, budget=Budget(steps=60))
     assert path.status is continuation.Status.RAISED
     assert "no such state" in path.message
+    with pytest.raises(RaisedError, match="no such state"):
+        Evaluator(curve, Counts()).residual(np.append(curve.start()[0], 2.0))
