@@ -310,4 +310,4 @@ def test_an_exception_of_the_family_is_said():
     assert path.status is continuation.Status.RAISED
     assert "no such state" in path.message
     with pytest.raises(RaisedError, match="no such state"):
-        Evaluator(curve, Counts()).residual(np.append(curve.start()[0], 2.0))
+        Evaluator(Curve(family, TargetValue(0.3), curve.at, mu=1.0), Counts()).residual(np.array([0.5, 0.3, 2.0]))
