@@ -99,7 +99,7 @@ class Here:
     def bordered(self, border: Array) -> BorderedSystem:
         """The derivative with a border, factored by elimination."""
         local, n = self.local, self.u.size
-        columns = np.column_stack([self.apply(np.arange(n) == n - 1.0), local.column, self.by_parameter])
+        columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), local.column, self.by_parameter])
         if local.hidden is None:
             return eliminated(local.base, columns, np.vstack([local.rows, border]))
         return Hiding(eliminated(local.base, columns, np.vstack([local.rows, np.insert(border, n, 0.0)])))

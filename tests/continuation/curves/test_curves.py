@@ -17,6 +17,7 @@ from continuation.evaluation.derivatives import difference_along
 from continuation.evaluation.evaluator import Evaluator, RaisedError
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
+from problems import lcp
 
 from .util import (
     Bent,
@@ -101,6 +102,21 @@ def test_values_and_monitors():
     y, lam, eps = path.u.T
     assert np.abs(y**2 + lam**2 - 1.0).max() <= 1e-10
     assert np.abs(lam * y - y**3 + eps).max() <= 1e-10
+
+
+def test_a_family_with_a_factorisation_of_its_own():
+    generator = np.random.default_rng(1)
+    A, q, d = generator.standard_normal((5, 5)), *generator.standard_normal((2, 5))
+
+    def family(mu):
+        return lcp.KKTHomotopy(lcp.LCP(A @ A.T + np.eye(5), q - 1.0 + mu * d), x0=np.full(5, 0.7))
+
+    u = continuation.trace(family(0.0)).crossings(0.5)[0]
+    path = continuation.trace(Curve(family, TargetValue(0.5), (u[:-1], u[-1]), mu=0.0), target=0.3)
+    assert path.success
+    assert np.abs(path.y[:, -1] - 0.5).max() <= 1e-12
+    there = continuation.solve_at(family(0.3), 0.5, u[:-1])
+    np.testing.assert_allclose(path.endpoint.y[:-1], there, rtol=1e-7)
 
 
 def test_what_looks_at_the_tangent():

@@ -6,7 +6,7 @@ from attrs import evolve
 from numpy.polynomial.legendre import leggauss
 
 import continuation
-from continuation import Budget, Curve, Family, jets
+from continuation import Budget, Curve, Family, TargetValue, jets
 from problems.bifurcation import Aircraft, Cusp
 
 from .util import CuspForm, Gelfand, GelfandBanded, Imperfect, Rescaled, TakensBogdanov, first_fold, named
@@ -80,7 +80,7 @@ def test_the_fold_curve_ends_in_the_problem_that_is_not_perturbed():
     assert abs(path.endpoint.y[-1] - 0.8784576797812903) <= 1e-11
 
 
-@pytest.mark.parametrize("kind", ["banded", "sparse"])
+@pytest.mark.parametrize("kind", ["banded", "sparse", "symmetric"])
 def test_structures_give_one_curve(kind):
     found = []
     for member in (GelfandBanded(kind=kind), GelfandBanded(kind="dense")):
@@ -91,6 +91,16 @@ def test_structures_give_one_curve(kind):
     np.testing.assert_allclose(ours.u, dense.u, rtol=1e-5, atol=1e-9)
     (cusp,), (other,) = (named(path, "cusp") for path in found)
     assert abs(cusp.lam - other.lam) <= 1e-11
+
+
+def test_operators_have_curves_of_values_alone():
+    member = GelfandBanded(kind="operator")
+    curve = Curve(Family(member, "eps"), TargetValue(0.5, 7), (np.full(16, 0.4), 0.8))
+    path = continuation.trace(curve, box={"lam": (None, 0.4)}, tolerance=1e-10)
+    assert np.abs(path.y[:, 7] - 0.5).max() <= 1e-12
+    assert max(np.abs(GelfandBanded(u[-1]).residual(u[:-2], u[-2])).max() for u in path.u) <= 1e-10
+    with pytest.raises(ArithmeticError, match="a matrix is needed here, and the Jacobian is an operator"):
+        continuation.trace(Curve(Family(member, "eps"), first_fold(member)))
 
 
 def test_two_jacobians_do_as_well_as_jets():

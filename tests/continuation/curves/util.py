@@ -5,7 +5,7 @@ import scipy.sparse as sp
 from attrs import field, frozen
 
 import continuation
-from continuation.linear import Banded
+from continuation.linear import Banded, Operator, Symmetric
 
 
 @frozen
@@ -240,8 +240,14 @@ class GelfandBanded:
         bands = np.ones((3, self.n))
         bands[1] = lam * slope / (1.0 + self.eps * y) ** 2 - 2.0
         matrix = Banded(bands, 1, 1)
-        made = {"banded": matrix, "sparse": matrix.tosparse(), "dense": matrix.toarray()}
-        return made[self.kind], slope
+        made = {
+            "banded": lambda: matrix,
+            "sparse": matrix.tosparse,
+            "dense": matrix.toarray,
+            "symmetric": lambda: Symmetric(matrix.toarray()),
+            "operator": lambda: Operator(matrix.toarray(), np.linalg.inv(matrix.toarray())),
+        }
+        return made[self.kind](), slope
 
 
 @frozen
