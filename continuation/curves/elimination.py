@@ -6,7 +6,6 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.curves.local import Base
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 
 
@@ -19,7 +18,7 @@ class Eliminated:
 
     Attributes
     ----------
-    base : Base
+    base : BorderedSystem
         F.
     solved : ndarray, shape (N + 1, m + 1)
         (y, s) that follow from sigma = 1, and from each of p.
@@ -29,7 +28,7 @@ class Eliminated:
         The m + 1 equations.
     """
 
-    base: Base
+    base: BorderedSystem
     solved: Array
     rows: Array
     small: BorderedSystem
@@ -37,8 +36,7 @@ class Eliminated:
     @property
     def sign(self) -> int:
         """Sign of the determinant."""
-        sign: int = self.base.sign * self.small.sign
-        return sign
+        return self.base.sign * self.small.sign
 
     def solve(self, r: Array, rho: float) -> Array:
         """The solution z, shape (N + m,).
@@ -78,12 +76,12 @@ class Hiding:
         return np.delete(self.whole.solve(np.append(r, 0.0), rho), -2)
 
 
-def eliminated(base: Base, columns: Array, rows: Array) -> Eliminated:
+def eliminated(base: BorderedSystem, columns: Array, rows: Array) -> Eliminated:
     """Eliminate y.
 
     Parameters
     ----------
-    base : Base
+    base : BorderedSystem
     columns : ndarray, shape (N, m)
     rows : ndarray, shape (m, N + m)
 

@@ -17,25 +17,7 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.curves.calculus import Calculus
 from continuation.curves.nullspace import LONG, REFRESHED, Factors, null_vectors
 from continuation.events.singularity import row_sizes
-
-
-class Base(Protocol):
-    """A factorisation of [[H_y, b], [c', d]] for some border."""
-
-    @property
-    def sign(self) -> int:
-        """Sign of its determinant."""
-        ...
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """(x, s), shape (N + 1,), of H_y x + b s = r, c'x + d s = rho.
-
-        Parameters
-        ----------
-        r : ndarray, shape (N,)
-        rho : float
-        """
-        ...
+from continuation.linear import BorderedSystem
 
 
 @frozen(eq=False, slots=False)
@@ -48,7 +30,7 @@ class Local:
     gradients : callable
         Makes `rows`.
     factored : callable
-        Makes `base`.
+        Makes `base`: [[H_y, b], [c', d]] for some border, factored.
     column : ndarray, shape (N, k - 1)
         Derivative of the equations H = 0 by the unknown beside.
     hidden : float or None
@@ -60,7 +42,7 @@ class Local:
 
     values: Array
     gradients: Callable[[], Array]
-    factored: Callable[[], Base]
+    factored: Callable[[], BorderedSystem]
     column: Array
     hidden: float | None = None
     signs: Mapping[str, Callable[[Array], float]] = field(factory=dict)
@@ -71,7 +53,7 @@ class Local:
         return self.gradients()
 
     @cached_property
-    def base(self) -> Base:
+    def base(self) -> BorderedSystem:
         """The factorisation."""
         return self.factored()
 
