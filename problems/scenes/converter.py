@@ -73,7 +73,9 @@ class Converter:
         before = np.roll(np.eye(self.n), -1, axis=1)
         one, h = np.eye(self.n), self.period / self.n
         difference, mean = one - before, 0.5 * (one + before)
-        voltages = np.linalg.solve(self.capacity / h * difference + mean / self.load, mean)
+        voltages: Array = np.asarray(
+            np.linalg.solve(self.capacity / h * difference + mean / self.load, mean), dtype=float
+        )
         return difference, mean, voltages
 
     def problem(self) -> LCP:
@@ -95,7 +97,7 @@ class Converter:
     def exact(self) -> Quantities:
         """For a capacitor so large that its voltage stands still."""
         K = 2.0 * self.inductance / (self.load * self.period)
-        ratio = self.duty if K >= 1.0 - self.duty else 2.0 / (1.0 + (1.0 + 4.0 * K / self.duty**2) ** 0.5)
+        ratio = self.duty if 1.0 - self.duty <= K else 2.0 / (1.0 + (1.0 + 4.0 * K / self.duty**2) ** 0.5)
         return {"output": ratio * self.voltage}
 
     def draw(self, solution: Any, axes: Any) -> None:

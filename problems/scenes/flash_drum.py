@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from continuation.arrays import Array
 from continuation.tracing import solve_at
 from problems.nonlinear.normal_map import NormalMap
-from problems.scenes.scene import Quantities, Rival, Unknown, numbers, positive
+from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 ANTOINE = ((6.90565, 1211.033, 220.790), (6.95464, 1344.800, 219.482))
 """Of benzene and toluene, for mm Hg and degrees Celsius: log10 p = A - B / (T + C) (Perry's handbook)."""
@@ -28,7 +28,7 @@ COLDEST = 70.0
 
 @frozen
 class RachfordRice:
-    """Rachford and Rice's function with its sign changed, rising in the part that is vapour."""
+    """Rachford and Rice's function with its sign changed: it rises with the part of vapour."""
 
     feed: tuple[float, float]
     pressure: float
@@ -47,8 +47,8 @@ class RachfordRice:
 class FlashDrum:
     """Benzene and toluene in a drum: which part is vapour at each temperature?
 
-    The part of vapour is between 0 and 1. At 0 no vapour can appear, at 1 no liquid: complementarity with two bounds, as
-    a path over the temperature with a kink at the bubble point and one at the dew point.
+    The part of vapour is between 0 and 1. At 0 no vapour can appear, at 1 no liquid: complementarity with two bounds,
+    as a path over the temperature with a kink at the bubble point and one at the dew point.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class FlashDrum:
         bubble, dew = (float(brentq(lambda T, k=k: self._curve(T)[k], COLDEST, WARMEST, xtol=1e-13)) for k in (0, 1))
         f, T = self._function, self.temperature
         inside = bubble < T < dew
-        part = float(brentq(lambda x: float(f(x, T)), 0.0, 1.0, xtol=1e-15)) if inside else float(T >= dew)
+        part = float(brentq(lambda x: float(f(x, T)), 0.0, 1.0, xtol=1e-15)) if inside else float(dew <= T)
         return {"bubble point": bubble, "dew point": dew, **self._phases(part)}
 
     def draw(self, solution: Any, axes: Any) -> None:

@@ -17,16 +17,19 @@ from problems.scenes.scene import Quantities, Rival, Unknown
 Payoffs = tuple[tuple[float, ...], ...]
 
 
-def _payoffs(name: str, default: Payoffs) -> Any:
-    """A field with a matrix of finite numbers."""
+def _payoffs(name: str, value: Any) -> Payoffs:
+    matrix = real_array(name, value)
+    if matrix.ndim != 2 or not matrix.size or not np.isfinite(matrix).all():
+        raise ValueError(f"{name}: expected a matrix of finite numbers, found shape {matrix.shape}")
+    return tuple(tuple(row) for row in matrix.tolist())
 
-    def convert(value: Any) -> Payoffs:
-        matrix = real_array(name, value)
-        if matrix.ndim != 2 or not matrix.size or not np.isfinite(matrix).all():
-            raise ValueError(f"{name}: expected a matrix of finite numbers, found shape {matrix.shape}")
-        return tuple(tuple(row) for row in matrix.tolist())
 
-    return field(default=default, converter=convert)
+def _rows(value: Any) -> Payoffs:
+    return _payoffs("rows", value)
+
+
+def _columns(value: Any) -> Payoffs:
+    return _payoffs("columns", value)
 
 
 @frozen
@@ -46,8 +49,8 @@ class Game:
     default.
     """
 
-    rows: Payoffs = _payoffs("rows", ((3.0, 3.0), (2.0, 5.0), (0.0, 6.0)))
-    columns: Payoffs = _payoffs("columns", ((3.0, 2.0), (2.0, 6.0), (3.0, 1.0)))
+    rows: Payoffs = field(default=((3.0, 3.0), (2.0, 5.0), (0.0, 6.0)), converter=_rows)
+    columns: Payoffs = field(default=((3.0, 2.0), (2.0, 6.0), (3.0, 1.0)), converter=_columns)
     units: ClassVar[Mapping[str, str]] = {"equilibria": "", "gains": ""}
     rivals: ClassVar[tuple[Rival, ...]] = ()
 

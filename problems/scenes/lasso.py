@@ -41,8 +41,8 @@ def penalised(G: Array, c: Array) -> Path:
 class Lasso:
     """Which of many features explain an observation, as the penalty on their coefficients falls?
 
-    min |X b - y|^2 / 2 + t |b|_1 for all t at once: a path with a kink wherever a feature enters or leaves. The data are
-    drawn at random, with a few features that matter.
+    min |X b - y|^2 / 2 + t |b|_1 for all t at once: a path with a kink wherever a feature enters or leaves. The data
+    are drawn at random, with a few features that matter.
 
     Parameters
     ----------

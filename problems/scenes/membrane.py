@@ -33,7 +33,7 @@ def radial(n: int, width: float) -> tuple[Array, Any]:
         Symmetric; times the volumes, which are those of rings over 2 pi.
     """
     h = width / n
-    r = h * np.arange(n)
+    r = np.asarray(h * np.arange(n), dtype=float)
     outer = (r + 0.5 * h) / h
     inner = np.append(0.0, outer[:-1])
     return r, sp.diags_array([-outer[:-1], inner + outer, -outer[:-1]], offsets=[-1, 0, 1], format="csr")

@@ -159,7 +159,10 @@ class Pile:
 
     def draw(self, solution: Any, axes: Any) -> None:
         """The pile at the beginning, dashed, and at the end."""
-        styles = ({"linestyle": "--", "facecolor": "none"}, {"facecolor": "#56B4E9", "alpha": 0.6})
+        styles: tuple[dict[str, Any], ...] = (
+            {"linestyle": "--", "facecolor": "none"},
+            {"facecolor": "#56B4E9", "alpha": 0.6},
+        )
         for places, style in zip((solution.places[0], solution.places[-1]), styles):
             for place in places:
                 rectangle(axes, place, self.side, self.side, **style)

@@ -66,7 +66,7 @@ class Regulator:
         return F, G, Q, solve_discrete_are(F, G, Q, np.array([[self.weight]]))
 
     def _condensed(self) -> tuple[Array, Array, float]:
-        """min u'Hu / 2 + t f'u + t^2 c, t the distance."""
+        """Min u'Hu / 2 + t f'u + t^2 c, t the distance."""
         F, G, Q, last = self._model()
         start, H = np.array([1.0, 0.0]), self.weight * np.eye(self.horizon)
         f, c, reach = np.zeros(self.horizon), 0.0, np.zeros((2, self.horizon))

@@ -83,7 +83,7 @@ class SnapThrough:
     def answer(self, solution: Any) -> Quantities:
         """The loads at which the path turns; beyond the second the stop bears what exceeds it."""
         (kink,) = (event.lam for event in solution.kinks)
-        (fold,) = (event.lam for event in solution.turning_points if event.name != "turning kink")
+        fold = solution.turning_points[0].lam
         z = float(solution.crossings(self.load * 2.0 / (3.0 * sqrt(3.0)))[-1][0])
         # The normal map's z is below the bound by the force that the bound bears.
         return {

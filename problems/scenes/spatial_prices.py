@@ -75,7 +75,7 @@ class SpatialPrices:
     @property
     def _costs(self) -> Array:
         i, j = np.indices((len(self.offers), len(self.bids)))
-        return self.freight * (1.0 + np.abs(i - j))
+        return np.asarray(self.freight * (1.0 + np.abs(i - j)))
 
     def problem(self) -> LCP:
         """What a delivery costs more than it brings."""

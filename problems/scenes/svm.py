@@ -96,9 +96,9 @@ class SVM:
 
     def exact(self) -> Quantities:
         """Of two points: 2 over the square of their distance."""
-        X, side = self.data()
         if self.samples != 2 or self.width:
             return {}
+        X, _ = self.data()
         weight = min(2.0 / float(((X[0] - X[1]) ** 2).sum()), self.cost)
         return {"weights": np.full(2, weight)}
 

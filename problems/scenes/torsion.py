@@ -8,12 +8,15 @@ from typing import Any, ClassVar
 import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
+from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.checks import integer
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
 from problems.scenes.scene import Quantities, Rival, Unknown, positive
+
+Indices = NDArray[np.int_]
 
 
 @frozen
@@ -57,7 +60,7 @@ class Torsion:
             Unknown("stress function", self.n * (self.n + 1) // 2, "stresses are its slopes, the torque its volume"),
         )
 
-    def _triangle(self) -> tuple[Array, Array, Array]:
+    def _triangle(self) -> tuple[Indices, Indices, Array]:
         """Column and row of each point, 1 <= j <= i <= n, and how many points of the square it stands for."""
         i, j = np.tril_indices(self.n)
         on_middle = (i == self.n - 1).astype(int) + (j == self.n - 1)
@@ -77,7 +80,7 @@ class Torsion:
         row, column = np.concatenate(rows), np.concatenate(columns)
         beside = sp.coo_array((-weight[row], (row, column)), shape=(size, size))
         h = 0.5 * self.side / n
-        limit = self.yield_stress * h * j
+        limit = np.asarray(self.yield_stress * h * j, dtype=float)
         load = 2.0 * self.modulus * self.twist * h * h
         return MixedLCP((beside + sp.diags_array(4.0 * weight)).tocsr(), -load * weight, np.full(size, -np.inf), limit)
 

@@ -92,7 +92,8 @@ class Truss:
 
         def forces(stretch: float) -> Array:
             elastic = np.minimum(self.stiffness * stretch, limits)
-            return elastic + soft * np.maximum(stretch - limits / self.stiffness, 0.0)
+            whole: Array = elastic + soft * np.maximum(stretch - limits / self.stiffness, 0.0)
+            return whole
 
         yields = np.array([forces(limit / self.stiffness).sum() for limit in np.sort(limits)])
         stretches = np.sort(limits) / self.stiffness

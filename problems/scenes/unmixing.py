@@ -89,7 +89,7 @@ class Unmixing:
         place = np.linspace(-1.0, self.substances, self.channels)
         axes.plot(place, measured, "k.", markersize=2, label="measured")
         axes.plot(place, spectra @ x, color="#D55E00", linewidth=1.0, label="sum")
-        axes.fill_between(place, 0.0, (spectra * x).max(axis=1), color="#56B4E9", alpha=0.5, label="parts")
+        axes.plot(place, spectra * x, color="#0072B2", linewidth=0.7)
         axes.set(xlabel="channel", ylabel="intensity")
         axes.legend(frameon=False)
 
