@@ -81,15 +81,13 @@ class BratuLid:
                          target=max(self.load, 3.6))  # fmt: skip
 
     def answer(self, solution: Any) -> Quantities:
-        """Loads at which the path turns, and the contact's edge, from the slope at the surface."""
+        """Loads at which the path turns, and the contact's edge at the load."""
         folds = [event.lam for event in solution.turning_points if event not in solution.kinks]
         kinks = [kink.lam for kink in solution.kinks if kink.name == "turning kink"]
-        h, lam = 0.5 / self.n, self.load
-        u = solve_at(self.problem(), lam, solution.crossings(lam)[-1][:-1])[0]
-        # What u' is at the surface says, by u'^2 / 2 + load e^u = constant, how far it is to the lid.
-        slope = u / h + 0.5 * h * lam
-        m = slope * slope / (2.0 * lam) + 1.0
-        edge = sqrt(2.0 / (lam * m)) * (acosh(sqrt(m)) - acosh(max(sqrt(m / exp(self.lid)), 1.0)))
+        z = solve_at(self.problem(), self.load, solution.crossings(self.load)[-1][:-1])
+        # z is above the lid by the lid's force; where u rests that is the load's, so it tells how far: to second order.
+        force = np.maximum(z - self.lid, 0.0) * np.append(np.ones(self.n - 1), 0.5) * 2.0 * self.n
+        edge = 0.5 - float(force.sum()) / (self.load * exp(self.lid))
         return {
             "fold": folds[0] if folds else np.nan, "turning kink": kinks[0] if kinks else np.nan, "contact from": edge,
         }  # fmt: skip
