@@ -344,3 +344,77 @@ def solve_is_robust_where_theory_says_so(charts):
 @claim
 def pure_paths_fail_on_indefinite(charts):
     return all(solved(charts["robustness"], name, family="indefinite") < 1.0 for name in PATHS)
+
+
+# -- scenes --------------------------------------------------------------------------------------------------------
+
+
+def _at(results, problem, method, rung=None):
+    """The one row of a scene and a method, on a mesh where there are several."""
+    rows = [row for row in results.of(problem=problem, method=method) if rung is None or row.rung == rung]
+    (row,) = rows
+    return row
+
+
+def _finest(results):
+    return max(row.rung for row in results.rows)
+
+
+@claim
+def scenes_are_all_answered(charts):
+    return all(solved(charts[name], "ours") == 1.0 for name in ("scenes-meshes", "scenes-exact"))
+
+
+@claim
+def mesh_errors_are_second_order(charts):
+    results = charts["scenes-meshes"]
+    coarse, fine = (_at(results, "torsion", "ours", rung).errors["answer"] for rung in (0.5, 2.0))
+    return 15.0 < coarse / fine < 17.0
+
+
+@claim
+def ours_beats_bfgs_on_fine_meshes(charts):
+    results = charts["scenes-meshes"]
+    rung = _finest(results)
+    return all(
+        _at(results, scene, "ours", rung).seconds < _at(results, scene, "L-BFGS-B (scipy)", rung).seconds
+        for scene in ("string", "membrane", "bearing", "torsion")
+    )
+
+
+@claim
+def brennan_schwartz_is_quicker(charts):
+    return ratio(charts["scenes-meshes"], "ours", "Brennan-Schwartz", "seconds") > 3.0
+
+
+@claim
+def pooling_is_quicker(charts):
+    results = charts["scenes-exact"]
+    pooled = _at(results, "isotonic", "pool adjacent violators")
+    return _at(results, "isotonic", "ours").seconds > 8.0 * pooled.seconds
+
+
+@claim
+def nnls_is_as_exact(charts):
+    results = charts["scenes-exact"]
+    return all(_at(results, "unmixing", method).errors["answer"] < 1e-12 for method in ("ours", "nnls (scipy)"))
+
+
+@claim
+def bfgs_leaves_errors(charts):
+    results = charts["scenes-exact"]
+    return all(
+        _at(results, scene, "ours").errors["answer"] < 1e-12
+        and _at(results, scene, "L-BFGS-B (scipy)").errors["answer"] > 1e-9
+        for scene in ("isotonic", "denoising")
+    )
+
+
+@claim
+def lemke_is_quick_on_small_scenes(charts):
+    results, tables = charts["scenes-exact"], "Lemke (tables, numpy)"
+    quick = all(
+        _at(results, scene, "ours").seconds > 2.0 * _at(results, scene, tables).seconds
+        for scene in ("block", "box", "braess", "diode-bridge")
+    )
+    return quick and _at(results, "painleve-rod", tables).failed

@@ -38,7 +38,7 @@ class Exercise:
 
 @frozen
 class AmericanPut:
-    """A put that may be exercised at any time: its price today, and the price below which to exercise it.
+    """A put that may be exercised at any time: what is it worth, and below which price is it exercised?
 
     The equation of Black and Scholes in the logarithm of the price, by second-order differences, and the method of
     Crank and Nicolson after four implicit half steps (Rannacher). The steps grow linearly from expiry, where the price

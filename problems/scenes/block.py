@@ -18,9 +18,9 @@ from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 @frozen
 class Block:
-    """A block that slides on a plane with friction, pushed or not: one time step.
+    """A block on a plane, pushed or not: does it slide, or does friction hold it?
 
-    Its rotation is not modelled, so one contact is enough.
+    One time step. Its rotation is not modelled, so one contact is enough.
 
     Parameters
     ----------

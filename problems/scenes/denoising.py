@@ -18,7 +18,9 @@ from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 @frozen
 class Denoising:
-    """The signal x of least |x - y|^2 / 2 + weight * (sum of its jumps): flat pieces, few jumps.
+    """A signal of flat pieces under noise: where does it jump?
+
+    It is the x of least |x - y|^2 / 2 + weight * (sum of its jumps).
 
     Parameters
     ----------

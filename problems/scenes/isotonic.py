@@ -18,7 +18,7 @@ from problems.scenes.scene import Quantities, Rival, Unknown
 
 @frozen
 class Isotonic:
-    """Isotonic regression: the nondecreasing sequence nearest to a dose-response measurement.
+    """A noisy response that can only rise with the dose: which rising curve is nearest to it?
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class Fall:
 
 @frozen
 class Pile:
-    """Boxes above each other, with gaps between them, fall on a floor that the lowest one slides on.
+    """Boxes with gaps between them fall on each other, the lowest one sliding: where do they come to rest?
 
     Stewart and Trinkle's time steps: gaps are part of the problem, so that none is negative after a step, and no step
     gains energy. Impacts are inelastic. Each step begins at the contacts of the step before.

@@ -50,7 +50,9 @@ def critical_line(mean: Array, covariance: Array) -> Path:
 
 @frozen
 class Portfolio:
-    """How to divide money among assets: min variance / 2 - tolerance * mean, no asset sold short.
+    """Money to be divided among assets, none sold short: how much into each?
+
+    min variance / 2 - tolerance * mean.
 
     Parameters
     ----------

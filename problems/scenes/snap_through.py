@@ -30,7 +30,7 @@ class ShallowTruss:
 
 @frozen
 class SnapThrough:
-    """Two shallow bars under a load on their joint snap through, until the joint comes to rest on a stop below.
+    """Two shallow bars snap through under a load, onto a stop below: when, and what does the stop bear?
 
     The path of the height turns in a fold, comes back, and turns again in a kink, where the joint touches the stop.
 

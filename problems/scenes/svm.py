@@ -17,7 +17,7 @@ from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 @frozen
 class SVM:
-    """Two clouds of points, told apart by a line with the widest margin that a price on errors allows.
+    """Two clouds of points: which line tells them apart with the widest margin, at a price on errors?
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 @frozen
 class Traffic:
-    """Streets to the east and the south whose times grow with their loads; cars from one corner to the other.
+    """A grid of streets whose times grow with their loads: which ways do drivers take from corner to corner?
 
     Beckmann's program: its multipliers are the times from the crossings to the goal. Every street has times of its own,
     drawn at random, so that no symmetry makes the model smaller.

@@ -18,9 +18,9 @@ from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 @frozen
 class Unmixing:
-    """Nonnegative least squares: amounts of substances whose spectra are known and overlap.
+    """A spectrum of several substances whose own spectra overlap: how much of each is there?
 
-    Each spectrum is one peak; every third substance is not there at all.
+    Nonnegative least squares. Each spectrum is one peak; every third substance is not there at all.
 
     Parameters
     ----------
