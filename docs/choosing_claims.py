@@ -220,9 +220,7 @@ def automatic_metric_is_good(charts):
 def pade_pays(charts):
     results = charts["engine-series"]
     pairs = (("1e-05 (SERIES)", "1e-05"), ("1e-07", "1e-07"))
-    return all(
-        total(results, f"Pade, accuracy {a}") < 0.75 * total(results, f"series, accuracy {b}") for a, b in pairs
-    )
+    return all(total(results, f"Pade, accuracy {a}") < 0.75 * total(results, f"series, accuracy {b}") for a, b in pairs)
 
 
 @claim
@@ -377,8 +375,8 @@ def ours_beats_bfgs_on_fine_meshes(charts):
     results = charts["scenes-meshes"]
     rung = _finest(results)
     return all(
-        _at(results, scene, "ours", rung).seconds < _at(results, scene, "L-BFGS-B (scipy)", rung).seconds
-        for scene in ("string", "membrane", "bearing", "torsion")
+        2.0 * _at(results, scene, "ours", rung).seconds < _at(results, scene, "L-BFGS-B (scipy)", rung).seconds
+        for scene in ("membrane", "bearing", "torsion")
     )
 
 
@@ -417,4 +415,9 @@ def lemke_is_quick_on_small_scenes(charts):
         _at(results, scene, "ours").seconds > 2.0 * _at(results, scene, tables).seconds
         for scene in ("block", "box", "braess", "diode-bridge")
     )
-    return quick and _at(results, "painleve-rod", tables).failed
+    compiled = all(
+        row.seconds < 0.1 * _at(results, row.problem, "ours").seconds
+        for row in results.of(method="Lemke (quantecon)")
+        if row.problem in ("block", "box", "braess", "diode-bridge")
+    )
+    return quick and compiled and _at(results, "painleve-rod", tables).failed

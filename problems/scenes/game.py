@@ -32,6 +32,18 @@ def _columns(value: Any) -> Payoffs:
     return _payoffs("columns", value)
 
 
+def bimatrix(C: Array, D: Array) -> LCP:
+    """The equilibria of a game with positive losses: C y >= e and D'x >= e, complementary to x and y.
+
+    Parameters
+    ----------
+    C, D : ndarray, shape (m, n)
+        What the player who chooses a row loses, and the one who chooses a column.
+    """
+    m, n = C.shape
+    return LCP(np.block([[np.zeros((m, m)), C], [D.T, np.zeros((n, n))]]), -np.ones(m + n))
+
+
 @frozen
 class Game:
     """Two players choose at the same time: which mixed strategies are best against each other?
@@ -67,11 +79,9 @@ class Game:
                 Unknown("strategies of the second", n, "what the second mixes"))  # fmt: skip
 
     def problem(self) -> LCP:
-        """In positive losses C, D: C y >= e and D'x >= e."""
+        """In losses against more than the best."""
         gains, others = np.array(self.rows), np.array(self.columns)
-        m, n = gains.shape
-        C, D = gains.max() + 1.0 - gains, others.max() + 1.0 - others
-        return LCP(np.block([[np.zeros((m, m)), C], [D.T, np.zeros((n, n))]]), -np.ones(m + n))
+        return bimatrix(gains.max() + 1.0 - gains, others.max() + 1.0 - others)
 
     def solve(self) -> Solutions:
         """All equilibria, or many."""

@@ -20,6 +20,7 @@ from scipy.optimize import linprog
 from continuation import Budget
 from continuation.arrays import Array
 from problems import lcp
+from problems.scenes.game import bimatrix
 from problems.scenes.planar import Body, free_motion, impulses, time_step
 
 Data = tuple[Array, Array]
@@ -91,9 +92,8 @@ def unsolvable(seed: int) -> Iterator[Data]:
 
 def game(C: Array, D: Array) -> Data:
     """The LCP of a game with these costs."""
-    m = len(C)
-    zero = np.zeros((m, m))
-    return np.block([[zero, C - C.min() + 1.0], [(D - D.min() + 1.0).T, zero]]), -np.ones(2 * m)
+    problem = bimatrix(C - C.min() + 1.0, D - D.min() + 1.0)
+    return problem.A, problem.q
 
 
 def games(seed: int) -> Iterator[Data]:

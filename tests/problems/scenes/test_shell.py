@@ -1,6 +1,8 @@
 """``continuation solve scene`` and ``continuation plugins``: scenes by name, of this package and of one's own."""
 
 import json
+import re
+from pathlib import Path
 
 import pytest
 
@@ -77,3 +79,16 @@ def test_names_of_scenes_are_completed(run):
     _, out, _ = run("completion", "bash")
     (line,) = (line for line in out.splitlines() if line.strip().startswith("solve)"))
     assert "american-put" in line
+
+
+def test_the_scene_of_the_tutorial_is_short_and_runs_by_its_name(run, tmp_path, monkeypatch):
+    page = (Path(__file__).parents[3] / "docs" / "own_scene.md").read_text(encoding="utf-8")
+    code = re.search(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1]
+    assert len(code.splitlines()) <= 40
+    (tmp_path / "reservoirs.py").write_text(code)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    status, out, err = run("solve", "scene", "reservoirs:Reservoirs", "seepage=0.4", "--plot", "levels.png")
+    assert (status, err) == (SUCCESS, "")
+    assert "levels  3.75, 4, 4, 4 m" in out
+    assert (tmp_path / "levels.png").exists()
