@@ -15,7 +15,7 @@ from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.solver import solve
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Point, Quantities, Rival, Unknown, positive
 
 KNOWN = {
     (100.0, 100.0, 0.05, 0.2, 1.0): 6.09037,
@@ -187,13 +187,7 @@ class AmericanPut:
         axes.legend(frameon=False)
 
 
-@frozen(eq=False)
-class _Found:
-    x: Array
-    success: bool = True
-
-
-def _eliminated(problem: LCP) -> _Found:
+def _eliminated(problem: LCP) -> Point:
     """Brennan and Schwartz' elimination for a tridiagonal matrix: exact where the put is exercised below one price.
 
     Eliminated from above, substituted from below with the positive part taken at each point: that takes a loop.
@@ -207,7 +201,7 @@ def _eliminated(problem: LCP) -> _Found:
     x = [max(right[0] / main[0], 0.0)]
     for i in range(1, len(main)):
         x.append(max((right[i] - lower[i - 1] * x[-1]) / main[i], 0.0))
-    return _Found(np.array(x))
+    return Point(np.array(x))
 
 
 def _brennan_schwartz(scene: AmericanPut) -> Quantities:

@@ -14,32 +14,33 @@ from continuation.arrays import Array
 from continuation.checks import integer
 from continuation.linear import Banded
 from continuation.tracing import solve_at
+from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap
-from problems.options import quiet
+from problems.nonlinear.obstacle import BratuForce
 from problems.scenes.scene import Quantities, Rival, Unknown, positive
-
-_BOUNDARY = np.zeros(1)
 
 
 @frozen
 class HalfLayer:
-    """-(u'' + lam e^u) times h^2 at the points of one half, the last one in the middle."""
+    """The force of `BratuForce` at the points of one half, the last one in the middle, for a solution that is even."""
 
     n: int
 
+    @property
+    def _whole(self) -> BratuForce:
+        return BratuForce(Bratu1D(2 * self.n - 1))
+
     def __call__(self, x: Any, lam: Any) -> Any:
         """The value, shape (n,); jets pass through it."""
-        u = np.concatenate((_BOUNDARY, x, x[-2:-1]))
-        return 2.0 * x - u[:-2] - u[2:] - lam * (0.5 / self.n) ** 2 * np.exp(x)
+        return self._whole(np.concatenate((x, x[-2::-1])), lam)[: self.n]
 
-    @quiet
     def slope(self, x: Array, lam: float) -> tuple[Banded, Array]:
         """Tridiagonal, and shape (n,)."""
-        source = (0.5 / self.n) ** 2 * np.exp(x)
-        bands = -np.ones((3, self.n))
-        bands[1] = 2.0 - lam * source
-        bands[2, -2] = -2.0
-        return Banded(bands, 1, 1), -source
+        F_x, F_lam = self._whole.slope(np.concatenate((x, x[-2::-1])), lam)
+        bands = F_x.ab[:, : self.n].copy()
+        # Of the middle both neighbours are the same unknown.
+        bands[2, -2] *= 2.0
+        return Banded(bands, 1, 1), F_lam[: self.n]
 
 
 @frozen

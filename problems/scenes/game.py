@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +13,7 @@ from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.solutions import Solutions, solutions
 from problems.options import real_array
-from problems.scenes.scene import Quantities, Rival, Unknown
+from problems.scenes.scene import Point, Quantities, Rival, Unknown
 
 Payoffs = tuple[tuple[float, ...], ...]
 
@@ -64,7 +65,6 @@ class Game:
     rows: Payoffs = field(default=((3.0, 3.0), (2.0, 5.0), (0.0, 6.0)), converter=_rows)
     columns: Payoffs = field(default=((3.0, 2.0), (2.0, 6.0), (3.0, 1.0)), converter=_columns)
     units: ClassVar[Mapping[str, str]] = {"equilibria": "", "gains": ""}
-    rivals: ClassVar[tuple[Rival, ...]] = ()
 
     def __attrs_post_init__(self) -> None:
         rows, columns = np.shape(self.rows), np.shape(self.columns)
@@ -78,6 +78,11 @@ class Game:
         return (Unknown("strategies of the first", m, "what the first mixes"),
                 Unknown("strategies of the second", n, "what the second mixes"))  # fmt: skip
 
+    @property
+    def rivals(self) -> tuple[Rival, ...]:
+        """All equilibria of a game without degeneracy."""
+        return (Rival("support enumeration (quantecon)", "quantecon", _supports),)
+
     def problem(self) -> LCP:
         """In losses against more than the best."""
         gains, others = np.array(self.rows), np.array(self.columns)
@@ -89,7 +94,7 @@ class Game:
 
     def answer(self, solution: Any) -> Quantities:
         """One equilibrium a row, both mixed strategies side by side, in lexical order; and what both gain."""
-        points = solution.points if isinstance(solution, Solutions) else np.atleast_2d(solution.x)
+        points = np.atleast_2d(solution.points if hasattr(solution, "points") else solution.x)
         m = len(self.rows)
         x, y = points[:, :m], points[:, m:]
         mixed = np.hstack([x / x.sum(axis=1, keepdims=True), y / y.sum(axis=1, keepdims=True)])
@@ -125,3 +130,10 @@ class Game:
         axes.set(yticks=[3 * k + 0.5 for k in range(len(found))], xlabel="probability", xlim=(0.0, 1.0))
         axes.set_yticklabels([f"equilibrium {k}" for k in range(len(found))])
         axes.invert_yaxis()
+
+
+def _supports(scene: Game) -> Quantities:
+    theory = import_module("quantecon.game_theory")
+    players = [theory.Player(np.array(scene.rows)), theory.Player(np.array(scene.columns).T)]
+    found = theory.support_enumeration(theory.NormalFormGame(players))
+    return scene.answer(Point(np.array([np.concatenate(pair) for pair in found])))

@@ -52,13 +52,25 @@ def _arrived(x: Any, well: bool, message: object) -> Array:
     return np.asarray(x)
 
 
-def _quantecon(problem: Any) -> Array:
+def by_quantecon(problem: Any) -> Array:
+    """Lemke's method on tables, compiled.
+
+    Parameters
+    ----------
+    problem : LCP
+    """
     found = conditions(problem)
     result = import_module("quantecon.optimize").lcp_lemke(_dense(found.A), found.q, max_iter=100 * found.n)
     return _arrived(result.z, result.success, f"status {result.status}")
 
 
-def _tables(problem: Any) -> Array:
+def by_tables(problem: Any) -> Array:
+    """Lemke's method on tables of numpy.
+
+    Parameters
+    ----------
+    problem : LCP
+    """
     result = lemke(conditions(problem))
     return _arrived(result.x, result.solved, result.message)
 
@@ -165,8 +177,8 @@ def _bfgs(problem: Any) -> Array:
     return np.asarray(found.x)
 
 
-LEMKE = of_problem("Lemke (quantecon)", "quantecon", _quantecon)
-TABLES = of_problem("Lemke (tables, numpy)", "", _tables)
+LEMKE = of_problem("Lemke (quantecon)", "quantecon", by_quantecon)
+TABLES = of_problem("Lemke (tables, numpy)", "", by_tables)
 GAUSS_SEIDEL = of_problem("projected Gauss-Seidel (numba)", "numba", _gauss_seidel)
 PIQP = of_problem("PIQP", "piqp", _piqp)
 CLARABEL = of_problem("Clarabel", "clarabel", _clarabel)

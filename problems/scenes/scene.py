@@ -70,6 +70,7 @@ class Point:
     """What `Scene.answer` looks at of a solution, for a method that returns a vector only."""
 
     x: Array
+    success: bool = True
 
 
 class Scene(Protocol):

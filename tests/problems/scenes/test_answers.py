@@ -35,12 +35,12 @@ def test_a_pile_gains_no_energy_and_nothing_overlaps(boxes):
     pile = Pile(boxes=boxes, steps=60)
     fall = solve(pile)
     assert fall.success
-    # Per step: round-off of an energy of 78 J, and of places of some metres.
-    assert np.diff(fall.energies).max() <= 1e-12 * fall.energies[0]
-    assert fall.gaps.min() >= -1e-12 * boxes * pile.side
+    # Round-off of energies of some 80 J, and of places of some metres.
+    assert np.diff(fall.energies).max() <= 1e-15 * fall.energies[0]
+    assert fall.gaps.min() >= -1e-15 * boxes * pile.side
     found = pile.answer(fall)
     assert found["heights"] == pytest.approx(0.5 + np.arange(boxes), abs=1e-12)
-    assert found["speeds"].max() <= 1e-12
+    assert np.abs(fall.velocities[-1]).max() <= 1e-12
 
 
 def test_bars_yield_one_after_another_and_collapse():
