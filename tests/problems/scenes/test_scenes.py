@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
+from pathlib import Path
+
 import attrs
 import numpy as np
 import pytest
@@ -16,7 +19,19 @@ from problems.scenes.scene import conditions, mismatch
 
 from .util import EXACT_TO, FREE, MINIMAL, needless, small
 
+ROOT = Path(__file__).parents[3]
 NAMES = list(available())
+
+
+def test_every_scene_is_registered_and_installed():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    written = project["entry-points"]["continuation.scenes"]
+    # Entry points are read from the installed package: `pip install -e .` after a change of pyproject.toml.
+    assert {name: available()[name].points[0].value for name in written} == written
+    parts = {"__init__", "pictures", "planar", "registry", "rivals", "scene"}
+    files = {file.stem for file in (ROOT / "problems" / "scenes").glob("*.py")} - parts
+    assert {value.partition(":")[0].rpartition(".")[2] for value in written.values()} == files
+    assert set(NAMES) >= set(MINIMAL) == set(written)
 
 
 @pytest.fixture(scope="module")
