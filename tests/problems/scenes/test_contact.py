@@ -35,6 +35,8 @@ def test_painleves_rod_has_no_force_or_two():
     (kink,) = path.kinks
     assert kink.name == "turning kink"
     assert np.abs(kink.u).max() == 0.0
+    x, t = path.endpoint.u
+    assert x == pytest.approx(-t / rod.a, rel=1e-15)
     two = rod.answer(path)["forces"]
     assert two == pytest.approx([0.0, rod.b / 0.8480762113533159], rel=1e-14)
     slow = PainleveRod(spin=3.0)
