@@ -421,3 +421,37 @@ def lemke_is_quick_on_small_scenes(charts):
         if row.problem in ("block", "box", "braess", "diode-bridge")
     )
     return quick and compiled and _at(results, "painleve-rod", tables).failed
+
+
+def _where_asked(results, method, test):
+    """Whether a test holds of every row of an outside method; these take part only in charts with `--compare`."""
+    return all(test(row) for row in results.of(method=method))
+
+
+@claim
+def piqp_is_quicker_and_less_exact(charts):
+    meshes, exact = charts["scenes-meshes"], charts["scenes-exact"]
+    return _where_asked(
+        meshes, "PIQP", lambda row: row.seconds < _at(meshes, row.problem, "ours", row.rung).seconds
+    ) and _where_asked(
+        exact,
+        "PIQP",
+        lambda row: (
+            (row.problem != "traffic" or 10.0 * row.seconds < _at(exact, "traffic", "ours").seconds)
+            and (row.problem != "unmixing" or row.errors["answer"] > 1e-5)
+        ),
+    )
+
+
+@claim
+def gauss_seidel_slows_down(charts):
+    results = charts["scenes-meshes"]
+    return _where_asked(
+        results,
+        "projected Gauss-Seidel (numba)",
+        lambda row: (
+            row.rung < 2.0
+            or row.problem == "string"
+            or row.seconds > 5.0 * _at(results, row.problem, "ours", row.rung).seconds
+        ),
+    )
