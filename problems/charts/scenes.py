@@ -24,6 +24,9 @@ def _of_model(measure: Callable[[Any], int]) -> Callable[[Problem, Answer], floa
     return lambda problem, answer: float(measure(_refined(problem, answer.observed.get("factor", 1.0)).problem()))
 
 
+COMPILING = 30.0
+"""Seconds that a first run may take and still be repeated: quantecon and numba compile themselves in it."""
+
 ERROR = observed("answer", "error of the answer, relative")
 ORDER = Error("unknowns", "unknowns of the model", _of_model(order))
 MEMORY = Error("memory", "bytes of the model", _of_model(memory))
@@ -63,7 +66,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     exact = [_problem(name, make(name, larger.get(name))) for name in names if name not in MESHES]
     common: dict[str, Any] = {
         "errors": (ERROR, ORDER, MEMORY), "work": ("seconds",), "figures": (Precision("answer", "seconds"),),
-        "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": 2.0,
+        "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": COMPILING,
     }  # fmt: skip
     ladder = Ladder("mesh", factors, lambda options, value: options)
     return [
