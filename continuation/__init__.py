@@ -11,6 +11,7 @@ from continuation.citation import cite
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.counts import Counts
+from continuation.curves import Curve, Family
 from continuation.diagrams import Deflated, Diagram, diagram
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.functions import from_functions
@@ -46,11 +47,13 @@ __all__ = [
     "Controller",
     "Corrector",
     "Counts",
+    "Curve",
     "Deflated",
     "Diagram",
     "Euclidean",
     "EvaluationError",
     "Event",
+    "Family",
     "Guard",
     "Homotopy",
     "HopfPoint",
