@@ -10,13 +10,13 @@ from typing import Any, Unpack
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.checks import instance_with
+from continuation.checks import check_flag, instance_with
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
 from continuation.point.projection import PathSolver
 from continuation.status import Status
-from continuation.step.options import OBSERVER, Options, documented, each
+from continuation.step.options import OBSERVER, Options, check_run, documented
 from continuation.step.start import at_parameter, guessed
 from continuation.step.state import State
 from continuation.step.tracer import Observer, Tracer
@@ -69,7 +69,9 @@ def trace(
     Interrupted
         After Ctrl-C: a KeyboardInterrupt with the path so far, ``interrupt.path``; the archive has it too.
     """
-    each("observers", observers, OBSERVER)
+    check_run(observers, state)
+    for name, flag in (("progress", progress), ("certified", certified)):
+        check_flag(name, flag)
     proof = None
     if certified:
         from continuation.certificate.shortened import provable

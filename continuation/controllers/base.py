@@ -85,6 +85,8 @@ class Bounds:
     def __attrs_post_init__(self) -> None:
         if self.initial is not None and not self.minimum <= self.initial:
             raise ValueError(f"minimum: expected at most the initial step {self.initial:g}, found {self.minimum:g}")
+        if self.initial is not None and self.initial > self.maximum:
+            raise ValueError(f"initial: expected at most the maximum {self.maximum:g}, found {self.initial:g}")
         if not self.minimum <= self.maximum:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
 

@@ -126,7 +126,7 @@ def _first(*candidates: Any) -> Any:
 
 
 def _events(homotopy: Any, asked: Options) -> tuple[Event, ...]:
-    own = tuple(homotopy.events) if isinstance(homotopy, SupportsEvents) else ()
+    own = homotopy.events if isinstance(homotopy, SupportsEvents) else ()
     each("events", own, EVENT)
     watched: tuple[Event, ...] = (*own, *asked["events"])
     if isinstance(homotopy, SupportsPieces) and not any(isinstance(event, KinkPoint) for event in watched):

@@ -17,7 +17,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
-from continuation.homotopy import SupportsObserve, SupportsPieces
+from continuation.homotopy import SupportsPieces
 from continuation.interrupted import Interrupted
 from continuation.kinks.start import begin
 from continuation.labels import Labels
@@ -27,8 +27,8 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 from continuation.status import Kind, Status
 from continuation.step.advance import Advance, Stopped
-from continuation.step.capabilities import finish_of, max_step_of
-from continuation.step.options import OBSERVER, Options, checked, documented, each
+from continuation.step.capabilities import checked_end, finish_of, max_step_of, observe_of
+from continuation.step.options import Options, check_run, checked, documented
 from continuation.step.record import StepRecorder
 from continuation.step.settings import complete_settings
 from continuation.step.start import (
@@ -126,7 +126,7 @@ class Tracer:
         **options: Unpack[Options],
     ) -> None:
         asked = checked(options)
-        each("observers", observers, OBSERVER)
+        check_run(observers, state)
         self.homotopy = homotopy
         self.path = Path(labels=Labels.of(homotopy))
         self.counts: Counts = self.path.counts
@@ -142,8 +142,7 @@ class Tracer:
         leaving = None if self._start is None else np.asarray(self._start[1], dtype=float)
         straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
         self._solver = PathSolver(self._evaluator, self.settings.tolerance, max_step_of(homotopy), straight)
-        observe = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
-        self._recorder = StepRecorder(self._evaluator, observe)
+        self._recorder = StepRecorder(self._evaluator, observe_of(homotopy))
         self._advance = Advance(self._solver, self.settings, self._recorder, self._spent, self._pieces)
         self._check = asked["check_jacobian"]
         self._clock: float | None = None
@@ -338,7 +337,8 @@ class Tracer:
             self._record(found.step, state, self._recorder.observing(found.events))
             y = self._finish(point.y, point.lam) if verdict is None and self._finish is not None else None
             if y is not None:
-                end = np.append(y, self.settings.target if self.settings.target is not None else point.lam)
+                goal = self.settings.target
+                end = checked_end(self._evaluator, point.u, np.append(y, point.lam if goal is None else goal))
         if end is not None:
             last = self._recorder.end(point, state, end)
             self.counts.accepted += 1

@@ -27,6 +27,7 @@ from problems.lcp.homotopies.starts import (
     feasible_start,
     inside_start,
     inside_vector,
+    made_of_x0,
     natural_units,
     positive_vector,
 )
@@ -99,6 +100,16 @@ class TwoVectorHomotopy:
     def start(self) -> tuple[Array, float]:
         """(x0, y0) and 1."""
         return np.concatenate([self.x0, self.y0]), 1.0
+
+    def at_solution(self, x: Array) -> Array:
+        """(x, y) with y = w, of bounds their forces: the zero of H at lambda = 0 that a solution is; (2n,) for an LCP.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        forces = np.where(self.sides.gaps(x) > 0.0, 0.0, np.maximum(self.sides.pull(self.problem.w(x)), 0.0))
+        return np.concatenate([x, forces])
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
@@ -211,7 +222,8 @@ def YuHomotopy(
         For bad input, naming the argument.
     """
     x0 = _inside(problem, x0)
-    y0 = 1.0 / Sides(problem).gaps(x0) if y0 is None else y0
+    with np.errstate(over="ignore"):
+        y0 = made_of_x0(1.0 / Sides(problem).gaps(x0)) if y0 is None else y0
     return _made("Yu", problem, Blend(sign=1, x=1), x0, y0, references.YU, structure)
 
 

@@ -284,18 +284,14 @@ def _account(case: Case, settled: Attempt | None) -> str:
 def _archive_without_path(search: Search, found: Solution) -> None:
     """Where no path was needed the archive holds the message, and the solution as the end of the KKT or Wang's path.
 
-    With z1 = w and z2 = x a solution satisfies the equations of that homotopy at lambda = 0.
+    A solution satisfies the equations of that homotopy at lambda = 0: see `at_solution`.
     """
     problem = found.problem
     homotopy = KKTHomotopy(problem) if isinstance(problem, LCP) else WangHomotopy(problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate
     if end is not None:
-        x, w = end.x, np.maximum(end.w, 0.0)
-        if isinstance(homotopy, KKTHomotopy):
-            y = np.concatenate([x, w, x])
-        else:
-            y = np.append(x, np.maximum(homotopy.sides.pull(end.w), 0.0))
+        y = homotopy.at_solution(end.x)
         u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
         observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
         path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))
