@@ -29,7 +29,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme, level
+from problems.lcp.data.scaling import balanced, extreme, level, without_factor
 from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
@@ -161,7 +161,10 @@ def solve(
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
     postponed = automatic and finish and not path and problem.standard
     postponed = postponed and problem.n > LARGEST_DECIDED and level(problem)
-    scaled = balanced(problem) if not postponed and (automatic or extreme(problem)) else None
+    if postponed:
+        scaled = without_factor(problem)
+    else:
+        scaled = balanced(problem) if automatic or extreme(problem) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
         scaled = None

@@ -58,7 +58,7 @@ def test_a_finish_is_believed_where_the_equations_hold_and_its_residual_is_said(
 
 @pytest.mark.parametrize("off", [7.0, -1.5, 1e300])
 def test_a_finish_whose_end_does_not_solve_the_equations_is_refused(off):
-    with pytest.raises(ValueError, match="^finish: expected None or an end of the path, found a point where H is "):
+    with pytest.raises(ValueError, match=r"^finish: expected None or an end of the path, found a point where H is "):
         trace(Straight(finish=lambda y, lam: y + off))
 
 
