@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -10,12 +11,13 @@ from attrs import evolve, field, frozen
 
 from continuation.arrays import Array
 from continuation.budget import Budget
+from continuation.checks import check_flag, complain, instance_with, is_number
 from continuation.controllers import Bounds, Decision, StepMeasures
 from continuation.counts import Counts
 from continuation.ends.closed_curve import SAME_POINT, passes_start
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic, Euclidean, Metric, Weighted, inner, norm
-from continuation.path import LocatedEvent, Path, Step
+from continuation.path import LocatedEvent, Path, Step, require_path
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -23,6 +25,7 @@ from continuation.point.segment import hermite
 from continuation.predictors import Knot
 from continuation.presets import CONSERVATIVE
 from continuation.status import Status
+from continuation.step.options import PARTS
 from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 
@@ -62,7 +65,8 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     ArithmeticError
         If the path cannot be followed between two of its points, as in a branch point.
     """
-    _require_step(path)
+    require_path(path)
+    _check_metric(metric)
     solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
     planes, rule = _metric_of(homotopy, path), Euclidean() if metric is None else metric
     total = 0.0
@@ -105,6 +109,11 @@ def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Arr
         raise EvaluationError(f"the path could not be measured near lam = {a.lam:g}")
     middle = inside[_MIDDLE]
     return sum(_length(solver, p, q, measure, divisions - 1) for p, q in ((a, middle), (middle, b)))
+
+
+def _check_metric(metric: Any) -> None:
+    if metric is not None:
+        instance_with("metric", metric, *PARTS["metric"])
 
 
 def _metric_of(homotopy: Any, path: Path) -> Metric:
@@ -210,7 +219,9 @@ def audit(
     ValueError
         If the path has no step.
     """
-    _require_step(path)
+    require_path(path)
+    _check_metric(metric)
+    check_flag("backwards", backwards)
     rule, tolerance = metric or _metric_of(homotopy, path), as_tolerance(tolerance)
     indices = [k for k, step in enumerate(path.steps) if k == 0 or (step.u != path.steps[k - 1].u).any()]
     sign = 1.0
@@ -234,11 +245,6 @@ def audit(
     same = turns == expected
     sentence = f"The retrace passes through all points, with {turns} turning points"
     return Audit(same, sentence + ("." if same else f" instead of {expected}."), None, tracer.path)
-
-
-def _require_step(path: Path) -> None:
-    if len(path) < 2:
-        raise ValueError(f"path: expected at least two points, found {len(path)}")
 
 
 def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Metric) -> list[Knot]:
@@ -328,6 +334,9 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     ArithmeticError
         If the corrector fails there.
     """
+    require_path(path)
+    if not is_number(s) or not math.isfinite(s):
+        raise complain(TypeError if not is_number(s) else ValueError, "s", "a finite number", s)
     solver = PathSolver(Evaluator(homotopy, Counts()), as_tolerance(tolerance))
     u = path(float(s))
     ahead = path(min(float(s) + 1e-6 * path.arclength[-1], path.arclength[-1]))

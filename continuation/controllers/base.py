@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 from attrs import evolve, field, frozen
 from attrs.validators import optional
 
-from continuation.checks import POSITIVE, POSITIVE_FINITE
+from continuation.checks import POSITIVE, POSITIVE_FINITE, complain
 from continuation.rejection import Rejection
 
 State: TypeAlias = tuple[float, ...]
@@ -117,6 +117,13 @@ class Bounds:
     def longest(self) -> float:
         """The first value, for a controller that goes back to it after every step."""
         return self.maximum if self.initial is None else self.cap(self.initial)
+
+
+def checked_bounds(value: Any) -> Bounds:
+    """The bounds of a step; TypeError for anything else."""
+    if not isinstance(value, Bounds):
+        raise complain(TypeError, "bounds", "Bounds(minimum, maximum, initial)", value)
+    return value
 
 
 class Controller(Protocol):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from attrs import field, frozen
 
 from continuation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINBOLDT
 from continuation.checks import FACTOR, FRACTION, POSITIVE, integer
-from continuation.controllers.base import Bounds, Decision, State, StepMeasures
+from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2
 """A rejected step becomes shorter by this factor at least: else asymptotics that do not hold yet repeat it."""
@@ -19,18 +19,18 @@ STRAIGHT, LEAST_CURVATURE, LEAST_CONTRACTION = 0.01, 1e-3, 1e-3
 the last one's, are taken for this at least; a corrector that contracts better tells nothing more."""
 
 
-def _of_fixed(bounds: Bounds) -> Bounds:
-    return bounds.beginning_with(0.1)
+def _of_fixed(bounds: Any) -> Bounds:
+    return checked_bounds(bounds).beginning_with(0.1)
 
 
-def _of_geometric(bounds: Bounds) -> Bounds:
+def _of_geometric(bounds: Any) -> Bounds:
     """The paper's step: ratio^0."""
-    return bounds.beginning_with(1.0)
+    return checked_bounds(bounds).beginning_with(1.0)
 
 
-def _of_series(bounds: Bounds) -> Bounds:
+def _of_series(bounds: Any) -> Bounds:
     """The whole range of the series."""
-    return bounds.beginning_with(math.inf)
+    return checked_bounds(bounds).beginning_with(math.inf)
 
 
 @frozen
@@ -81,7 +81,7 @@ class IterationCount:
     grow: float = field(default=2.0, validator=FACTOR)
     shrink: float = field(default=0.5, validator=FRACTION)
     max_angle: float = field(default=0.4, validator=POSITIVE)
-    bounds: Bounds = field(factory=Bounds)
+    bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
         """No state."""
@@ -118,7 +118,7 @@ class AllgowerGeorg:
     angle: float = field(default=0.3, validator=POSITIVE)
     deceleration: float = field(default=1.5, validator=FACTOR)
     acceleration: float = field(default=2.0, validator=FACTOR)
-    bounds: Bounds = field(factory=Bounds)
+    bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
         """No state."""
@@ -159,7 +159,7 @@ class Curvature:
     initial_distance: float = field(default=1e-2, validator=POSITIVE)
     max_angle: float = field(default=0.4, validator=POSITIVE)
     growth: float = field(default=3.0, validator=FACTOR)
-    bounds: Bounds = field(factory=Bounds)
+    bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def _step(self, liked: float, curvature: float) -> float:
         # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.

@@ -16,7 +16,7 @@ from attrs.validators import optional
 
 from continuation.arrays import Array
 from continuation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
-from continuation.checks import FRACTION, POSITIVE_FINITE, complain, integer
+from continuation.checks import FRACTION, POSITIVE_FINITE, complain, integer, of_kind
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsTaylor
 from continuation.point.linearization import Linearization, factored, with_exact_solves
@@ -119,7 +119,7 @@ class Taylor:
     order_wanted: int | None = field(default=None, validator=optional(integer(2, LARGEST_ORDER)), alias="order")
     accuracy: float = field(default=1e-5, validator=FRACTION)
     safety: float = field(default=0.95, validator=POSITIVE_FINITE)
-    rational: bool = False
+    rational: bool = field(default=False, validator=of_kind("True or False", lambda value: isinstance(value, bool)))
     memory: int = field(default=1, init=False)
     interior_fraction: ClassVar[float] = 0.9999
     """How much of the way to the boundary of a domain it may go: its error is far below the distance that is left."""

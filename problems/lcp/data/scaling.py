@@ -46,8 +46,9 @@ the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
 
 LEVELLED = 16.0
 """Where the largest entries of all rows and columns are within this factor of another, active sets of an LCP are tried
-before it is put into units of its own, and a problem with bounds stays as it is if they are within it of 1 as well. Finding units and changing to them takes longer than
-solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone LCPs, n = 60: 0.5 of 1.3 ms)."""
+before it is put into units of its own, and a problem with bounds stays as it is if they are within it of 1 as well.
+Finding units and changing to them takes longer than solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone
+LCPs, n = 60: 0.5 of 1.3 ms)."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""

@@ -67,6 +67,8 @@ def positive_vector(name: str, value: Any, n: int) -> Array:
     ValueError
         Naming the argument, what it held and what was expected.
     """
+    if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
+        raise ValueError(f"{name}: expected {n} positive numbers, found a masked array with masked entries")
     try:
         array = np.array(value)
     except ValueError as error:
@@ -158,6 +160,7 @@ def default_start(problem: MixedLCP) -> Start:
     ----------
     problem : MixedLCP
     """
+    require_problem(problem)
     x, w = natural_units(problem)
     x0 = np.full(problem.n, x)
     return centred(x0, relaxed_w(problem, x0, w))
@@ -176,6 +179,9 @@ def random_start(problem: MixedLCP, generator: np.random.Generator, distance: tu
     """
     require_problem(problem)
     instance_with("generator", generator, ("uniform", "normal", "standard_normal"), "a numpy.random.Generator")
+    ends = finite_vector("distance", distance, 2)
+    if not ends[0] < ends[1]:
+        raise ValueError(f"distance: expected (least, most), found {distance}")
     x, w = natural_units(problem)
     scale = 10.0 ** generator.uniform(*distance)
     if not problem.standard:
