@@ -51,6 +51,8 @@ class Point:
 
 KILLS = Campaign(campaigns.kills, 0, 1332)
 DAMAGE = Campaign(campaigns.damage, 0, 1723)
+TRUTH = Campaign(campaigns.tally("truth"), 60, 54_000)
+FULL = Campaign(campaigns.full, 4, 90)
 
 POINTS = (
     Point("1", "opening an archive runs code", "7 of 7 operations", (ARCHIVE + "test_archive_trust.py",)),
@@ -86,7 +88,7 @@ POINTS = (
     Point(
         "9", "full disks and size limits", "13 of 28 without an ArchiveError; 76 of 76 archives refused",
         (ARCHIVE + "test_archive_accidents.py", "tests/continuation/cli/test_no_room.py"),
-        (Campaign(campaigns.full, 4, 90),),
+        (FULL,),
     ),
     Point(
         "10", "damaged numbers are read without a word", "289 of 1,723 files; 80 resumed to another path",
@@ -94,7 +96,7 @@ POINTS = (
     ),
     Point(
         "11", "lcp.solve raises, or warns, on finite data", "649 raised of 54,000, 1,027 warned",
-        (LCP + "test_guarantees_strained.py",), (Campaign(campaigns.tally("truth"), 60, 54_000),),
+        (LCP + "test_guarantees_strained.py",), (TRUTH,),
     ),
     Point(
         "12", "max_step that is NaN loops for ever", "no return in 15 s",
@@ -122,10 +124,10 @@ POINTS = (
     Point("H1", "kills lose nothing that was committed", "1,332 kills, none lost; 410 resumed exactly", (), (KILLS,)),
     Point("H2", "files cut off", "114 clear errors of 114", (), (Campaign(campaigns.truncation, 20, 1_000),)),
     Point("H3", "files opened while they grow", "1,350, none wrong", (), (Campaign(campaigns.growing, 15, 1_350),)),
-    Point("H4", "no room while tracing", "90 of 90", (), (Campaign(campaigns.full, 0, 90),)),
+    Point("H4", "no room while tracing", "90 of 90", (), (FULL,)),
     Point(
         "H5", "claims about LCPs are true", "33,479 SOLVED and 11,420 UNSOLVABLE, none false", (),
-        (Campaign(campaigns.tally("truth"), 0, 54_000),),
+        (TRUTH,),
     ),
     Point(
         "H6", "the same bits, whatever the hash seed, the threads of BLAS, or threads", "held", (),
