@@ -229,3 +229,12 @@ def made_of_x0(y0: Array) -> Array:
     if not np.isfinite(y0).all():
         raise ValueError(f"x0: expected numbers from which a finite y0 comes (or give y0 > 0), found {y0.max()} in it")
     return y0
+
+
+def given_inside(problem: MixedLCP, x0: Any) -> Array:
+    """x0 between the bounds, checked; by default at a distance of one from them."""
+    require_problem(problem)
+    if problem.fixed.any():
+        i = int(np.argmax(problem.fixed))
+        raise ValueError(f"problem: expected lower < upper, found a fixed unknown {i}; lcp.solve eliminates it")
+    return inside_start(problem) if x0 is None else inside_vector("x0", x0, problem)
