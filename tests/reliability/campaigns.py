@@ -230,11 +230,12 @@ def interrupts(folder: Path, size: int) -> Found:
     """Ctrl-C in `lcp.solve`: one is enough, wherever it comes, and no path begins after it."""
     residual, seen = lcp.KKTHomotopy.residual, Counter[str]()
     problem = lcp.LCP([[1.0, -1.0], [-1.0, 1.0]], [-0.5, 2.0])
+    calls = lcp.solve(problem, "kkt", restarts=2, finish=False).counts.residuals
     for k in range(size):
-        pressed = _Pressed(residual, 1 + 3 * k)
+        pressed = _Pressed(residual, 1 + k * calls // (2 * size))
         lcp.KKTHomotopy.residual = lambda self, y, lam, pressed=pressed: pressed(self, y, lam)
         try:
-            lcp.solve(problem, "kkt", restarts=1000, finish=False, archive=folder / f"{k}.h5")
+            lcp.solve(problem, "kkt", restarts=2, finish=False, archive=folder / f"{k}.h5")
             seen["WRONG: it returned" if pressed.left <= 0 else "it was done before"] += 1
         except KeyboardInterrupt:
             seen["the caller had it" if pressed.left == 0 else "WRONG: it went on"] += 1

@@ -74,7 +74,7 @@ POINTS = (
     ),
     Point(
         "6", "Ctrl-C in lcp.solve ends one path, and the next begins", "19 signals in 40 s",
-        ("tests/continuation/test_interrupted.py",), (Campaign(campaigns.interrupts, 10, 400),),
+        ("tests/continuation/test_interrupted.py",), (Campaign(campaigns.interrupts, 5, 100),),
     ),
     Point(
         "7", "a worker of a sweep dies", "10 of 39 sweeps raised; half a path over dask",
