@@ -76,6 +76,7 @@ KINDS: Mapping[str, tuple[Any, ...]] = {
     "function or None": (5, "f", [], {}, NAN, 1j),
     "homotopy": NO_HOMOTOPY,
     "homotopy with pieces": (*NO_HOMOTOPY, bifurcation.Cusp()),
+    "family": (None, 3, "a", [], {}, np.ones(2)),
     "path": (*NO_OBJECT, c.Path, np.ones(3)),
     "event": (*NO_OBJECT, c.TurningPoint(), np.ones(3)),
     "events": (None, 3, "turning", len, [len], [3], [None], c.TurningPoint(), [c.TurningPoint], {}),
@@ -257,6 +258,9 @@ def engine(w: World) -> Iterator[Call]:
         {"residual": "function", "jacobian": "function or None", "start": "pair"},
     )  # fmt: skip
     yield Call(w.path, {"s": 0.1}, {"s": "places"})
+    family = c.Family(w.homotopy, "splitting")
+    yield Call(c.Family, {**right, "name": "splitting"}, {"name": "text"})
+    yield Call(c.Curve, {"family": family, "event": w.event}, {"family": "family"})
     yield Call(check_homotopy, right, {"steps": "count or None"})
     yield Call(describe, {"archive": None}, {"archive": "archive"})
 
