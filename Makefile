@@ -7,7 +7,7 @@ OUT    ?= build/paper
 # that what its tests share is made once.
 TESTENV := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=Agg
 
-.PHONY: demo test lint types suite chart docs clean
+.PHONY: demo test lint types suite reliability chart docs clean
 
 demo: $(VENV)/.demo
 	$(BIN)/continuation paper --output $(OUT)
@@ -22,6 +22,10 @@ types: $(VENV)/.dev
 
 suite: $(VENV)/.dev
 	$(TESTENV) $(BIN)/pytest -n 2 --dist loadfile
+
+# Kills, damage, bad input and the rest by the thousand, in two processes; the table is build/reliability/table.md.
+reliability: $(VENV)/.dev
+	$(TESTENV) $(BIN)/python -m tests.reliability.run --output build/reliability
 
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -10,13 +11,14 @@ from attrs import evolve, field, frozen
 
 from continuation.arrays import Array
 from continuation.budget import Budget
+from continuation.checks import check_flag, complain, is_number
 from continuation.controllers import Bounds, Decision, StepMeasures
 from continuation.counts import Counts
 from continuation.ends.closed_curve import SAME_POINT, passes_start
 from continuation.evaluation.evaluator import Evaluator
-from continuation.length import metric_of, require_step
+from continuation.length import check_metric, metric_of
 from continuation.metric import Metric, inner, norm
-from continuation.path import LocatedEvent, Path, Step
+from continuation.path import LocatedEvent, Path, Step, require_path
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -124,7 +126,9 @@ def audit(
     ValueError
         If the path has no step.
     """
-    require_step(path)
+    require_path(path)
+    check_metric(metric)
+    check_flag("backwards", backwards)
     rule, tolerance = metric or metric_of(homotopy, path), as_tolerance(tolerance)
     indices = [k for k, step in enumerate(path.steps) if k == 0 or (step.u != path.steps[k - 1].u).any()]
     sign = 1.0
@@ -255,6 +259,9 @@ def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1
     ArithmeticError
         If the corrector fails there.
     """
+    require_path(path)
+    if not is_number(s) or not math.isfinite(s):
+        raise complain(TypeError if not is_number(s) else ValueError, "s", "a finite number", s)
     solver = PathSolver(Evaluator(homotopy, Counts()), as_tolerance(tolerance))
     u = path(float(s))
     ahead = path(min(float(s) + 1e-6 * path.arclength[-1], path.arclength[-1]))

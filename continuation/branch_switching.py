@@ -94,9 +94,9 @@ def _rays(homotopy: Any, event: LocatedEvent) -> Array:
         raise complain(TypeError, "event", "a located event of a path", event)
     if event.kind != Kind.BRANCH_POINT:
         raise ValueError(f"event: expected a branch point, found {event.name!r}")
+    evaluator = Evaluator(homotopy, Counts())
     if event.rays is not None:
         return event.rays
-    evaluator = Evaluator(homotopy, Counts())
     weights = metric_at(event)
     rows = row_sizes(evaluator, 1.0 / np.sqrt(weights), (event.u, event.u + 0.1 * event.tangent))
     found = branch_point_near(evaluator, event.u, event.tangent, weights, rows)

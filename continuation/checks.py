@@ -55,14 +55,27 @@ def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> V
     return check
 
 
-def integer(least: float = -math.inf) -> Validator:
-    """An attrs validator for integers, at least `least`."""
+def integer(least: float = -math.inf, most: float = math.inf) -> Validator:
+    """An attrs validator for integers from `least` to `most`."""
 
     def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
         if not isinstance(value, Integral) or isinstance(value, bool):
             raise complain(TypeError, attribute.alias or attribute.name, "an integer", value)
         if value < least:
             raise complain(ValueError, attribute.alias or attribute.name, f"at least {least:g}", value)
+        if int(value) > most:
+            raise complain(ValueError, attribute.alias or attribute.name, f"at most {most:g}", value)
+
+    return check
+
+
+def one_of(*values: int) -> Validator:
+    """An attrs validator for one of a few integers."""
+    expected = f"one of {', '.join(map(str, values))}"
+
+    def check(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+        if not isinstance(value, Integral) or value not in values:
+            raise complain(ValueError, attribute.alias or attribute.name, expected, value)
 
     return check
 
@@ -82,6 +95,12 @@ def sign(instance: Any, attribute: Attribute[Any], value: Any) -> None:
     check_sign(attribute.name, value)
 
 
+def check_flag(name: str, value: Any) -> None:
+    """Raise TypeError unless `value` is True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise complain(TypeError, name, "True or False", value)
+
+
 def check_sign(name: str, value: Any) -> None:
     """Raise unless `value` is -1, 0 or 1."""
     if not is_number(value) or value not in (-1, 0, 1):
@@ -92,6 +111,9 @@ POSITIVE = number("a positive number", lambda x: x > 0.0)
 POSITIVE_FINITE = number("a positive finite number", lambda x: 0.0 < x < math.inf)
 NOT_NEGATIVE = number("a finite number, at least 0", lambda x: 0.0 <= x < math.inf)
 FINITE = number("a finite number")
+FRACTION = number("a number between 0 and 1", lambda x: 0.0 < x < 1.0)
+SHARE = number("a number from 0 to 1", lambda x: 0.0 <= x <= 1.0)
+FACTOR = number("a finite number above 1", lambda x: 1.0 < x < math.inf)
 
 
 def instance_with(name: str, value: Any, attributes: Sequence[str], expected: str) -> None:

@@ -6,6 +6,7 @@ import re
 from typing import Any
 
 from continuation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
+from continuation.checks import complain
 from continuation.path import Path
 from continuation.status import Kind
 
@@ -43,7 +44,11 @@ def cite(source: Any) -> str:
 
 def references_of(*parts: Any) -> tuple[str, ...]:
     """The BibTeX entries in the attribute `references` of each part that has one, each key once."""
-    return unique(tuple(entry for part in parts for entry in getattr(part, "references", ())))
+    found = [getattr(part, "references", ()) for part in parts]
+    for given in found:
+        if not isinstance(given, (tuple, list)) or not all(isinstance(entry, str) for entry in given):
+            raise complain(TypeError, "references", "a tuple of BibTeX entries", given)
+    return unique(tuple(entry for given in found for entry in given))
 
 
 def entries(text: str) -> tuple[str, ...]:

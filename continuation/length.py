@@ -7,13 +7,15 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
+from continuation.checks import instance_with
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic, Euclidean, Metric, Weighted, norm
-from continuation.path import Path
+from continuation.path import Path, require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.point.segment import hermite
+from continuation.step.options import PARTS
 from continuation.tolerance import Tolerance
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
@@ -52,7 +54,8 @@ def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
     ArithmeticError
         If the path cannot be followed between two of its points, as in a branch point.
     """
-    require_step(path)
+    require_path(path)
+    check_metric(metric)
     solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
     planes, rule = metric_of(homotopy, path), Euclidean() if metric is None else metric
     total = 0.0
@@ -109,7 +112,7 @@ def metric_of(homotopy: Any, path: Path) -> Metric:
     return Weighted(weights[:-1], float(weights[-1]))
 
 
-def require_step(path: Path) -> None:
-    """ValueError for a path of one point."""
-    if len(path) < 2:
-        raise ValueError(f"path: expected at least two points, found {len(path)}")
+def check_metric(metric: Any) -> None:
+    """Raise TypeError unless the argument `metric` is a metric or None."""
+    if metric is not None:
+        instance_with("metric", metric, *PARTS["metric"])

@@ -7,9 +7,9 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import gt, lt
 
 from continuation.arrays import Array
+from continuation.checks import FRACTION, POSITIVE_FINITE
 
 
 class Metric(Protocol):
@@ -60,7 +60,7 @@ class Weighted:
     """
 
     y: float | Array = 1.0
-    lam: float = field(default=1.0, validator=gt(0))
+    lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """The given weights, as one array."""
@@ -90,8 +90,8 @@ class Relative:
     Made for interior paths, whose components live in orders of magnitude.
     """
 
-    floor: float = field(default=1e-12, validator=gt(0))
-    lam: float = field(default=1.0, validator=gt(0))
+    floor: float = field(default=1e-12, validator=POSITIVE_FINITE)
+    lam: float = field(default=1.0, validator=POSITIVE_FINITE)
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """1/max(|u_i|, floor)^2, and `lam` for the parameter."""
@@ -119,7 +119,7 @@ class Automatic:
         Weight of the parameter's change beside the mean of all others.
     """
 
-    share: float = field(default=0.2, validator=[gt(0), lt(1)])
+    share: float = field(default=0.2, validator=FRACTION)
 
     @property
     def longest(self) -> float:
@@ -172,7 +172,7 @@ class Inherited:
     """
 
     before: Array
-    part: float = field(default=0.1, validator=[gt(0), lt(1)])
+    part: float = field(default=0.1, validator=FRACTION)
     automatic: Automatic = field(factory=Automatic, init=False)
 
     @property

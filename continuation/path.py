@@ -13,7 +13,7 @@ from attrs import define, field
 from scipy.optimize import brentq
 
 from continuation.arrays import Array
-from continuation.checks import real_vector
+from continuation.checks import complain, real_vector
 from continuation.counts import Counts
 from continuation.labels import Labels
 from continuation.late import late
@@ -289,3 +289,11 @@ def _column(steps: Any, name: str) -> Array:
     """A number or vector of all steps; steps that stay in an archive know a way of their own."""
     column: Array = steps.column(name) if hasattr(steps, "column") else np.array([getattr(s, name) for s in steps])
     return column
+
+
+def require_path(path: Any) -> None:
+    """Raise TypeError unless the argument `path` is a path, ValueError unless it has two points."""
+    if not isinstance(path, Path):
+        raise complain(TypeError, "path", "a path, as `trace` gives it", path)
+    if len(path) < 2:
+        raise ValueError(f"path: expected at least two points, found {len(path)}")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
+
 from attrs import field, frozen
 
 from continuation.arrays import Array
-from continuation.checks import POSITIVE, POSITIVE_FINITE, complain, is_number
+from continuation.checks import FRACTION, POSITIVE, complain, is_number
 from continuation.metric import norm
 
 
@@ -28,7 +29,7 @@ class Tolerance:
         increments and round-off alone.
     """
 
-    relative: float = field(default=1e-8, validator=POSITIVE_FINITE)
+    relative: float = field(default=1e-8, validator=FRACTION)
     residual: float = field(default=float("inf"), validator=POSITIVE)
 
     def measure(self, increment: Array, weights: Array) -> float:
@@ -51,13 +52,15 @@ def as_tolerance(value: float | Tolerance) -> Tolerance:
     TypeError
         If it is neither a Tolerance nor a real number.
     ValueError
-        If the number is not positive and finite.
+        If the number is not between 0 and 1: it is a fraction of the path.
     """
     if isinstance(value, Tolerance):
         return value
     expected = "a positive finite number or a Tolerance"
     if not is_number(value):
         raise complain(TypeError, "tolerance", expected, value)
-    if not (np.isfinite(value) and value > 0):
+    if not 0.0 < value < math.inf:
         raise complain(ValueError, "tolerance", expected, value)
+    if value >= 1.0:
+        raise complain(ValueError, "tolerance", "less than 1, since it is a fraction of the path", value)
     return Tolerance(relative=float(value))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from contextlib import nullcontext
 from os import PathLike
@@ -10,14 +11,14 @@ from typing import Any, Unpack
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.checks import instance_with
+from continuation.checks import check_flag, complain, instance_with, is_number, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
 from continuation.point.projection import PathSolver
 from continuation.status import Status
-from continuation.step.options import OBSERVER, Options, documented, each
-from continuation.step.start import at_parameter, guessed
+from continuation.step.options import OBSERVER, Options, check_run, checked, documented
+from continuation.step.start import at_parameter
 from continuation.step.state import State
 from continuation.step.tracer import Observer, Tracer
 from continuation.tolerance import Tolerance, as_tolerance
@@ -69,7 +70,9 @@ def trace(
     Interrupted
         After Ctrl-C: a KeyboardInterrupt with the path so far, ``interrupt.path``; the archive has it too.
     """
-    each("observers", observers, OBSERVER)
+    check_run(observers, state)
+    for name, flag in (("progress", progress), ("certified", certified)):
+        check_flag(name, flag)
     proof = None
     if certified:
         from continuation.certificate.shortened import provable
@@ -128,7 +131,7 @@ def trace_both(
         raise ValueError(f"direction: expected none, since both are traced, found {options['direction']!r}")
     ahead: dict[str, Any] = {**options, "direction": 1}
     behind: dict[str, Any] = {**options, "direction": -1}
-    given = options.get("start")
+    given = checked(options)["start"]
     if given is not None and np.ndim(given[1]):
         ahead, behind = {**options}, {**options, "start": (given[0], -np.asarray(given[1], dtype=float))}
     log = nullcontext() if archive is None else _many(archive)
@@ -168,18 +171,23 @@ def solve_at(
     """
     evaluator = Evaluator(homotopy, Counts())
     start = evaluator.start()
-    u = start if guess is None else guessed((np.atleast_1d(guess), 0.0))
+    if not is_number(lam) or not math.isfinite(lam):
+        raise complain(TypeError if not is_number(lam) else ValueError, "lam", "a finite number", lam)
+    y = start[:-1] if guess is None else np.atleast_1d(real_vector("guess", guess))
+    if y.ndim != 1 or not np.isfinite(y).all():
+        raise complain(ValueError, "guess", "a vector of finite numbers", guess)
+    u = np.append(y, lam)
     if u.size != start.size:
         raise ValueError(f"guess: expected {start.size - 1} numbers, found {u.size - 1}")
-    u[-1] = float(lam)
     with np.errstate(all="ignore"):
         return at_parameter(PathSolver(evaluator, as_tolerance(tolerance)), u)[:-1]
 
 
 def _many(archive: str | PathLike[str]) -> Any:
     from continuation.archive import PathLog
+    from continuation.archive.atomic import as_file
 
-    return PathLog(archive)
+    return PathLog(as_file("archive", archive))
 
 
 def _log(archive: str | PathLike[str] | Observer, save_every: int) -> Observer:

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import gt, instance_of, lt
 
 from continuation.arrays import Array
+from continuation.checks import FRACTION, POSITIVE_FINITE, integer
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy
 from problems.options import quiet
@@ -43,12 +43,12 @@ class LiteralSettings:
     max_iterations : int
     """
 
-    l0: float = field(default=0.5, validator=[gt(0.0), lt(1.0)])
-    eps1: float = field(default=1e-9, validator=gt(0.0))
-    eps2: float = field(default=1e-3, validator=gt(0.0))
-    eps3: float = field(default=1e-6, validator=gt(0.0))
-    a0: float = field(default=1e-9, validator=gt(0.0))
-    max_iterations: int = field(default=MAX_ITERATIONS, validator=[instance_of(int), gt(0)])
+    l0: float = field(default=0.5, validator=FRACTION)
+    eps1: float = field(default=1e-9, validator=POSITIVE_FINITE)
+    eps2: float = field(default=1e-3, validator=POSITIVE_FINITE)
+    eps3: float = field(default=1e-6, validator=POSITIVE_FINITE)
+    a0: float = field(default=1e-9, validator=POSITIVE_FINITE)
+    max_iterations: int = field(default=MAX_ITERATIONS, validator=integer(1))
 
 
 DEFAULT = LiteralSettings()

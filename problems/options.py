@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from decimal import Decimal
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from attrs import Attribute
 
 from continuation.arrays import Array
+from continuation.budget import Budget
 from continuation.checks import FINITE, integer
 
 quiet = np.errstate(over="ignore", invalid="ignore")
@@ -25,6 +26,24 @@ def finite_or_none(instance: Any, attribute: Attribute[Any], value: Any) -> None
     """As `finite`, with None allowed: a path without a target."""
     if value is not None:
         finite(instance, attribute, value)
+
+
+def check_tolerance(value: Any) -> None:
+    """Raise ValueError unless the argument `tolerance` is a number between 0 and 1."""
+    if not isinstance(value, Real) or isinstance(value, bool) or not 0.0 < float(value) < 1.0:
+        raise ValueError(f"tolerance: expected a number between 0 and 1, found {value!r}")
+
+
+def check_seed(value: Any) -> None:
+    """Raise ValueError unless the argument `seed` is an integer, at least 0."""
+    if not isinstance(value, Integral) or isinstance(value, bool) or value < 0:
+        raise ValueError(f"seed: expected an integer, at least 0, found {value!r}")
+
+
+def check_budget(value: Any) -> None:
+    """Raise TypeError unless the argument `budget` is a Budget or None."""
+    if value is not None and not isinstance(value, Budget):
+        raise TypeError(f"budget: expected a Budget, found {value!r}")
 
 
 def real_array(name: str, value: Any) -> Array:

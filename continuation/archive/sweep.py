@@ -32,9 +32,9 @@ from continuation.step.options import Options, check_names
 
 Progress = Callable[[int, int], None]
 _PARTS_PER_WORKER = 4
-_GRACE = 0.5
-"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s, and the rest of a second is
-for the files."""
+_GRACE, _PATIENCE = 0.5, 10.0
+"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s, and the rest is for the files.
+The second is for those that cannot be ended, as threads: a file is merged when its writer has left it."""
 
 
 def trace_many(
@@ -201,9 +201,7 @@ class _Run:
         other with it.
         """
         if any(isinstance(found, BrokenExecutor) for found in self.results.values()):
-            # A broken pool fails its futures first and ends its processes then: their files are at rest after that.
-            for process in self.processes:
-                process.join()
+            self._join()
         for k, batch in enumerate(self.batches):
             error = self.results.setdefault(k, TimeoutError(f"took longer than {self.timeout:g} s" if self.timeout
                                                             else "was never begun"))
@@ -214,6 +212,11 @@ class _Run:
                 if batch.first + i not in written:
                     self.again[batch.first + i] = self._alone(batch.single(i), error)
                 self._count(1)
+
+    def _join(self) -> None:
+        """Wait for processes that were ended, or are by their pool: their files are at rest after that."""
+        for process in self.processes:
+            process.join()
 
     def _alone(self, batch: Batch, error: BaseException) -> Result | BaseException:
         if isinstance(error, TimeoutError):
@@ -242,8 +245,9 @@ class _Run:
         for future in self.futures:
             future.cancel()
         if wait(self.futures, timeout=_GRACE).not_done:
-            _end_processes(self.executor)
-            wait(self.futures, timeout=_GRACE / 4)
+            ended = _end_processes(self.executor)
+            self._join()
+            wait(self.futures, timeout=_GRACE / 4 if ended else _PATIENCE)
         for future, k in self.futures.items():
             if future.done():
                 self.results[k] = _outcome(future)

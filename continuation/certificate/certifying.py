@@ -23,7 +23,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.intervals.ends import Mask
 from continuation.metric import Automatic, Metric
-from continuation.path import Path, Step
+from continuation.path import Path, Step, require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.step.tracer import Tracer
@@ -92,8 +92,8 @@ def certify(path: Path, homotopy: Any) -> Proof:
     ----------
     Krawczyk, Computing 4 (1969) 187-201; for curves, Breden, Lessard and Vanicat, Acta Appl. Math. 128 (2013) 113-152.
     """
-    if len(path) < 2:
-        raise ValueError(f"path: expected at least two points, found {len(path)}")
+    require_path(path)
+    Evaluator(homotopy, Counts())  # which says what no homotopy lacks
     engine, plain = engines(homotopy)
     if path.u.shape[1] != len(np.atleast_1d(homotopy.start()[0])) + 1:
         raise ValueError(f"path: expected points of {homotopy}, found {path.u.shape[1] - 1} unknowns")

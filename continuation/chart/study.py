@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from attrs import field, frozen
-from attrs.validators import ge
 
 from continuation.chart.errors import Error
 from continuation.chart.ladder import Ladder, tolerances
 from continuation.chart.model import Method, Problem
 from continuation.chart.results import WORK, Results
 from continuation.chart.table import Table
+from continuation.checks import NOT_NEGATIVE, integer
 
 
 class Figure(Protocol):
@@ -116,8 +116,8 @@ class Study:
     work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known_work)
     figures: Sequence[Figure] = ()
     title: str = field()
-    repeats: int = field(default=2, validator=ge(0))
-    patience: float = field(default=0.5, validator=ge(0))
+    repeats: int = field(default=2, validator=integer(0))
+    patience: float = field(default=0.5, validator=NOT_NEGATIVE)
     give_up: bool = False
     notes: Sequence[str] = ()
 

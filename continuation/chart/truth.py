@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import gt
 
 from continuation.arrays import Array
+from continuation.checks import POSITIVE
 from continuation.path import Path
 from continuation.presets import CONSERVATIVE
 from continuation.tracing import trace
@@ -40,7 +40,7 @@ class Truth:
     turning_points: Array | None = None
     arclength: float | None = None
     nearest: Callable[[Array], Array] | None = None
-    within: float = field(default=1e-2, validator=gt(0))
+    within: float = field(default=1e-2, validator=POSITIVE)
 
 
 def reference(homotopy: Any, **options: Any) -> Truth:

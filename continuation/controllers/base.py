@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 from attrs import evolve, field, frozen
 from attrs.validators import optional
 
-from continuation.checks import POSITIVE, POSITIVE_FINITE
+from continuation.checks import POSITIVE, POSITIVE_FINITE, complain
 from continuation.rejection import Rejection
 
 State: TypeAlias = tuple[float, ...]
@@ -85,6 +85,8 @@ class Bounds:
     def __attrs_post_init__(self) -> None:
         if self.initial is not None and not self.minimum <= self.initial:
             raise ValueError(f"minimum: expected at most the initial step {self.initial:g}, found {self.minimum:g}")
+        if self.initial is not None and self.initial > self.maximum:
+            raise ValueError(f"initial: expected at most the maximum {self.maximum:g}, found {self.initial:g}")
         if not self.minimum <= self.maximum:
             raise ValueError(f"maximum: expected at least the minimum {self.minimum:g}, found {self.maximum:g}")
 
@@ -115,6 +117,13 @@ class Bounds:
     def longest(self) -> float:
         """The first value, for a controller that goes back to it after every step."""
         return self.maximum if self.initial is None else self.cap(self.initial)
+
+
+def checked_bounds(value: Any) -> Bounds:
+    """The bounds of a step; TypeError for anything else."""
+    if not isinstance(value, Bounds):
+        raise complain(TypeError, "bounds", "Bounds(minimum, maximum, initial)", value)
+    return value
 
 
 class Controller(Protocol):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from attrs import field, frozen
-from attrs.validators import and_, gt, lt
 
 from continuation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINBOLDT
-from continuation.controllers.base import Bounds, Decision, State, StepMeasures
+from continuation.checks import FACTOR, FRACTION, POSITIVE, integer
+from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2
 """A rejected step becomes shorter by this factor at least: else asymptotics that do not hold yet repeat it."""
@@ -18,21 +18,19 @@ STRAIGHT, LEAST_CURVATURE, LEAST_CONTRACTION = 0.01, 1e-3, 1e-3
 """What keeps PITCON's formula from dividing by zero: the next step's turn in radians and its curvature, relative to
 the last one's, are taken for this at least; a corrector that contracts better tells nothing more."""
 
-_FRACTION = and_(gt(0.0), lt(1.0))
+
+def _of_fixed(bounds: Any) -> Bounds:
+    return checked_bounds(bounds).beginning_with(0.1)
 
 
-def _of_fixed(bounds: Bounds) -> Bounds:
-    return bounds.beginning_with(0.1)
-
-
-def _of_geometric(bounds: Bounds) -> Bounds:
+def _of_geometric(bounds: Any) -> Bounds:
     """The paper's step: ratio^0."""
-    return bounds.beginning_with(1.0)
+    return checked_bounds(bounds).beginning_with(1.0)
 
 
-def _of_series(bounds: Bounds) -> Bounds:
+def _of_series(bounds: Any) -> Bounds:
     """The whole range of the series."""
-    return bounds.beginning_with(math.inf)
+    return checked_bounds(bounds).beginning_with(math.inf)
 
 
 @frozen
@@ -40,7 +38,7 @@ class Fixed:
     """The same step always, `bounds.initial` (0.1); halved within a step that fails, and restored after it."""
 
     bounds: Bounds = field(factory=Bounds, converter=_of_fixed)
-    max_angle: float = field(default=0.8, validator=gt(0))
+    max_angle: float = field(default=0.8, validator=POSITIVE)
 
     def init(self) -> State:
         """No state."""
@@ -61,7 +59,7 @@ class Geometric:
     tangent turned, so it can jump between paths: here to be compared with, not to be used.
     """
 
-    ratio: float = field(default=0.5, validator=_FRACTION)
+    ratio: float = field(default=0.5, validator=FRACTION)
     bounds: Bounds = field(factory=lambda: Bounds(minimum=1e-6), converter=_of_geometric)
 
     def init(self) -> State:
@@ -79,11 +77,11 @@ class Geometric:
 class IterationCount:
     """The step grows when the corrector needs fewer increments than `target`, and shrinks when it needs more."""
 
-    target: int = field(default=3, validator=gt(0))
-    grow: float = field(default=2.0, validator=gt(1))
-    shrink: float = field(default=0.5, validator=_FRACTION)
-    max_angle: float = field(default=0.4, validator=gt(0))
-    bounds: Bounds = field(factory=Bounds)
+    target: int = field(default=3, validator=integer(1))
+    grow: float = field(default=2.0, validator=FACTOR)
+    shrink: float = field(default=0.5, validator=FRACTION)
+    max_angle: float = field(default=0.4, validator=POSITIVE)
+    bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
         """No state."""
@@ -115,12 +113,12 @@ class AllgowerGeorg:
     """
 
     references: ClassVar[tuple[str, ...]] = (ALLGOWER_GEORG,)
-    contraction: float = field(default=0.3, validator=gt(0))
-    distance: float = field(default=0.1, validator=gt(0))
-    angle: float = field(default=0.3, validator=gt(0))
-    deceleration: float = field(default=1.5, validator=gt(1))
-    acceleration: float = field(default=2.0, validator=gt(1))
-    bounds: Bounds = field(factory=Bounds)
+    contraction: float = field(default=0.3, validator=POSITIVE)
+    distance: float = field(default=0.1, validator=POSITIVE)
+    angle: float = field(default=0.3, validator=POSITIVE)
+    deceleration: float = field(default=1.5, validator=FACTOR)
+    acceleration: float = field(default=2.0, validator=FACTOR)
+    bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def init(self) -> State:
         """No state."""
@@ -157,11 +155,11 @@ class Curvature:
     """
 
     references: ClassVar[tuple[str, ...]] = (DEN_HEIJER_RHEINBOLDT,)
-    contraction: float = field(default=0.1, validator=_FRACTION)
-    initial_distance: float = field(default=1e-2, validator=gt(0))
-    max_angle: float = field(default=0.4, validator=gt(0))
-    growth: float = field(default=3.0, validator=gt(1))
-    bounds: Bounds = field(factory=Bounds)
+    contraction: float = field(default=0.1, validator=FRACTION)
+    initial_distance: float = field(default=1e-2, validator=POSITIVE)
+    max_angle: float = field(default=0.4, validator=POSITIVE)
+    growth: float = field(default=3.0, validator=FACTOR)
+    bounds: Bounds = field(factory=Bounds, converter=checked_bounds)
 
     def _step(self, liked: float, curvature: float) -> float:
         # PITCON's own limit: a step that would turn the tangent by more than the accepted angle is never tried.
@@ -198,8 +196,8 @@ class SeriesRange:
     times the step means that the series and the path have parted.
     """
 
-    distance: float = field(default=1e-3, validator=gt(0))
-    max_angle: float = field(default=1.4, validator=gt(0))
+    distance: float = field(default=1e-3, validator=POSITIVE)
+    max_angle: float = field(default=1.4, validator=POSITIVE)
     bounds: Bounds = field(factory=Bounds, converter=_of_series)
 
     def init(self) -> State:

@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import gt
 
 from continuation.arrays import Array
 from continuation.bibliography import KELLEY
+from continuation.checks import POSITIVE, integer
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
@@ -27,8 +27,8 @@ class Broyden:
     """
 
     references: ClassVar[tuple[str, ...]] = (KELLEY,)
-    max_iterations: int = field(default=15, validator=gt(0))
-    max_contraction: float = field(default=0.7, validator=gt(0))
+    max_iterations: int = field(default=15, validator=integer(1))
+    max_contraction: float = field(default=0.7, validator=POSITIVE)
 
     def correct(
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance

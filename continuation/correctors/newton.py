@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import and_, ge, gt, le
 
 from continuation.arrays import Array
 from continuation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER
+from continuation.checks import POSITIVE, SHARE, integer
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Anchor, Linearization, linearize
@@ -36,10 +36,13 @@ class BorderedNewton:
     simplified Newton method with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1).
     """
 
-    references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD,)
-    reuse: float = field(default=0.1, validator=and_(ge(0), le(1)))
-    max_iterations: int = field(default=8, validator=gt(0))
-    max_contraction: float = field(default=0.6, validator=gt(0))
+    references: ClassVar[tuple[str, ...]] = (
+        KELLER,
+        DEUFLHARD,
+    )
+    reuse: float = field(default=0.1, validator=SHARE)
+    max_iterations: int = field(default=8, validator=integer(1))
+    max_contraction: float = field(default=0.6, validator=POSITIVE)
 
     def correct(
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
@@ -70,8 +73,8 @@ class Chord:
     all, that of the tangent.
     """
 
-    max_iterations: int = field(default=12, validator=gt(0))
-    max_contraction: float = field(default=0.4, validator=gt(0))
+    max_iterations: int = field(default=12, validator=integer(1))
+    max_contraction: float = field(default=0.4, validator=POSITIVE)
 
     def correct(
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
@@ -98,8 +101,8 @@ class MoorePenrose:
     """
 
     references: ClassVar[tuple[str, ...]] = (ALLGOWER_GEORG,)
-    max_iterations: int = field(default=8, validator=gt(0))
-    max_contraction: float = field(default=0.6, validator=gt(0))
+    max_iterations: int = field(default=8, validator=integer(1))
+    max_contraction: float = field(default=0.6, validator=POSITIVE)
 
     def correct(
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance
@@ -116,9 +119,9 @@ class MoorePenrose:
 class NaturalParameter:
     """Newton at the predicted value of the parameter: the border is e_{N+1}, which is singular at a fold itself."""
 
-    reuse: float = field(default=0.1, validator=and_(ge(0), le(1)))
-    max_iterations: int = field(default=8, validator=gt(0))
-    max_contraction: float = field(default=0.6, validator=gt(0))
+    reuse: float = field(default=0.1, validator=SHARE)
+    max_iterations: int = field(default=8, validator=integer(1))
+    max_contraction: float = field(default=0.6, validator=POSITIVE)
 
     def correct(
         self, evaluator: Evaluator, point: Linearization, predicted: Array, border: Array, tolerance: Tolerance

@@ -13,7 +13,6 @@ from itertools import pairwise
 
 import numpy as np
 from attrs import frozen
-from scipy.optimize import brentq
 
 from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
@@ -24,6 +23,7 @@ from continuation.point.linearization import Linearization, linearize, relineari
 from continuation.point.projection import PathSolver
 from continuation.point.segment import Curve
 from continuation.predictors.polynomial import interpolate
+from continuation.roots import zero_between
 from continuation.step.stepper import LOW_ORDER_FRACTION
 from continuation.tolerance import Tolerance
 
@@ -292,8 +292,8 @@ def touching(curve: Curve, point: Linearization, target: float) -> float | None:
 
     for low, high in pairwise(np.linspace(0.0, reach, 17)):
         if slope(float(high)) >= 0.0:
-            fold = float(brentq(slope, float(low), float(high))) if slope(float(low)) < 0.0 else float(low)
-            return fold if abs(curve(fold)[-1] - target) <= NEAR_FOLD * abs(gap) else None
+            fold = zero_between(slope, float(low), float(high)) if slope(float(low)) < 0.0 else float(low)
+            return fold if fold is not None and abs(curve(fold)[-1] - target) <= NEAR_FOLD * abs(gap) else None
         if (curve(float(high))[-1] - target) * gap < -NEAR_FOLD * gap * gap:
             return None
     return None

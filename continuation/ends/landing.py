@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from attrs import evolve, frozen
-from scipy.optimize import brentq
 
 from continuation.arrays import Array, generic_vector
 from continuation.contraction import HALVING, RELIABLE
@@ -18,6 +19,7 @@ from continuation.point.linearization import NEAR_SINGULAR, Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
+from continuation.roots import zero_between
 from continuation.step.stepper import Attempt, Stepper
 
 RESOLUTION = 1e-9
@@ -100,14 +102,16 @@ class Landing:
         try:
             if not (prediction(high)[-1] - target) * gap >= 0.0:
                 return None
-            high = float(brentq(lambda s: prediction(s)[-1] - target, 0.0, high, xtol=RESOLUTION * high))
-            guess = prediction(high).copy()
+            reached = zero_between(lambda s: float(prediction(s)[-1]) - target, 0.0, high, xtol=RESOLUTION * high)
+            if reached is None:
+                return None
+            guess = prediction(reached).copy()
         except EvaluationError:
             return None
         guess[-1] = target
         if max_step is not None and max_step(point.u, guess - point.u) < ROOM:
             return None
-        return guess, high
+        return guess, reached
 
     def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
         """The parameter of `guess` is kept: the border is e_{N+1}."""
@@ -147,7 +151,8 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
         return float(arc.segment.derivative(t)[-1])
 
     if slope(0.0) * slope(1.0) < 0.0:
-        nearest = arc.segment.at(brentq(slope, 0.0, 1.0, xtol=RESOLUTION))[-1] - value
+        turn = zero_between(slope, 0.0, 1.0, xtol=RESOLUTION)
+        nearest = math.nan if turn is None else arc.segment.at(turn)[-1] - value
         if nearest * before > 0.5 * min(abs(before), abs(after)) * abs(before):
             return None
     fold = locate(solver, TurningPoint(), arc, float(arc.a.tangent[-1]), float(arc.b.tangent[-1]))

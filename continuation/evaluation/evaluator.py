@@ -13,7 +13,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix, finite, generic_vector, largest
-from continuation.checks import real_vector
+from continuation.checks import instance_with, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
 from continuation.evaluation.pieces import WholeMap
@@ -151,8 +151,8 @@ class Evaluator:
         if isinstance(homotopy, SupportsJacobian):
             self._derivative = Derivative(homotopy.jacobian, source="jacobian")
 
-    def start(self) -> Array:
-        """The start as one vector (y0, lam0), checked."""
+    def _given(self) -> Array:
+        """The start as one vector (y0, lam0), of real numbers."""
         answer = self.homotopy.start()
         if not isinstance(answer, tuple) or len(answer) != 2:
             raise ValueError(f"start: expected a tuple (y0, lam0), found {type(answer).__name__}")
@@ -164,7 +164,13 @@ class Evaluator:
         u: Array = np.append(y0, lam0)
         if not np.isfinite(u).all():
             raise ValueError("start: expected finite numbers, found NaN or infinity")
-        r = np.asarray(self.called(u[:-1].copy(), float(u[-1])))
+        return u
+
+    def start(self) -> Array:
+        """The start as one vector (y0, lam0), checked, at which the residual is one."""
+        u = self._given()
+        y0 = u[:-1]
+        r = np.asarray(self.called(y0.copy(), float(u[-1])))
         if r.shape != y0.shape:
             raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
         if r.dtype.kind not in "fiub":
@@ -217,7 +223,8 @@ class Evaluator:
     def derivative(self) -> Derivative:
         """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
         if self._derivative is None:
-            self._derivative = from_residual(self.called, self.homotopy.start())
+            u = self._given()
+            self._derivative = from_residual(self.called, (u[:-1], float(u[-1])))
             self.methods.update(self._derivative.references)
         return self._derivative
 
@@ -256,6 +263,7 @@ class Evaluator:
             if self._bordered is not None:
                 with np.errstate(all="ignore"):
                     system = self._bordered(u[:-1], float(u[-1]), border)
+                instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:
                 H_y, H_lam = self._evaluated(u)
                 column = np.asarray(H_lam, dtype=float)

@@ -9,7 +9,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.checks import complain
+from continuation.checks import complain, real_vector
 
 
 def _start_vector(y: object) -> Array:
@@ -90,6 +90,8 @@ def from_functions(
             raise complain(TypeError, name, "a function of (y, lam)", function)
     if not isinstance(start, (tuple, list)) or len(start) != 2:
         raise complain(ValueError, "start", "a pair (y0, lam0)", start)
-    y0, lam0 = start
+    y0, lam0 = (real_vector("start", value) for value in start)
+    if lam0.size != 1:
+        raise complain(ValueError, "start", "a pair (y0, lam0) with one number lam0", start)
     plain = FunctionHomotopy(residual, y0, lam0, target)
     return plain if jacobian is None else DifferentiableHomotopy(plain, jacobian)

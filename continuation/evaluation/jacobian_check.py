@@ -11,6 +11,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
+from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import difference_along
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
@@ -84,7 +85,7 @@ def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
         raise TypeError(f"homotopy: expected a method `jacobian` to check, found none on {type(homotopy).__name__}")
     start = evaluator.start()
     if u is not None:
-        u = np.array(u, dtype=float)
+        u = real_vector("u", u)
         if u.shape != start.shape:
             raise ValueError(f"u: expected shape {start.shape}, found {u.shape}")
         return _check(evaluator, u)

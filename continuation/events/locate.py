@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from attrs import evolve
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import minimize_scalar
 
 from continuation.arrays import Array, largest
 from continuation.contraction import HALVING
@@ -18,6 +18,7 @@ from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.point.segment import Segment, hermite
+from continuation.roots import zero_between
 
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
@@ -182,7 +183,8 @@ def _guess(event: Event, segment: Segment, ga: float, gb: float) -> float:
     if g(0.0) * g(1.0) >= 0.0:
         return 0.5
     # A guess: where the monitor is so flat that it takes longer, the last bracket will do.
-    return float(brentq(g, 0.0, 1.0, xtol=1e-15, rtol=1e-14, disp=False))
+    place = zero_between(g, 0.0, 1.0, xtol=1e-15, rtol=1e-14, disp=False)
+    return 0.5 if place is None else place
 
 
 def _root(

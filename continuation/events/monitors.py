@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
+import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array
-from continuation.checks import FINITE, integer, of_kind, sign
+from continuation.checks import FINITE, complain, integer, of_kind, sign
 from continuation.status import Kind
 
 
@@ -153,4 +154,9 @@ class Monitor:
 
     def monitor(self, u: Array, v: Array) -> float:
         """The caller's function."""
-        return float(self.function(u, v))
+        found: Any = self.function(u, v)
+        if isinstance(found, float):
+            return found
+        if np.ndim(found) or np.asarray(found).dtype.kind not in "fiub":
+            raise complain(TypeError, "function", "a real number", found)
+        return float(found)

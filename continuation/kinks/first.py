@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from continuation.arrays import Array, generic_vector
 from continuation.evaluation.evaluator import EvaluationError
@@ -17,6 +16,7 @@ from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver
 from continuation.point.segment import hermite
+from continuation.roots import zero_between
 from continuation.status import Kind
 
 SEEN = 4.0
@@ -295,7 +295,9 @@ def _by_newton(solver: PathSolver, switch: _Switch, arc: Arc, low: float, high: 
     scale = max(ga := g(low), -(gb := g(high)))
     if not ga > 0.0 > gb:
         return None
-    t = float(brentq(g, low, high, xtol=1e-15, rtol=1e-14, disp=False))
+    t = zero_between(g, low, high, xtol=1e-15, rtol=1e-14, disp=False)
+    if t is None:
+        return None
     u, _ = solver.project(arc.a if t < 0.5 else arc.b, segment.at(t), arc.border)
     near = linearize(evaluator, u, arc.a.weights, arc.border)
     value = switch.monitor(u, near.tangent)

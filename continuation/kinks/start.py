@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
+from continuation.checks import complain, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.evaluation.pieces import BESIDE, Pieces, Signs, SwitchError
+from continuation.homotopy import SupportsPieces
 from continuation.kinks.first import switch_noise
 from continuation.kinks.rays import Corner, UnresolvedError, rays_at
 from continuation.metric import Metric
@@ -120,8 +122,13 @@ def kink_rays(homotopy: Any, u: Array) -> Array:
     ArithmeticError
         If the branches cannot be told there.
     """
+    if not isinstance(homotopy, SupportsPieces) or isinstance(homotopy, type):
+        raise complain(TypeError, "homotopy", "one with `switches` and `piece`", homotopy)
     pieces, counts = Pieces(homotopy), Counts()
     evaluator = Evaluator(homotopy, counts)
+    u = real_vector("u", u)
+    if u.shape != evaluator.start().shape or not np.isfinite(u).all():
+        raise complain(ValueError, "u", f"{evaluator.start().size} finite numbers (y, lam)", u)
     signs = pieces.signs(u)
     evaluator.bind(pieces.piece(signs))
     ones = np.ones_like(u)

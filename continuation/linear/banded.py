@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import ge
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import dia_array
 
 from continuation.arrays import Array, Matrix
+from continuation.checks import integer
 from continuation.linear.dense import lu_sign
 from continuation.linear.entries import real
 from continuation.linear.refine import BorderedMatrix, eliminate
@@ -36,8 +36,8 @@ class Banded:
     """
 
     ab: Array = field(converter=_diagonals)
-    lower: int = field(validator=ge(0))
-    upper: int = field(validator=ge(0))
+    lower: int = field(validator=integer(0))
+    upper: int = field(validator=integer(0))
 
     def __attrs_post_init__(self) -> None:
         rows = self.lower + self.upper + 1

@@ -8,10 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import in_
 
 from continuation.arrays import Array
 from continuation.bibliography import HAIRER_NORSETT_WANNER
+from continuation.checks import one_of
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization, linearize
 from continuation.predictors.base import Knot, history_in_pseudo_arclength
@@ -49,7 +49,7 @@ class RungeKutta:
     """The explicit midpoint rule (order 2) or the classical method (order 4); one factorisation a further stage."""
 
     references: ClassVar[tuple[str, ...]] = (HAIRER_NORSETT_WANNER,)
-    order: int = field(default=4, validator=in_((2, 4)))
+    order: int = field(default=4, validator=one_of(2, 4))
     memory: int = field(default=1, init=False)
 
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> _Stages:
@@ -83,7 +83,7 @@ class AdamsBashforth:
     """The variable-step Adams-Bashforth method on past tangents: order 2 to 4, no evaluation of the homotopy."""
 
     references: ClassVar[tuple[str, ...]] = (HAIRER_NORSETT_WANNER,)
-    order: int = field(default=3, validator=in_((2, 3, 4)))
+    order: int = field(default=3, validator=one_of(2, 3, 4))
 
     @property
     def memory(self) -> int:

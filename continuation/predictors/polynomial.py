@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import ge
 
 from continuation.arrays import Array
+from continuation.checks import integer
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
 from continuation.predictors.base import Knot, history_in_pseudo_arclength
@@ -122,6 +122,10 @@ class Hermite:
         return interpolate(nodes, values, slopes)
 
 
+MOST_POINTS = 50
+"""A predictor of more past points would be slower than the step: its divided differences take their square."""
+
+
 @frozen
 class Polynomial:
     """A polynomial of up to `degree` through past points, with the current tangent.
@@ -130,7 +134,7 @@ class Polynomial:
     degree on a rough history is worse than none), so the order varies with the path.
     """
 
-    degree: int = field(default=4, validator=ge(2))
+    degree: int = field(default=4, validator=integer(2, MOST_POINTS))
 
     @property
     def memory(self) -> int:

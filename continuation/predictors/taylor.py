@@ -12,10 +12,11 @@ from typing import ClassVar
 
 import numpy as np
 from attrs import field, frozen
-from attrs.validators import and_, ge, gt, lt, optional
+from attrs.validators import optional
 
 from continuation.arrays import Array
 from continuation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
+from continuation.checks import FRACTION, POSITIVE_FINITE, complain, integer, of_kind
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsTaylor
 from continuation.point.linearization import Linearization, factored, with_exact_solves
@@ -27,6 +28,8 @@ from continuation.tolerance import Tolerance
 ORDERS = (8, 30)
 """Bounds of the orders that the cost model chooses from: beyond 30 round-off in the last terms eats the gain."""
 
+LARGEST_ORDER = 100
+"""That may be asked for: a series takes the square of its order, and from about 60 on it gains nothing anywhere."""
 
 LONGEST_STEP = 100.0
 """In the length of the metric: a polynomial path has no last terms that would limit it."""
@@ -113,10 +116,10 @@ class Taylor:
         Pade approximants with a common denominator: a larger range, ended before a pole.
     """
 
-    order_wanted: int | None = field(default=None, validator=optional(ge(2)), alias="order")
-    accuracy: float = field(default=1e-5, validator=and_(gt(0.0), lt(1.0)))
-    safety: float = field(default=0.95, validator=and_(gt(0.0)))
-    rational: bool = False
+    order_wanted: int | None = field(default=None, validator=optional(integer(2, LARGEST_ORDER)), alias="order")
+    accuracy: float = field(default=1e-5, validator=FRACTION)
+    safety: float = field(default=0.95, validator=POSITIVE_FINITE)
+    rational: bool = field(default=False, validator=of_kind("True or False", lambda value: isinstance(value, bool)))
     memory: int = field(default=1, init=False)
     interior_fraction: ClassVar[float] = 0.9999
     """How much of the way to the boundary of a domain it may go: its error is far below the distance that is left."""
@@ -150,6 +153,8 @@ def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> A
     homotopy = evaluator.homotopy
     if isinstance(homotopy, SupportsTaylor):
         coefficients: Array = homotopy.taylor(point, order)
+        if np.shape(coefficients) != (order + 1, point.u.size):
+            raise complain(ValueError, "taylor", f"an array of shape {order + 1, point.u.size}", coefficients)
     else:
         from continuation import jets
 

@@ -12,11 +12,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, NamedTuple, TypedDict, TypeVar
 
-import numpy as np
-
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.checks import check_sign, complain, instance_with, is_number
+from continuation.checks import check_flag, check_sign, complain, instance_with, is_number
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.events import Event
@@ -26,6 +24,7 @@ from continuation.metric import Metric
 from continuation.predictors import Predictor
 from continuation.presets import DEFAULT, Preset
 from continuation.step.start import guessed, is_guess, point_and_direction
+from continuation.step.state import State
 from continuation.tolerance import Tolerance, as_tolerance
 
 Finish = Callable[[Array, float], Array | None]
@@ -195,8 +194,7 @@ def checked(options: Mapping[str, Any]) -> Options:
     each("events", asked["events"], EVENT)
     each("guards", asked["guards"], GUARD)
     for name in ("check_jacobian", "examine"):
-        if not isinstance(value := options.get(name, False), bool | np.bool_):
-            raise complain(TypeError, name, "True or False", value)
+        check_flag(name, options.get(name, False))
     as_tolerance(asked["tolerance"])
     if not isinstance(asked["budget"], Budget | None):
         raise complain(TypeError, "budget", "a Budget", asked["budget"])
@@ -210,6 +208,13 @@ def checked(options: Mapping[str, Any]) -> Options:
     if asked["max_step"] is not None and not (is_number(asked["max_step"]) and asked["max_step"] > 0.0):
         raise complain(ValueError, "max_step", "a positive number", asked["max_step"])
     return asked
+
+
+def check_run(observers: Any, state: Any) -> None:
+    """Raise TypeError unless these are observers, and a state or None."""
+    each("observers", observers, OBSERVER)
+    if state is not None and not isinstance(state, State):
+        raise complain(TypeError, "state", "the state of a tracer, or None", state)
 
 
 def names_homotopy(target: Any) -> bool:

@@ -11,11 +11,11 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import Evaluator
-from continuation.homotopy import SupportsObserve
 from continuation.metric import norm, share
 from continuation.path import LocatedEvent, Step
 from continuation.point.linearization import Linearization
 from continuation.status import Kind
+from continuation.step.capabilities import observe_of
 from continuation.step.state import State
 
 Observe = Callable[[Array, float], Mapping[str, float]]
@@ -35,7 +35,7 @@ def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
     ValueError
         Later, where two have a scalar of one name.
     """
-    own = homotopy.observe if isinstance(homotopy, SupportsObserve) else None
+    own = observe_of(homotopy)
     others = [event.observe for event in events if hasattr(event, "observe")]
     if not others:
         return own

@@ -163,7 +163,7 @@ def _first(*candidates: Any) -> Any:
 
 
 def _events(homotopy: Any, asked: Options, observers: Sequence[Any]) -> tuple[Event, ...]:
-    own = tuple(homotopy.events) if isinstance(homotopy, SupportsEvents) else ()
+    own = homotopy.events if isinstance(homotopy, SupportsEvents) else ()
     each("events", own, EVENT)
     watched: tuple[Event, ...] = (*own, *asked["events"])
     watched += tuple(e for part in observers for e in getattr(part, "events", ()) if e not in watched)

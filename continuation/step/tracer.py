@@ -27,8 +27,8 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 from continuation.status import Kind, Status
 from continuation.step.advance import Advance, Stopped
-from continuation.step.capabilities import finish_of, max_step_of
-from continuation.step.options import OBSERVER, Options, checked, documented, each
+from continuation.step.capabilities import checked_end, finish_of, max_step_of
+from continuation.step.options import Options, check_run, checked, documented
 from continuation.step.record import StepRecorder, observing
 from continuation.step.settings import complete_settings
 from continuation.step.start import (
@@ -126,7 +126,7 @@ class Tracer:
         **options: Unpack[Options],
     ) -> None:
         asked = checked(options)
-        each("observers", observers, OBSERVER)
+        check_run(observers, state)
         self.homotopy = homotopy
         self.path = Path(labels=Labels.of(homotopy))
         self.counts: Counts = self.path.counts
@@ -142,8 +142,8 @@ class Tracer:
         self._pieces = Pieces(homotopy) if isinstance(homotopy, SupportsPieces) else None
         leaving = None if self._start is None else np.asarray(self._start[1], dtype=float)
         straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
-        kept, farthest = self.settings, max_step_of(homotopy)
-        self._solver = PathSolver(self._evaluator, kept.tolerance, farthest, straight, kept.room)
+        room, farthest = self.settings.room, max_step_of(homotopy)
+        self._solver = PathSolver(self._evaluator, self.settings.tolerance, farthest, straight, room)
         self._recorder = StepRecorder(self._evaluator, observing(homotopy, self._bound.events))
         self._advance = Advance(self._solver, self._bound, self._recorder, self._spent, self._pieces)
         self._check = asked["check_jacobian"]
@@ -338,7 +338,7 @@ class Tracer:
             self._record(found.step, state, self._recorder.observing(found.events))
             y = self._finish(point.y, point.lam) if verdict is None and self._finish is not None else None
             if y is not None:
-                end = np.append(y, self.settings.target if self.settings.target is not None else point.lam)
+                end = checked_end(self._evaluator, point.u, y, self.settings.target)
         if end is not None:
             last = self._recorder.end(point, state, end)
             self.counts.accepted += 1

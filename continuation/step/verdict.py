@@ -93,7 +93,7 @@ def singular_end(limit: SingularLimit) -> Verdict:
 
 
 def finished(residual_norm: float) -> Verdict:
-    """The homotopy's own finish found the end: certified by the problem; what H is there is said."""
+    """The homotopy's own finish found the end; what H is there is said."""
     found = f"The homotopy's own finish found the end; the residual of H there is {residual_norm:.1e}."
     return Verdict(Status.REACHED_TARGET, found)
 

@@ -8,10 +8,12 @@ from functools import cached_property
 from typing import Any, NoReturn
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
+from attrs.validators import optional
 
 from continuation.arrays import Array
 from continuation.budget import Budget
+from continuation.checks import integer
 from continuation.controllers import AllgowerGeorg, Bounds, Controller
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import from_residual
@@ -81,7 +83,7 @@ class Subject:
     """A homotopy under examination; what several checks need is worked out once, when it is first asked for."""
 
     homotopy: Any
-    steps: int | None = None
+    steps: int | None = field(default=None, validator=optional(integer(1)))
 
     def has(self, capability: str) -> bool:
         """Whether the homotopy has an attribute of this name, and a value in it."""

@@ -26,7 +26,7 @@ from problems.lcp.homotopies.starts import inside_start, inside_vector
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.search.solver import solve as solve_affine
 from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, require_callable, value_at
-from problems.options import quiet
+from problems.options import check_budget, check_tolerance, quiet
 
 NEWTON_STEPS = 20
 """Of Josephy's method; near a solution it takes four or five."""
@@ -297,6 +297,8 @@ def solve_complementarity(
     """
     if not isinstance(problem, MixedComplementarity):
         raise TypeError(f"problem: expected a MixedComplementarity, found {type(problem).__name__}")
+    check_tolerance(tolerance)
+    check_budget(budget)
     homotopy = InteriorHomotopy(problem, x0)
     direct = _josephy(problem, homotopy.x0, tolerance)
     if direct.relative_residual <= tolerance:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
+from continuation.checks import is_number
 from continuation.linear import Banded
 from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap
@@ -56,7 +58,7 @@ def bratu_under_obstacle(n: int = 39, psi: float = 2.0, target: float | None = 0
     ValueError
         If psi is not positive.
     """
-    if not psi > 0.0:
+    if not is_number(psi) or not 0.0 < psi < math.inf:
         raise ValueError(f"psi: expected a positive number, found {psi!r}")
     force = BratuForce(Bratu1D(n))
     return NormalMap(force, force.slope, x0=np.zeros(n), lam0=0.0, lower=-np.inf, upper=psi, target=target)

@@ -11,6 +11,7 @@ two round the entries, and so can spoil an exact proof or an exact solution, or 
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 import warnings
@@ -117,6 +118,13 @@ KINDS: tuple[Callable[[int, np.random.Generator], Data], ...] = (
 )  # fmt: skip
 
 
+QUICK = (definite, monotone, z_matrix, game)
+"""Kinds that are solved before any path, at any order."""
+
+LARGE = (13, 25)
+"""Orders from which on active sets are tried before a problem is put into units of its own."""
+
+
 def solved(A: Array, q: Array) -> lcp.Solution:
     """The answer, with every warning an error."""
     with warnings.catch_warnings():
@@ -177,19 +185,35 @@ def units(number: int, seed: int) -> int:
 
 
 def factor(number: int, seed: int) -> int:
-    """LCP(s q, s A) has the same solutions for all s."""
+    """LCP(s q, s A) has the same solutions for all s.
+
+    The power of two next to s rounds nothing, and is to change no digit of the answer. s itself rounds the entries, and
+    so may make a singular problem one that is not.
+    """
     seen: Counter[str] = Counter()
     for k in range(number):
         r = np.random.default_rng([seed, k])
-        A, q = KINDS[k % len(KINDS)](int(r.integers(1, 6)), r)
+        kind = KINDS[k % len(KINDS)]
+        large = kind in QUICK and k // len(KINDS) % 5 == 4
+        A, q = kind(int(r.integers(*(LARGE if large else (1, 6)))), r)
         one = solved(A, q)
         seen[one.outcome.name] += 1
         for s in FACTORS:
+            two = 2.0 ** round(math.log2(s))
+            other = solved(two * A, two * q)
+            if one.outcome is not other.outcome or (one.solved and one.x.tobytes() != other.x.tobytes()):
+                seen[f"DIFFERS: {two:g}: {kind.__name__}: {one.outcome.name} and {other.outcome.name}"] += 1
+            else:
+                seen["the same to the last digit, times a power of two"] += 1
             other = solved(s * A, s * q)
             if not same_outcome(one, other, exact=False):
-                seen[f"DIFFERS: {s:g}: {one.outcome.name} and {other.outcome.name}"] += 1
-            elif one.solved and other.solved and not same_point(one.x, other.x):
-                seen[f"another solution: {KINDS[k % len(KINDS)].__name__}"] += 1
+                seen[f"DIFFERS: {s:g}: {kind.__name__}: {one.outcome.name} and {other.outcome.name}"] += 1
+            elif one.outcome is not other.outcome:
+                seen[f"decided by rounding: {kind.__name__}: {one.outcome.name} and {other.outcome.name}"] += 1
+            elif one.solved and not same_point(one.x, other.x):
+                seen[f"another point: {kind.__name__}"] += 1
+            else:
+                seen["the same, times a power of ten"] += 1
     return report(f"{number} problems times {len(FACTORS)} factors, seed {seed}", seen)
 
 

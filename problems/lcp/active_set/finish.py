@@ -305,27 +305,31 @@ class AlongPath:
     Attributes
     ----------
     finish : Finish
+    homotopy : KKTHomotopy or TwoVectorHomotopy
+        Of the path.
     next_lam : float
         It is tried when the parameter has fallen to this.
     """
 
     finish: Finish
+    homotopy: Any
     next_lam: float
 
     @classmethod
     def of(cls, finish: Finish, homotopy: Any) -> AlongPath:
         """For one path of a homotopy of this package, whose first n unknowns are x."""
-        return cls(finish, min(LATEST_START, smallest_parameter(homotopy, LARGEST_PRODUCT)))
+        return cls(finish, homotopy, min(LATEST_START, smallest_parameter(homotopy, LARGEST_PRODUCT)))
 
     def __call__(self, y: Array, lam: float) -> Array | None:
-        """The certified end, its x in place of the first n unknowns; None to go on."""
+        """The end of the path at the certified solution; None to go on."""
         if lam > self.next_lam:
             return None
         self.next_lam = SPACING * lam
         problem = self.finish.problem
         x = y[: problem.n]
         solved = self.finish.settle(problem.states(x, problem.w(x)), ON_PATH, x)
-        return None if solved is None else np.concatenate([solved, y[problem.n :]])
+        end: Array | None = None if solved is None else self.homotopy.at_solution(solved)
+        return end
 
 
 def smallest_parameter(homotopy: Any, product: float) -> float:

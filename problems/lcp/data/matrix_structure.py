@@ -9,12 +9,12 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import frozen
+from attrs import field, frozen
 from scipy.linalg.lapack import dpotrf
 
 from continuation.arrays import Array, Matrix
 from continuation.linear import Banded
-from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.ranges import Ranges, ranges
 
 WIDEST_BAND = 16
@@ -106,7 +106,7 @@ class Structure:
     problem : MixedLCP
     """
 
-    problem: MixedLCP | LCP
+    problem: MixedLCP | LCP = field(validator=lambda instance, attribute, value: require_problem(value))
 
     @property
     def n(self) -> int:

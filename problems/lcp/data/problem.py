@@ -15,6 +15,7 @@ from attrs import Attribute, Factory, field, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
+from continuation.checks import integer
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import finite_vector, real_array, sound_sparse
 
@@ -25,11 +26,11 @@ LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
 
 def _q(value: Any) -> Array:
-    nothing = np.ndim(value) == 1 and np.size(value) == 0
+    nothing = (isinstance(value, (list, tuple)) and not value) or getattr(value, "shape", None) == (0,)
     return np.zeros(0) if nothing else finite_vector("q", value)
 
 
-def _matrix(value: Any) -> Matrix:
+def square_matrix(value: Any) -> Matrix:
     """A finite square float matrix, dense or CSR."""
     if sp.issparse(value):
         matrix = sound_sparse("A", value)
@@ -73,11 +74,11 @@ class MixedLCP:
     Optim. Methods Softw. 5, 1995.
     """
 
-    A: Matrix = field(converter=_matrix)
+    A: Matrix = field(converter=square_matrix)
     q: Array = field(converter=_q)
     lower: Array = field(default=None)
     upper: Array = field(default=None)
-    primal: int = field(default=0, kw_only=True, repr=False)
+    primal: int = field(default=0, kw_only=True, repr=False, validator=integer(0))
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
     """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
 

@@ -45,9 +45,10 @@ NEGLIGIBLE = -27.0
 the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
 
 LEVELLED = 16.0
-"""Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
-stays as it is, and active sets of an LCP are tried as it is. Finding units and changing to them takes longer than
-solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone LCPs, n = 60: 0.5 of 1.3 ms)."""
+"""Where the largest entries of all rows and columns are within this factor of another, active sets of an LCP are tried
+before it is put into units of its own, and a problem with bounds stays as it is if they are within it of 1 as well.
+Finding units and changing to them takes longer than solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone
+LCPs, n = 60: 0.5 of 1.3 ms)."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
@@ -79,6 +80,31 @@ class Scaled:
         """The point of the scaled problem."""
         return _times(x, -self.columns)
 
+    def after(self, first: Scaled | None) -> Scaled:
+        """Both scalings as one, of the problem that was scaled first."""
+        if first is None:
+            return self
+        return Scaled(self.problem, first.rows + self.rows, first.columns + self.columns, first.exact and self.exact)
+
+    @property
+    def common(self) -> bool:
+        """Whether all rows have one factor, and the columns none."""
+        return not self.columns.any() and not np.ptp(self.rows).any()
+
+
+def without_factor(problem: MixedLCP) -> Scaled | None:
+    """LCP(s q, s A) with the s at which the largest entry of A is from 1 to 2; None where s = 1.
+
+    Whatever common factor a problem is given with, the same one is solved, as far as the factor rounds nothing.
+    """
+    largest = np.abs(problem.A.data if problem.sparse else problem.A).max(initial=0.0)
+    power = 1 - int(np.frexp(largest)[1])
+    if power == 0 or largest == 0.0:
+        return None
+    rows, columns = np.full(problem.n, power), np.zeros(problem.n, dtype=np.int64)
+    scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows), primal=problem.primal)
+    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
+
 
 def balanced(problem: MixedLCP) -> Scaled | None:
     """The problem in units of its own, or None where these are the units in which it is given.
@@ -88,7 +114,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
     Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
     """
-    if not problem.standard and level(problem):
+    if not problem.standard and level(problem, LEVELLED):
         return None
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
@@ -108,8 +134,15 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
-def level(problem: MixedLCP) -> bool:
-    """Whether the largest entries of rows and columns are so alike that other units would change next to nothing."""
+def level(problem: MixedLCP, near_one: float = np.inf) -> bool:
+    """Whether the largest entries of rows and columns are so alike that other units would change next to nothing.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    near_one : float
+        The largest of all is to be within this factor of 1.
+    """
     if problem.sparse:
         entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
@@ -117,7 +150,7 @@ def level(problem: MixedLCP) -> bool:
     else:
         size = np.abs(problem.A)
         both = np.concatenate([size.max(axis=axis) for axis in (0, 1)])
-    return bool(both.max() <= LEVELLED * both.min() and 1.0 / LEVELLED <= both.max() <= LEVELLED)
+    return bool(0.0 < both.max() <= LEVELLED * both.min() and 1.0 / near_one <= both.max() <= near_one)
 
 
 def extreme(problem: MixedLCP) -> bool:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 from attrs import cmp_using, field, frozen
-from attrs.validators import gt
 
 from continuation.arrays import Array
+from continuation.checks import POSITIVE_FINITE
 from problems.lcp.data.problem import MixedLCP
 
 LARGEST_FALL = 1e-3
@@ -35,7 +35,7 @@ class RelativeMetric:
     unit : float
     """
 
-    lam: float = field(default=1.0, validator=gt(0))
+    lam: float = field(default=1.0, validator=POSITIVE_FINITE)
     lower: Array | None = field(default=None, eq=cmp_using(eq=np.array_equal))
     upper: Array | None = field(default=None, eq=cmp_using(eq=np.array_equal))
     unit: float = 1.0

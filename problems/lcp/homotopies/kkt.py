@@ -127,6 +127,15 @@ class KKTHomotopy:
         n = self.n
         return y[:n], y[n : 2 * n], y[2 * n :]
 
+    def at_solution(self, x: Array) -> Array:
+        """(x, z1, z2) with z1 = w and z2 = x: the zero of H at lambda = 0 that a solution is, shape (3n,).
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        return np.concatenate([x, np.where(x > 0.0, 0.0, np.maximum(self.problem.w(x), 0.0)), x])
+
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """H, shape (3n,)."""

@@ -11,7 +11,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.data.problem import LCP, MixedLCP, require_lcp
+from continuation.checks import instance_with
+from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import finite_vector
 
@@ -66,6 +67,8 @@ def positive_vector(name: str, value: Any, n: int) -> Array:
     ValueError
         Naming the argument, what it held and what was expected.
     """
+    if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
+        raise ValueError(f"{name}: expected {n} positive numbers, found a masked array with masked entries")
     try:
         array = np.array(value)
     except ValueError as error:
@@ -157,6 +160,7 @@ def default_start(problem: MixedLCP) -> Start:
     ----------
     problem : MixedLCP
     """
+    require_problem(problem)
     x, w = natural_units(problem)
     x0 = np.full(problem.n, x)
     return centred(x0, relaxed_w(problem, x0, w))
@@ -173,6 +177,11 @@ def random_start(problem: MixedLCP, generator: np.random.Generator, distance: tu
     distance : tuple of float
         The scale is ten to a power from this interval, in natural units.
     """
+    require_problem(problem)
+    instance_with("generator", generator, ("uniform", "normal", "standard_normal"), "a numpy.random.Generator")
+    ends = finite_vector("distance", distance, 2)
+    if not ends[0] < ends[1]:
+        raise ValueError(f"distance: expected (least, most), found {distance}")
     x, w = natural_units(problem)
     scale = 10.0 ** generator.uniform(*distance)
     if not problem.standard:
@@ -211,4 +220,21 @@ def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
         if not (y0 > 0.0).all():
             i = int(np.argmin(y0))
             raise ValueError(f"x0: expected A x0 + q > 0 (or give y0 > 0), found (A x0 + q)[{i}] = {y0[i]}")
+        made_of_x0(y0)
     return x0, y0
+
+
+def made_of_x0(y0: Array) -> Array:
+    """The other vector of a start, which was computed from x0; ValueError where floats do not hold it."""
+    if not np.isfinite(y0).all():
+        raise ValueError(f"x0: expected numbers from which a finite y0 comes (or give y0 > 0), found {y0.max()} in it")
+    return y0
+
+
+def given_inside(problem: MixedLCP, x0: Any) -> Array:
+    """x0 between the bounds, checked; by default at a distance of one from them."""
+    require_problem(problem)
+    if problem.fixed.any():
+        i = int(np.argmax(problem.fixed))
+        raise ValueError(f"problem: expected lower < upper, found a fixed unknown {i}; lcp.solve eliminates it")
+    return inside_start(problem) if x0 is None else inside_vector("x0", x0, problem)

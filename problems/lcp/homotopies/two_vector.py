@@ -17,7 +17,7 @@ from continuation.certificate.quadratic import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, MixedLCP, require_problem
+from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
@@ -25,8 +25,8 @@ from problems.lcp.homotopies.quadratics import exact_end, pairs_form
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import (
     feasible_start,
-    inside_start,
-    inside_vector,
+    given_inside,
+    made_of_x0,
     natural_units,
     positive_vector,
 )
@@ -99,6 +99,16 @@ class TwoVectorHomotopy:
     def start(self) -> tuple[Array, float]:
         """(x0, y0) and 1."""
         return np.concatenate([self.x0, self.y0]), 1.0
+
+    def at_solution(self, x: Array) -> Array:
+        """(x, y) with y = w, of bounds their forces: the zero of H at lambda = 0 that a solution is; (2n,) for an LCP.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        forces = np.where(self.sides.gaps(x) > 0.0, 0.0, np.maximum(self.sides.pull(self.problem.w(x)), 0.0))
+        return np.concatenate([x, forces])
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
@@ -210,8 +220,9 @@ def YuHomotopy(
     TypeError, ValueError
         For bad input, naming the argument.
     """
-    x0 = _inside(problem, x0)
-    y0 = 1.0 / Sides(problem).gaps(x0) if y0 is None else y0
+    x0 = given_inside(problem, x0)
+    with np.errstate(over="ignore"):
+        y0 = made_of_x0(1.0 / Sides(problem).gaps(x0)) if y0 is None else y0
     return _made("Yu", problem, Blend(sign=1, x=1), x0, y0, references.YU, structure)
 
 
@@ -288,7 +299,7 @@ def WangHomotopy(
     TypeError, ValueError
         For bad input, naming the argument.
     """
-    x0, sides = _inside(problem, x0), Sides(problem)
+    x0, sides = given_inside(problem, x0), Sides(problem)
     y0 = np.maximum(1.0, np.abs(problem.q))[sides.index] if y0 is None else y0
     return _made("Wang", problem, Blend(sign=1, x=_on_free(sides), y=1), x0, y0, references.WANG, structure)
 
@@ -316,20 +327,11 @@ def KojimaMegiddoMizunoHomotopy(
     TypeError, ValueError
         For bad input, naming the argument.
     """
-    x0, sides = _inside(problem, x0), Sides(problem)
+    x0, sides = given_inside(problem, x0), Sides(problem)
     if y0 is None:
         y0 = np.maximum(sides.pull(problem.w(x0)), 0.0) + np.maximum(1.0, np.abs(problem.q))[sides.index]
     blend = Blend(sign=1, x=_on_free(sides), y=1, A=1)
     return _made("Kojima-Megiddo-Mizuno", problem, blend, x0, y0, references.KOJIMA_MEGIDDO_MIZUNO, structure)
-
-
-def _inside(problem: MixedLCP, x0: Any) -> Array:
-    """x0 between the bounds, checked; by default at a distance of one from them."""
-    require_problem(problem)
-    if problem.fixed.any():
-        i = int(np.argmax(problem.fixed))
-        raise ValueError(f"problem: expected lower < upper, found a fixed unknown {i}; lcp.solve eliminates it")
-    return inside_start(problem) if x0 is None else inside_vector("x0", x0, problem)
 
 
 def _on_free(sides: Sides) -> int | Array:

@@ -25,7 +25,7 @@ from problems.lcp.parametric.natural import NaturalMap
 from problems.lcp.parametric.start import from_ray, from_solution
 from problems.lcp.parametric.trail import Trail
 from problems.lcp.search.solver import solve
-from problems.options import finite_vector
+from problems.options import check_budget, finite_vector
 
 CORNERS = 100_000
 """Where no budget is given: Murty's example of order 16 has 65,535."""
@@ -96,6 +96,7 @@ def along(
     """
     began = time.perf_counter()
     require_problem(problem)
+    check_budget(budget)
     n = problem.n
     slope = finite_vector("d", d, n)
     levels = levels_of(level, problem)

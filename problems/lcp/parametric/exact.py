@@ -11,7 +11,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.path import Path
+from continuation.path import Path, require_path
 from problems.lcp.data.problem import MixedLCP, State, require_problem
 from problems.lcp.parametric.along import levels_of
 from problems.lcp.parametric.stairs import Stairs
@@ -78,6 +78,7 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
         For bad input, naming the argument.
     """
     require_problem(problem)
+    require_path(path)
     slope = finite_vector("d", d, problem.n)
     levels = levels_of(level, problem)
     if problem.sparse:

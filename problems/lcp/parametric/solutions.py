@@ -11,6 +11,7 @@ from attrs import define, evolve, field, frozen
 
 from continuation.arrays import Array
 from continuation.budget import Budget
+from continuation.checks import check_flag
 from continuation.counts import Counts
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.parametric.along import along
@@ -18,7 +19,7 @@ from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.proof.verdict import confirmed
 from problems.lcp.reference.enumeration import decidable, solve_by_enumeration
 from problems.lcp.search.solver import solve
-from problems.options import finite_vector
+from problems.options import check_budget, check_seed, check_tolerance, finite_vector
 
 LARGEST_TRIED = 10
 """Orders up to which all faces are tried: 0.1 s for ten; about a second for twelve."""
@@ -117,6 +118,10 @@ def solutions(
     Study 1, 1974.
     """
     require_problem(problem)
+    check_tolerance(tolerance)
+    check_seed(seed)
+    check_budget(budget)
+    check_flag("enumerate_faces", enumerate_faces)
     if isinstance(problem, LCP) and enumerate_faces and decidable(problem, LARGEST_TRIED):
         return _on_faces(problem, tolerance)
     search = _Search(problem, tolerance, np.random.default_rng(seed), budget or Budget(steps=200_000))

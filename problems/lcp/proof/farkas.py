@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
-from problems.lcp.data.problem import LCP, MixedLCP, require_problem
+from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions_of, inequalities
 from problems.lcp.proof.rational import IntegerRow, Integers, integers, solve_exactly
@@ -198,6 +198,7 @@ def empty_interior(problem: LCP) -> Farkas | None:
     ----------
     Motzkin's transposition theorem; Cottle, Pang and Stone, Theorem 2.7.10.
     """
+    require_lcp(problem)
     return _multiplier(problem, strict=False)
 
 

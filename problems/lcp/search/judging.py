@@ -87,11 +87,11 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
     tolerance : float
         Of the relative residual.
     """
-    said = "In scaled units."
+    said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
     rounded = _rounded(found, tolerance)
-    found = evolve(found, problem=problem, message=f"{found.message} {said}")
+    found = evolve(found, problem=problem, message=f"{found.message} {said}".rstrip())
     exact, nearly = found.farkas, found.float_farkas
     if exact is not None:
         moved = exact.in_units(problem, scaled.rows)

@@ -135,10 +135,11 @@ class Search:
     def rescale(self) -> None:
         """Go on in units of the problem's own, if it has others than those given; what was tried stays tried."""
         self.postponed = False
-        self.scaled = balanced(self.problem)
-        if self.scaled is not None:
+        own = balanced(self.problem)
+        if own is not None:
+            self.scaled = own.after(self.scaled)
             self.ends.clear()
-            self._change(self.scaled.problem)
+            self._change(own.problem)
 
     def make_dense(self) -> None:
         """Store the matrix dense from here on."""

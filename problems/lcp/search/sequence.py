@@ -14,7 +14,7 @@ from problems.lcp.active_set.face import Face, Faces, Mask
 from problems.lcp.active_set.finish import PATIENCE, Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import BETWEEN, LCP, active_state
+from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
 from problems.lcp.data.scaling import SMALLEST, Scaled, balanced
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
@@ -23,15 +23,11 @@ from problems.lcp.search.outcome import Solution
 from problems.lcp.search.pivots import AT_END, LARGEST, most_pivots
 from problems.lcp.search.search import Search
 from problems.lcp.search.solver import solve
+from problems.options import check_tolerance
 
 WARM = Policy(steps=4, patience=PATIENCE)
 """Corrections of the active set of the problem before. On a stack of boxes (n = 200, 100 steps) the slowest step takes
 30 ms with 10 of them, 10 to 13 ms with 4 or fewer, after which pivots are quicker."""
-
-
-def _checked(A: Any) -> Matrix:
-    """The matrix as an LCP holds it."""
-    return LCP(A, np.zeros(np.shape(A)[0] if np.ndim(A) else 0)).A
 
 
 @define(eq=False)
@@ -58,8 +54,8 @@ class Solver:
     Cottle, Pang and Stone, section 4.5 (the parametric problem LCP(q + t d, A)).
     """
 
-    A: Matrix = field(converter=_checked)
-    tolerance: float = 1e-10
+    A: Matrix = field(converter=square_matrix)
+    tolerance: float = field(default=1e-10, validator=lambda instance, attribute, value: check_tolerance(value))
     _scaled: Scaled | None = field(default=None, init=False)
     _first: LCP | None = field(default=None, init=False)
     _structure: Structure | None = field(default=None, init=False)

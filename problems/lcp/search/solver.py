@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
-from numbers import Integral, Real
+from numbers import Integral
 from os import PathLike
 from typing import Any, Unpack
 
@@ -19,7 +19,7 @@ from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
 from continuation.arrays import Array, largest
 from continuation.budget import Budget
-from continuation.checks import instance_with
+from continuation.checks import check_flag, instance_with
 from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
@@ -29,7 +29,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme, level
+from problems.lcp.data.scaling import balanced, extreme, level, without_factor
 from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
@@ -43,7 +43,7 @@ from problems.lcp.search.pivots import Nearby
 from problems.lcp.search.search import Search
 from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, settled_by
 from problems.lcp.search.work import default_budget
-from problems.options import finite_vector
+from problems.options import check_budget, check_seed, check_tolerance, finite_vector
 
 OWNED = ("target", "direction", "start", "state", "observers")
 """What may be said of a path, but not of those that `solve` traces."""
@@ -141,7 +141,7 @@ def solve(
     if not automatic and not problem.standard and not HOMOTOPIES[homotopy].bounds:
         known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
-    _check_arguments(tolerance, restarts, seed, finish, budget, executor, options)
+    _check_arguments(tolerance, restarts, seed, budget, executor, options, finish=finish, path=path, progress=progress)
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
     if problem.n == 0:
@@ -161,7 +161,10 @@ def solve(
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
     postponed = automatic and finish and not path and problem.standard
     postponed = postponed and problem.n > LARGEST_DECIDED and level(problem)
-    scaled = balanced(problem) if not postponed and (automatic or extreme(problem)) else None
+    if postponed:
+        scaled = without_factor(problem)
+    else:
+        scaled = balanced(problem) if automatic or extreme(problem) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
         scaled = None
@@ -212,21 +215,18 @@ def _unfixed(problem: MixedLCP) -> MixedLCP:
 
 
 def _check_arguments(
-    tolerance: Any, restarts: Any, seed: Any, finish: Any, budget: Any, executor: Any, options: Mapping[str, Any]
+    tolerance: Any, restarts: Any, seed: Any, budget: Any, executor: Any, options: Mapping[str, Any], **flags: Any
 ) -> None:
     """Refuse what would otherwise show late, or, where no path is traced, never."""
-    if not isinstance(tolerance, Real) or not 0.0 < float(tolerance) < 1.0:
-        raise ValueError(f"tolerance: expected a number between 0 and 1, found {tolerance!r}")
+    check_tolerance(tolerance)
     if restarts is not None and (not isinstance(restarts, Integral) or restarts < 0):
         raise ValueError(f"restarts: expected an integer, at least 0, found {restarts!r}")
     if executor is not None:
         instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
-    if not isinstance(seed, Integral) or seed < 0:
-        raise ValueError(f"seed: expected an integer, at least 0, found {seed!r}")
-    if not isinstance(finish, bool):
-        raise TypeError(f"finish: expected True or False, found {finish!r}")
-    if budget is not None and not isinstance(budget, Budget):
-        raise TypeError(f"budget: expected a Budget, found {budget!r}")
+    check_seed(seed)
+    for name, flag in flags.items():
+        check_flag(name, flag)
+    check_budget(budget)
     known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
     check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
     checked(options)
@@ -284,18 +284,14 @@ def _account(case: Case, settled: Attempt | None) -> str:
 def _archive_without_path(search: Search, found: Solution) -> None:
     """Where no path was needed the archive holds the message, and the solution as the end of the KKT or Wang's path.
 
-    With z1 = w and z2 = x a solution satisfies the equations of that homotopy at lambda = 0.
+    A solution satisfies the equations of that homotopy at lambda = 0: see `at_solution`.
     """
     problem = found.problem
     homotopy = KKTHomotopy(problem) if isinstance(problem, LCP) else WangHomotopy(problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate
     if end is not None:
-        x, w = end.x, np.maximum(end.w, 0.0)
-        if isinstance(homotopy, KKTHomotopy):
-            y = np.concatenate([x, w, x])
-        else:
-            y = np.append(x, np.maximum(homotopy.sides.pull(end.w), 0.0))
+        y = homotopy.at_solution(end.x)
         u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
         observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
         path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))

@@ -20,10 +20,12 @@ OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.02))}
 
 
 class Slow:
-    """An observer that lets a path of 300 steps last longer than any kill below waits, however fast the machine."""
+    """An observer that lets a path of 300 steps last until it is killed, however busy the machine."""
 
     def step(self, tracer, step):
         time.sleep(0.002)
+        if step.index == 250:
+            signal.pause()
 
     def event(self, tracer, event):
         pass
@@ -47,12 +49,10 @@ def test_kill_at_a_random_moment(tmp_path, uninterrupted, seed):
     generator, file = random.Random(seed), tmp_path / "run.h5"
     process = multiprocessing.get_context("fork").Process(target=write, args=(file, generator.choice([1, 3, 20])))
     process.start()
-    deadline = time.monotonic() + 60.0
-    while not file.exists() or file.stat().st_size < 100_000:
+    while not file.exists():
         assert process.is_alive()
-        assert time.monotonic() < deadline, "the writer has written nothing in a minute"
         time.sleep(0.002)
-    time.sleep(generator.uniform(0.0, 0.15))
+    time.sleep(generator.uniform(0.0, 0.6))
     os.kill(process.pid, signal.SIGKILL)
     process.join()
     assert process.exitcode == -signal.SIGKILL

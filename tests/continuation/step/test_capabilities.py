@@ -49,12 +49,17 @@ def test_a_finish_that_gives_no_point_is_named(end):
         trace(Straight(finish=lambda y, lam: end))
 
 
-def test_a_finish_whose_end_does_not_solve_the_equations_is_believed_with_its_residual_said():
-    """A problem's certificate may be about some unknowns alone, so that H need not vanish at its end."""
-    path = trace(Straight(finish=lambda y, lam: y + 7.0))
+def test_a_finish_is_believed_where_the_equations_hold_and_its_residual_is_said():
+    path = trace(Straight(finish=lambda y, lam: np.ones(1) + 1e-12))
     assert path.status is Status.REACHED_TARGET
+    assert len(path) == 3
     assert path.message.endswith(f"the residual of H there is {path.endpoint.residual_norm:.1e}.")
-    assert path.endpoint.residual_norm > 5.0
+
+
+@pytest.mark.parametrize("off", [7.0, -1.5, 1e300])
+def test_a_finish_whose_end_does_not_solve_the_equations_is_refused(off):
+    with pytest.raises(ValueError, match=r"^finish: expected None or an end of the path, found a point where H is "):
+        trace(Straight(finish=lambda y, lam: y + off))
 
 
 def test_a_predictor_says_how_near_to_the_boundary_it_may_go():

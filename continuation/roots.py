@@ -1,0 +1,43 @@
+"""A zero of a function between two places, by Brent's method, where the function has values in between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from scipy.optimize import brentq
+
+
+def zero_between(function: Callable[[float], float], low: float, high: float, **options: Any) -> float | None:
+    """A zero of a function that has different signs at two places; None where it overflows, or is NaN, on the way.
+
+    Parameters
+    ----------
+    function : callable
+    low, high : float
+    **options
+        For `scipy.optimize.brentq`.
+
+    Returns
+    -------
+    float or None
+
+    References
+    ----------
+    Brent, Algorithms for Minimization Without Derivatives, 1973, chapter 4.
+    """
+
+    class NoValueError(Exception):
+        """Brentq has no way to stop but this."""
+
+    def value(t: float) -> float:
+        found = function(t)
+        if math.isnan(found):
+            raise NoValueError
+        return found
+
+    try:
+        return float(brentq(value, low, high, **options))
+    except NoValueError:
+        return None

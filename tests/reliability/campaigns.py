@@ -1,0 +1,332 @@
+"""Campaigns: what is tried by the thousand, each of any size, with what is right known beforehand."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import importlib.util
+import io
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation import Tracer, trace
+from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume, trace_many
+from continuation.controllers import Bounds, Fixed
+from problems import lcp
+from problems.bifurcation import Cusp, ExponentialCosine
+
+BENCHMARKS = Path(__file__).parents[2] / "examples" / "benchmarks"
+HOMOTOPY = ExponentialCosine(3)
+OPTIONS: dict[str, Any] = {"controller": Fixed(bounds=Bounds(initial=0.02))}
+
+
+@frozen
+class Found:
+    """What a campaign came to.
+
+    Attributes
+    ----------
+    done, wrong : int
+    text : str
+        The figures, in one line.
+    """
+
+    done: int
+    wrong: int
+    text: str
+
+
+def benchmark(name: str) -> Any:
+    """A module of the benchmarks, by its path below them."""
+    file = BENCHMARKS / name
+    sys.path.insert(0, str(file.parent))
+    spec = importlib.util.spec_from_file_location(file.stem, file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[file.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def printed(run: Callable[[], Any]) -> tuple[Any, list[str]]:
+    """What a benchmark returns, and its lines."""
+    out = io.StringIO()
+    with contextlib.redirect_stdout(out):
+        answer = run()
+    return answer, [" ".join(line.split()) for line in out.getvalue().splitlines() if line.strip()]
+
+
+def kills(folder: Path, size: int) -> Found:
+    """kill -9 of whatever is at work with archives."""
+    good, lines = printed(lambda: benchmark("archive_kills.py").kill(folder, size))
+    wrong = [line for line in lines if line.rpartition(": ")[2].isupper()]
+    text = "; ".join(wrong) or f"{size} kills: what was committed is there, and is gone on with to the same path"
+    return Found(size, 0 if good else max(len(wrong), 1), text)
+
+
+def damage(folder: Path, size: int) -> Found:
+    """Damaged files: an error or the right data, soon, in little memory."""
+    good, lines = printed(lambda: benchmark("archive_damage.py").damage(folder, size))
+    return Found(size, 0 if good else 1, ", ".join(lines[-9:]))
+
+
+def tally(mode: str) -> Callable[[Path, int], Found]:
+    """A mode of the benchmark of units."""
+
+    def run(folder: Path, size: int) -> Found:
+        wrong, lines = printed(lambda: benchmark("lcp/units.py").MODES[mode][0](size, 0))
+        return Found(size, wrong, ", ".join(lines[1:]))
+
+    return run
+
+
+def memory(folder: Path, size: int) -> Found:
+    """A long path of which the ends are kept."""
+    _, lines = printed(lambda: benchmark("archive_benchmark.py").memory(folder, size))
+    above = float(lines[0].partition(": ")[2].split()[0])
+    return Found(size, int(above > 16.0), lines[0])
+
+
+def bad_input(folder: Path, size: int) -> Found:
+    """Every argument of everything public; the table has one size."""
+    from .hostile import bad_input as all_of_it
+
+    seen = all_of_it()
+    wrong = sum(seen.values()) - seen["refused"]
+    others = "; ".join(what for what in seen if what != "refused")
+    return Found(sum(seen.values()), wrong, f"{seen['refused']} refused by name in one line; {others or 'no other'}")
+
+
+def in_child(work: Callable[[], object]) -> int:
+    """The exit status of a process that does it: 0, 7 for an ArchiveError of one line, 8 for anything else."""
+    process = os.fork()
+    if process:
+        return os.waitpid(process, 0)[1]
+    status = 0
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        work()
+    except ArchiveError as error:
+        status = 7 if "\n" not in str(error) else 8
+    except BaseException:
+        status = 8
+    finally:
+        os._exit(status)
+
+
+def _prefix(file: Path, whole: Any, least: int = 0) -> bool:
+    """Whether an archive holds the first rows of a path, at least so many, and no others."""
+    with open_archive(file) as archive:
+        rows = archive.path(0).u if len(archive) else whole.u[:0]
+    return len(rows) >= least and rows.tobytes() == whole.u[: len(rows)].tobytes()
+
+
+def full(folder: Path, size: int) -> Found:
+    """A quota that is reached while a path is traced: one line, and what was committed can be read."""
+    seen, whole_file = Counter[str](), folder / "whole.h5"
+    whole = trace(HOMOTOPY, archive=PathLog(whole_file, limits=Limits(rows=5)), **OPTIONS)
+    needed = whole_file.stat().st_size
+    for k in range(size):
+        file, limit = folder / f"full{k}.h5", 1_000 + k * (needed - 1_000) // size
+
+        def work(file: Path = file, limit: int = limit) -> None:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+            trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=5)), **OPTIONS)
+
+        status = in_child(work)
+        if status == 0:
+            seen["there was room"] += 1
+        elif status >> 8 != 7:
+            seen["WRONG: no ArchiveError"] += 1
+        elif not file.exists():
+            seen["an ArchiveError, no file"] += 1
+        else:
+            recover(file)
+            seen["an ArchiveError, and a right file" if _prefix(file, whole) else "WRONG ROWS"] += 1
+    return _counted(size, seen)
+
+
+def truncation(folder: Path, size: int) -> Found:
+    """Files cut off at every place: an error, or what was written."""
+    file, whole = folder / "whole.h5", trace(HOMOTOPY, **OPTIONS)
+    trace(HOMOTOPY, archive=file, **OPTIONS)
+    raw, seen = file.read_bytes(), Counter[str]()
+    for k in range(size):
+        cut = folder / "cut.h5"
+        cut.write_bytes(raw[: len(raw) * k // size])
+        try:
+            seen["right" if _prefix(cut, whole) else "WRONG ROWS"] += 1
+        except ArchiveError as error:
+            seen["a clear error" if "\n" not in str(error) else "WRONG: an error of many lines"] += 1
+    return _counted(size, seen)
+
+
+def growing(folder: Path, size: int) -> Found:
+    """Opened while it is written: each time the first rows of the path, and never fewer than before."""
+    whole, seen, most, file = trace(HOMOTOPY, **OPTIONS), Counter[str](), 0, folder / "growing.h5"
+    steps = iter(Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=1)),), **OPTIONS))
+    for _ in range(size):
+        if next(steps, None) is None:
+            file.unlink()
+            steps, most = iter(Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=1)),), **OPTIONS)), 0
+            next(steps)
+        # By another process, as a reader is.
+        status = in_child(lambda least=most: None if _prefix(file, whole, least) else sys.exit("wrong"))
+        seen["right" if status == 0 else "WRONG"] += 1
+    return _counted(size, seen)
+
+
+def resumes(folder: Path, size: int) -> Found:
+    """Two resumes of one file at once: one goes on, the other is refused, and the file is whole."""
+    whole, seen = trace(HOMOTOPY, **OPTIONS), Counter[str]()
+    killed = folder / "killed.h5"
+
+    def dies() -> None:
+        for step in Tracer(HOMOTOPY, observers=(PathLog(killed, limits=Limits(rows=5)),), **OPTIONS):
+            if step.index == 20:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    in_child(dies)
+    for k in range(size):
+        file = folder / f"two{k}.h5"
+        shutil.copy(killed, file)
+        with ThreadPoolExecutor(2) as executor:
+            statuses = sorted(status >> 8 for status in executor.map(in_child, [lambda file=file: resume(file)] * 2))
+        # Whoever comes when the other is done finds a path that has ended.
+        seen["one resumed, one was refused" if statuses == [0, 7] else f"WRONG: {statuses}"] += 1
+        if not _prefix(file, whole, len(whole)):
+            seen["WRONG ROWS"] += 1
+    return _counted(size, seen)
+
+
+class _Pressed:
+    """Ctrl-C at the k-th evaluation of a residual."""
+
+    def __init__(self, residual: Callable[..., Any], k: int) -> None:
+        self.residual, self.left = residual, k
+
+    def __call__(self, homotopy: Any, y: Any, lam: float) -> Any:
+        self.left -= 1
+        if self.left == 0:
+            raise KeyboardInterrupt
+        return self.residual(homotopy, y, lam)
+
+
+def interrupts(folder: Path, size: int) -> Found:
+    """Ctrl-C in `lcp.solve`: one is enough, wherever it comes, and no path begins after it."""
+    residual, seen = lcp.KKTHomotopy.residual, Counter[str]()
+    problem = lcp.LCP([[1.0, -1.0], [-1.0, 1.0]], [-0.5, 2.0])
+    calls = lcp.solve(problem, "kkt", restarts=2, finish=False).counts.residuals
+    for k in range(size):
+        pressed = _Pressed(residual, 1 + k * calls // (2 * size))
+        lcp.KKTHomotopy.residual = lambda self, y, lam, pressed=pressed: pressed(self, y, lam)
+        try:
+            lcp.solve(problem, "kkt", restarts=2, finish=False, archive=folder / f"{k}.h5")
+            seen["WRONG: it returned" if pressed.left <= 0 else "it was done before"] += 1
+        except KeyboardInterrupt:
+            seen["the caller had it" if pressed.left == 0 else "WRONG: it went on"] += 1
+        finally:
+            lcp.KKTHomotopy.residual = residual
+    return _counted(size, seen)
+
+
+def solves(folder: Path, size: int) -> Found:
+    """Memory over many solves."""
+    rng, used = np.random.default_rng(0), []
+    for k in range(size):
+        A = rng.standard_normal((3, 3))
+        lcp.solve(lcp.LCP(A @ A.T + np.eye(3), rng.standard_normal(3)))
+        if k in (size // 4, size - 1):
+            used.append(int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20)
+    grown = used[1] - used[0]
+    return Found(size, int(grown > 4.0), f"{size} solves: {grown:.1f} MiB more after the last than after a quarter")
+
+
+DIGEST = """
+import hashlib, numpy as np
+from concurrent.futures import ThreadPoolExecutor
+from continuation import FAST, SERIES, Budget, trace
+from problems import lcp
+from problems.bifurcation import Bratu1D, Cusp, ExponentialCosine, FreudensteinRoth
+def one(k):
+    rng = np.random.default_rng(k)
+    n = 3 + k % 6
+    found = lcp.solve(lcp.LCP(rng.standard_normal((n, n)), rng.standard_normal(n)), restarts=3)
+    return f"{found.outcome.name} {None if found.x is None else found.x.tobytes().hex()}"
+paths = [trace(homotopy, preset=preset, budget=Budget(steps=150)) for preset in (FAST, SERIES)
+         for homotopy in (Cusp(), ExponentialCosine(4), FreudensteinRoth(), Bratu1D(60))]
+with ThreadPoolExecutor(3) as executor:
+    answers = list(executor.map(one, range(20)))
+assert answers == [one(k) for k in range(20)]
+print(hashlib.sha256("".join([*answers, *(path.u.tobytes().hex() for path in paths)]).encode()).hexdigest())
+"""
+SURROUNDINGS = (
+    {"PYTHONHASHSEED": "0"}, {"PYTHONHASHSEED": "1"}, {"PYTHONHASHSEED": "12345"},
+    {"OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"}, {"PYTHONOPTIMIZE": "1"}, {"PYTHONHASHSEED": "0"},
+)  # fmt: skip
+
+
+def determinism(folder: Path, size: int) -> Found:
+    """The same bits for other hash seeds, threads of BLAS, optimisation, and in threads as one after another."""
+    digests = [
+        subprocess.run(
+            [sys.executable, "-c", DIGEST], env={**os.environ, **SURROUNDINGS[k]}, capture_output=True, text=True,
+            check=True,
+        ).stdout
+        for k in range(size)
+    ]  # fmt: skip
+    wrong = sum(digest != digests[0] for digest in digests)
+    seal = hashlib.sha256(digests[0].encode()).hexdigest()[:8]
+    return Found(size, wrong, f"8 paths and 20 LCPs, serial and in threads, the same in {size - wrong} runs ({seal})")
+
+
+def dask_sweep(folder: Path, size: int) -> Found:
+    """A sweep over dask: a scheduler, two worker processes, and one of them killed in the middle of a path."""
+    from distributed import Client, LocalCluster
+
+    class DiesOnce(Cusp):
+        """Pickled by value: workers import nothing from here."""
+
+        def residual(self, y: Any, lam: Any) -> Any:
+            marker = os.environ["MARKER"]
+            if lam > 0.0 and self.splitting == 1.0 and not os.path.exists(marker):
+                open(marker, "x").close()
+                os.kill(os.getpid(), signal.SIGKILL)
+            return super().residual(y, lam)
+
+    tasks = [DiesOnce(splitting) for splitting in np.linspace(0.5, 2.0, 16)[:15]] + [DiesOnce(1.0)]
+    whole, seen = [trace(Cusp(task.splitting)) for task in tasks], Counter[str]()
+    for k in range(size):
+        place, marker = folder / f"sweep{k}", folder / f"died{k}"
+        place.mkdir()
+        cluster = LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50, env={"MARKER": str(marker)}
+        )
+        with cluster, Client(cluster) as client, trace_many(tasks, client.get_executor(), place / "run.h5") as paths:
+            same = len(paths) == len(whole) and all(a.u.tobytes() == b.u.tobytes() for a, b in zip(paths, whole))
+        if not marker.exists():
+            seen["WRONG: no worker died"] += 1
+        elif not same or os.listdir(place) != ["run.h5"]:
+            seen["WRONG ROWS, or files left"] += 1
+        else:
+            seen["sweeps of 16 paths, a worker killed, every row right"] += 1
+    return _counted(size, seen)
+
+
+def _counted(size: int, seen: Counter[str]) -> Found:
+    wrong = sum(number for what, number in seen.items() if what.startswith("WRONG"))
+    return Found(size, wrong, ", ".join(f"{number} {what}" for what, number in seen.most_common()))

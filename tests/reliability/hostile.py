@@ -1,0 +1,284 @@
+"""What cannot be meant, for every argument of everything public: a table of kinds of arguments and of calls.
+
+`CALLS` gives to each callable a call that is right and the kind of each argument; `KINDS` gives to each kind the values
+that are to be refused. A case is the call with one argument replaced.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import continuation as c
+from continuation import controllers, correctors, metric, predictors
+from continuation.archive import ArchiveError, Limits, describe, trace_many
+from continuation.controllers import Bounds
+from continuation.linear import Banded
+from continuation.testing import check_homotopy
+from problems import bifurcation, lcp, nonlinear
+
+from .kinds import KINDS
+
+
+class Call(NamedTuple):
+    """A call that is right, and the kinds of its arguments."""
+
+    function: Callable[..., Any]
+    right: Mapping[str, Any]
+    kinds: Mapping[str, str]
+
+
+class World(NamedTuple):
+    """What calls need: made once."""
+
+    homotopy: Any
+    path: Any
+    event: Any
+    pitchfork: Any
+    branch: Any
+    problem: Any
+    program: Any
+
+
+def world() -> World:
+    """A path, a branch point, an LCP."""
+    cusp, pitchfork = bifurcation.Cusp(), bifurcation.Pitchfork()
+    path = c.trace(cusp)
+    branch = next(event for event in c.trace(pitchfork).events if event.kind == c.Kind.BRANCH_POINT)
+    problem = lcp.LCP([[2.0, 1.0], [1.0, 2.0]], [-5.0, -6.0])
+    return World(cusp, path, path.events[0], pitchfork, branch, problem, lcp.from_qp(np.eye(2), -np.ones(2)))
+
+
+OPTIONS = {
+    "preset": "preset", "predictor": "predictor", "corrector": "corrector", "controller": "controller",
+    "metric": "metric", "events": "events", "check_jacobian": "truth", "examine": "truth",
+}  # fmt: skip
+COURSE = {
+    "tolerance": "tolerance", "budget": "budget", "target": "target", "direction": "sign", "start": "start",
+    "finish": "function or None", "max_step": "positive or None", "box": "box",
+}  # fmt: skip
+RUN = {"observers": "observers", "state": "state"}
+
+
+def parts() -> Iterator[Call]:
+    """Settings, and the parts of a trace."""
+    yield Call(c.Budget, {}, dict.fromkeys(("steps", "seconds", "factorizations", "arclength"), "positive"))
+    yield Call(c.Tolerance, {}, {"relative": "fraction", "residual": "positive"})
+    yield Call(Bounds, {}, {"minimum": "positive, finite", "maximum": "positive", "initial": "positive or None"})
+    yield Call(Limits, {}, {"rows": "count", "nbytes": "count", "seconds": "not negative or inf"})
+    ending = {"terminal": "from 0", "direction": "sign"}
+    yield Call(c.TurningPoint, {}, {"component": "integer", **ending})
+    yield Call(c.TargetValue, {"value": 0.0}, {"value": "finite", "component": "integer", **ending})
+    yield Call(c.Monitor, {"function": len}, {"function": "function", "name": "text", **ending})
+    yield Call(c.BranchPoint, {}, {"terminal": "from 0"})
+    yield Call(c.KinkPoint, {}, {"terminal": "from 0"})
+    yield Call(metric.Automatic, {}, {"share": "fraction"})
+    yield Call(metric.Relative, {}, dict.fromkeys(("floor", "lam"), "positive, finite"))
+    yield Call(metric.Weighted, {}, {"lam": "positive, finite"})
+    for corrector, more in (
+        (correctors.BorderedNewton, {"reuse": "share"}),
+        (correctors.NaturalParameter, {"reuse": "share"}),
+        (correctors.Broyden, {}),
+        (correctors.Chord, {}),
+        (correctors.MoorePenrose, {}),
+    ):
+        yield Call(corrector, {}, {"max_iterations": "count", "max_contraction": "positive", **more})
+    yield Call(predictors.RungeKutta, {}, {"order": "order 2 or 4"})
+    yield Call(predictors.AdamsBashforth, {}, {"order": "order 2 to 4"})
+    yield Call(predictors.Polynomial, {}, {"degree": "degree"})
+    series = {"order": "order", "accuracy": "fraction", "safety": "positive, finite", "rational": "truth"}
+    yield Call(predictors.Taylor, {}, series)
+    angle, bounds = {"max_angle": "positive"}, {"bounds": "bounds"}
+    measures = dict.fromkeys(("contraction", "distance", "angle"), "positive")
+    speeds = dict.fromkeys(("deceleration", "acceleration"), "factor")
+    yield Call(controllers.AllgowerGeorg, {}, {**measures, **speeds, **bounds})
+    yield Call(
+        controllers.Curvature, {},
+        {"contraction": "fraction", "initial_distance": "positive", "growth": "factor", **angle, **bounds},
+    )  # fmt: skip
+    yield Call(controllers.Fixed, {}, {**angle, **bounds})
+    yield Call(controllers.Geometric, {}, {"ratio": "fraction", **bounds})
+    yield Call(
+        controllers.IterationCount, {},
+        {"target": "count", "grow": "factor", "shrink": "fraction", **angle, **bounds},
+    )  # fmt: skip
+    yield Call(controllers.SeriesRange, {}, {"distance": "positive", **angle, **bounds})
+    yield Call(Banded, {"ab": np.ones((3, 4)), "lower": 1, "upper": 1}, {"lower": "from 0", "upper": "from 0"})
+
+
+def traced(**options: Any) -> Any:
+    """A `Tracer`, run: a start of another size shows at its first step."""
+    return c.Tracer(**options).run()
+
+
+def engine(w: World) -> Iterator[Call]:
+    """Functions of the engine, and of archives."""
+    options = {"homotopy": "homotopy", **OPTIONS, **COURSE}
+    right = {"homotopy": w.homotopy}
+    flags = {"progress": "truth", "certified": "truth", "archive": "name of a new file"}
+    yield Call(c.trace, right, {**options, **RUN, **flags})
+    yield Call(traced, right, {**OPTIONS, **COURSE, **RUN})
+    both = {name: kind for name, kind in options.items() if name != "direction"}
+    yield Call(c.trace_both, right, {**both, "progress": "truth", "archive": "name of a new file"})
+    yield Call(
+        trace_many, {"homotopies": [w.homotopy]},
+        {"homotopies": "homotopies", "executor": "executor", "progress": "progress", "timeout": "seconds",
+         "archive": "name of a new file"},
+    )  # fmt: skip
+    on_path = {"homotopy": w.homotopy, "path": w.path}
+    kinds = {"homotopy": "homotopy", "path": "path"}
+    yield Call(c.arclength, on_path, {**kinds, "metric": "metric"})
+    yield Call(c.audit, on_path, {**kinds, "metric": "metric", "tolerance": "tolerance", "backwards": "truth"})
+    yield Call(c.certify, on_path, kinds)
+    yield Call(c.refine, {**on_path, "s": 0.1}, {**kinds, "s": "finite", "tolerance": "tolerance"})
+    yield Call(
+        c.solve_at, {**right, "lam": 0.1}, {"homotopy": "homotopy", "lam": "finite", "guess": "vector of one",
+                                            "tolerance": "tolerance"},
+    )  # fmt: skip
+    branch = {"homotopy": w.pitchfork, "event": w.branch}
+    yield Call(c.switch_branch, branch, {"homotopy": "homotopy", "event": "event", "step": "positive, finite"})
+    yield Call(c.branch_directions, branch, {"homotopy": "homotopy", "event": "event"})
+    yield Call(c.check_jacobian, right, {"homotopy": "homotopy", "u": "point of two"})
+    yield Call(c.cite, {"source": w.path}, {"source": "source"})
+    yield Call(
+        c.from_functions, {"residual": len, "start": ([0.0], 0.0)},
+        {"residual": "function", "jacobian": "function or None", "start": "pair"},
+    )  # fmt: skip
+    yield Call(w.path, {"s": 0.1}, {"s": "places"})
+    family = c.Family(w.homotopy, "splitting")
+    yield Call(c.Family, {**right, "name": "splitting"}, {"name": "text"})
+    yield Call(c.Curve, {"family": family, "event": w.event}, {"family": "family"})
+    yield Call(check_homotopy, right, {"steps": "count or None"})
+    yield Call(describe, {"archive": None}, {"archive": "archive"})
+
+
+def solver(w: World) -> Iterator[Call]:
+    """The LCP."""
+    data = {"A": np.eye(2), "q": -np.ones(2)}
+    yield Call(lcp.LCP, data, {"A": "matrix", "q": "vector", "primal": "from 0"})
+    yield Call(
+        lcp.MixedLCP, data,
+        {"A": "matrix", "q": "vector", "lower": "lower", "upper": "upper", "primal": "from 0"},
+    )  # fmt: skip
+    right, kinds = {"problem": w.problem}, {"problem": "problem"}
+    limits = {"seed": "from 0", "budget": "budget", "tolerance": "tolerance of a solution"}
+    search = {"homotopy": "name of a homotopy", "guess": "guess", "finish": "truth", "path": "truth",
+              "restarts": "count or None", "archive": "name of a new file", "progress": "truth",
+              "executor": "executor", "x0": "start of an LCP"}  # fmt: skip
+    yield Call(lcp.solve, right, {**kinds, **search, **limits, **OPTIONS})
+    yield Call(lcp.Solver, {"A": np.eye(2)}, {"A": "matrix", "tolerance": "tolerance of a solution"})
+    yield Call(lcp.Solver(np.eye(2)).solve, {"q": -np.ones(2)}, {"q": "vector"})
+    yield Call(lcp.solutions, right, {**kinds, "enumerate_faces": "truth", **limits})
+    along = {"problem": w.problem, "d": np.ones(2)}
+    yield Call(
+        lcp.along, along,
+        {**kinds, "d": "vector", "t": "interval", "level": "level", "budget": "budget",
+         "archive": "name of a new file"},
+    )  # fmt: skip
+    line = {**along, "path": lcp.along(**along)}
+    yield Call(lcp.prove_path, line, {**kinds, "d": "vector", "path": "path", "level": "level"})
+    for certify in (lcp.certify, lcp.certify_exactly):
+        yield Call(certify, {**right, "x": np.ones(2)}, {**kinds, "x": "vector"})
+    for function in (
+        lcp.farkas, lcp.empty_interior, lcp.solve_by_enumeration, lcp.strictly_feasible_start, lcp.default_start,
+        lcp.Structure,
+    ):  # fmt: skip
+        yield Call(function, right, kinds)
+    yield Call(
+        lcp.random_start, {**right, "generator": np.random.default_rng(0)},
+        {**kinds, "generator": "generator", "distance": "interval"},
+    )  # fmt: skip
+    yield Call(lcp.classify, {"A": np.eye(2)}, {"A": "exact matrix"})
+    ends = {"x0": "positive start", "y0": "positive start"}
+    for two in (lcp.WangHomotopy, lcp.YuHomotopy, lcp.XuHomotopy, lcp.ZhaoHomotopy, lcp.KojimaMegiddoMizunoHomotopy):
+        yield Call(two, {**right, "x0": np.full(2, 9.0)}, {**kinds, **ends})
+    yield Call(lcp.KKTHomotopy, right, {**kinds, **dict.fromkeys(("x0", "z1", "z2", "w0"), "positive start")})
+    rows = {"G": np.ones((1, 2)), "h": np.ones(1)}
+    costs = {"c": "vector of any size", "lower": "lower", "upper": "upper"}
+    yield Call(lcp.from_qp, {"P": np.eye(2), "c": np.ones(2), **rows}, {"P": "matrix", **costs})
+    yield Call(lcp.from_lp, {"c": np.ones(2), **rows}, costs)
+
+
+def others() -> Iterator[Call]:
+    """The other problems."""
+    target = {"target": "finite or None"}
+    yield Call(bifurcation.Cusp, {}, {"splitting": "finite", **target})
+    yield Call(bifurcation.Pitchfork, {}, {"imperfection": "finite", **target})
+    yield Call(bifurcation.Aircraft, {}, {"elevator": "finite", **target})
+    yield Call(bifurcation.ExponentialCosine, {}, {"n": "count", **target})
+    yield Call(bifurcation.Bratu1D, {}, {"n": "count", **target})
+    yield Call(bifurcation.Bratu2D, {}, {"m": "count", **target})
+    yield Call(bifurcation.FreudensteinRoth, {}, target)
+    for make in (nonlinear.fixed_point, nonlinear.newton):
+        right = {"F": np.cos, "a": np.ones(2)}
+        yield Call(make, right, {"F": "function", "a": "vector of any size", "jacobian": "function or None"})
+    yield Call(nonlinear.brown, {"n": 3}, {"n": "count"})
+    yield Call(nonlinear.bratu_under_obstacle, {}, {"n": "count", "psi": "finite", **target})
+    yield Call(
+        nonlinear.NormalMap, {"F": len, "x0": np.ones(2), "lam0": 0.0},
+        {"F": "function", "x0": "vector of any size", "lam0": "finite", **target},
+    )  # fmt: skip
+    right = {"F": np.cos, "lower": np.zeros(2)}
+    yield Call(nonlinear.MixedComplementarity, right, {"F": "function", "jacobian": "function or None"})
+    given = {"problem": nonlinear.MixedComplementarity(**right)}
+    settings = {"x0": "vector or None", "tolerance": "tolerance of a solution", "budget": "budget"}
+    yield Call(nonlinear.solve_complementarity, given, {"problem": "problem", **settings})
+    kinked = {"homotopy": nonlinear.bratu_under_obstacle(1, 0.5), "u": np.array([0.5, 1.0])}
+    yield Call(c.kink_rays, kinked, {"homotopy": "homotopy with pieces", "u": "vector"})
+
+
+REFUSALS = (TypeError, ValueError, LookupError, ArchiveError)
+
+
+def verdict(call: Call, argument: str, value: Any) -> str:
+    """What comes of a case: "refused", or what is wrong."""
+    with warnings.catch_warnings(record=True) as leaked:
+        warnings.simplefilter("always")
+        try:
+            call.function(**{**call.right, argument: value})
+            found = "ACCEPTED"
+        except REFUSALS as error:
+            text = str(error.args[0] if isinstance(error, KeyError) and error.args else error)
+            clear = text.startswith(f"{argument}: ") and "\n" not in text and len(text) < 400
+            found = "refused" if clear else f"OBSCURE: {type(error).__name__}: {text[:100]!r}"
+        except Exception as error:
+            found = f"OBSCURE: {type(error).__name__}: {str(error)[:100]!r}"
+    return f"WARNING: {leaked[0].message}" if leaked else found
+
+
+def calls() -> list[Call]:
+    """All of the table."""
+    w = world()
+    return [*parts(), *engine(w), *solver(w), *others()]
+
+
+def cases() -> Iterator[tuple[Call, str, Any]]:
+    """Each call with each argument replaced by each value of its kind."""
+    for call in calls():
+        for argument, kind in call.kinds.items():
+            for value in KINDS[kind]:
+                yield call, argument, value
+
+
+def name_of(call: Call) -> str:
+    """Of the function, for a report."""
+    return getattr(call.function, "__qualname__", type(call.function).__name__)
+
+
+def bad_input() -> Counter[str]:
+    """All cases, by what came of them."""
+    seen: Counter[str] = Counter()
+    for call, argument, value in cases():
+        found = verdict(call, argument, value)
+        seen["refused" if found == "refused" else f"{name_of(call)}({argument}={value!r:.60}): {found}"] += 1
+    return seen
+
+
+if __name__ == "__main__":
+    tally = bad_input()
+    for what, number in sorted(tally.items()):
+        print(f"{number:5} {' '.join(what.split())[:230]}")

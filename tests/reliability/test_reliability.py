@@ -1,0 +1,64 @@
+"""Every campaign of the reliability report at a size for the suite; `make reliability` runs them at length."""
+
+import json
+
+import pytest
+
+import continuation
+from continuation import controllers, correctors, predictors
+from problems import bifurcation, lcp, nonlinear
+
+from . import hostile, run
+from .points import POINTS
+
+SMOKE = {campaign: point.number for point in reversed(POINTS) for campaign in point.campaigns if campaign.smoke}
+"""Each once: some serve two points. Kills and damage are in `tests/continuation/archive/test_archive_campaigns.py`."""
+
+
+@pytest.mark.parametrize("campaign", SMOKE, ids=SMOKE.values())
+def test_a_campaign(tmp_path, campaign):
+    if campaign.needs:
+        pytest.importorskip(campaign.needs)
+    found = campaign.run(tmp_path, campaign.smoke)
+    assert found.wrong == 0, found.text
+    assert found.done >= campaign.smoke
+
+
+RESULTS = {
+    "Certificate", "Counts", "Decision", "ExactCertificate", "ExactPath", "Exhaustion", "Farkas", "FloatFarkas",
+    "Gradient", "Interrupted", "Kind", "Knot", "LocatedEvent", "Options", "Outcome", "Path", "Preset", "Program",
+    "Proof", "Sensitivity", "Settings", "Solution", "Solutions", "Start", "Status", "Step", "StepMeasures",
+    "Correction", "ComplementaritySolution", "FixedPointHomotopy", "NewtonHomotopy", "BrownAlmostLinear",
+    "Differentiable", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite", "Secant", "Tangent",
+}  # fmt: skip
+"""What is made by the package and handed over, made by a function that is in the table, or takes no argument."""
+
+
+@pytest.mark.parametrize("module", [continuation, controllers, correctors, predictors, lcp, nonlinear, bifurcation])
+def test_everything_public_is_in_the_table(module):
+    tried = {hostile.name_of(call) for call in hostile.calls()} | {"Tracer"}
+    known = {name for name in module.__all__ if name not in RESULTS and callable(getattr(module, name))}
+    for name in known - tried:
+        found = getattr(module, name)
+        assert getattr(found, "_is_protocol", False) or (isinstance(found, type) and issubclass(found, Exception)), name
+
+
+def test_the_tests_that_points_name_are_there():
+    for point in POINTS:
+        assert point.tests or point.campaigns
+        for test in point.tests:
+            assert (run.ROOT / test).exists(), test
+    assert [point.number for point in POINTS[:18]] == [str(k) for k in range(1, 19)]
+
+
+def test_a_table_says_what_is_wrong_and_what_is_missing(tmp_path):
+    point = next(point for point in POINTS if point.number == "8")
+    text, wrong = run.table(tmp_path, [point], 0.1)
+    assert wrong == 2
+    assert "not run" in text
+    for job in run.jobs([point], 0.1):
+        found = {"done": 1, "wrong": int(job[1] == 0), "text": "so many", "size": job[1], "seconds": 1.0}
+        run.file_of(tmp_path, job[0]).write_text(json.dumps(found))
+    text, wrong = run.table(tmp_path, [point], 0.1)
+    assert wrong == 1
+    assert "so many; **1 WRONG**" in text
