@@ -241,7 +241,9 @@ class Structure:
         square[np.diag_indices(self.n)] += diagonal
         return square
 
-    def augmented(self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array) -> Matrix:
+    def augmented(
+        self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array, turn: Array | None
+    ) -> Matrix:
         """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]`` times ``diag(columns)`` plus a diagonal.
 
         Of order 2n, for a column scaling and a diagonal of length n on the first half; dense, or sparse as A is.
@@ -250,6 +252,8 @@ class Structure:
         ----------
         factor, shift : float
         columns, diagonal, z2, w : ndarray, shape (n,)
+        turn : ndarray, shape (n,), or None
+            A scaling of the columns of ``-factor A'``.
 
         Returns
         -------
@@ -260,10 +264,11 @@ class Structure:
             scaling = sp.diags_array(columns)
             top = (factor * self.symmetrized + shift * sp.eye_array(n)) @ scaling + sp.diags_array(diagonal)
             bottom = sp.diags_array(z2) @ self.problem.A @ scaling
-            return sp.block_array([[top, -factor * self.transpose], [bottom, sp.diags_array(w)]], format="csc")
+            turned = self.transpose if turn is None else self.transpose @ sp.diags_array(turn)
+            return sp.block_array([[top, -factor * turned], [bottom, sp.diags_array(w)]], format="csc")
         whole = np.empty((2 * n, 2 * n), order="F")
         whole[:n, :n] = factor * self.symmetrized * columns
-        whole[:n, n:] = -factor * self.transpose
+        whole[:n, n:] = -factor * (self.transpose if turn is None else self.transpose * turn)
         whole[n:, :n] = z2[:, None] * self.problem.A * columns
         whole[n:, n:] = np.diag(w)
         first = np.arange(n)

@@ -17,7 +17,7 @@ from continuation.certificate.quadratic import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, MixedLCP, require_problem
+from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
@@ -29,6 +29,7 @@ from problems.lcp.homotopies.starts import (
     inside_vector,
     natural_units,
     positive_vector,
+    require_interior,
 )
 from problems.options import quiet
 
@@ -325,10 +326,7 @@ def KojimaMegiddoMizunoHomotopy(
 
 def _inside(problem: MixedLCP, x0: Any) -> Array:
     """x0 between the bounds, checked; by default at a distance of one from them."""
-    require_problem(problem)
-    if problem.fixed.any():
-        i = int(np.argmax(problem.fixed))
-        raise ValueError(f"problem: expected lower < upper, found a fixed unknown {i}; lcp.solve eliminates it")
+    require_interior(problem)
     return inside_start(problem) if x0 is None else inside_vector("x0", x0, problem)
 
 

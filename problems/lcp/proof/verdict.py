@@ -7,8 +7,8 @@ import scipy.sparse as sp
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.homotopies.stationarity import is_stationary
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify_exactly
 from problems.lcp.proof.compensated import accurate_w
 
@@ -129,18 +129,24 @@ def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
     That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0: relative to the sizes of x,
-    w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference.
+    w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference. With bounds those of the
+    gap, as `KKTHomotopy` has them.
     """
-    if not problem.standard:
-        return is_stationary(problem, y) <= STATIONARY
-    if y.size != 3 * problem.n:
+    rows = Rows(problem)
+    if y.size != rows.size:
         return False
-    x, z1, z2 = np.split(y, 3)
-    w = problem.w(x)
+    x, z1, z2, t = rows.split(y)
+    w, gaps, moved = problem.w(x), rows.sides.gaps(x), x - rows.end
+    raised = rows.raised(w, t)
     unit_x, unit_w = natural_units(problem)
-    size_x = unit_x + max(float(np.abs(x).max()), float(np.abs(z2).max()))
-    size_w = unit_w + max(float(np.abs(w).max()), float(np.abs(z1).max()), unit_w / unit_x * size_x)
-    gradient = w + problem.A.T @ x - z1 - problem.A.T @ z2
-    lowest = min(float(min(x.min(), z2.min())) / size_x, float(min(w.min(), z1.min())) / size_w)
-    products = max(float(np.abs(x * z1).max()), float(np.abs(w * z2).max())) / (size_x * size_w)
-    return max(float(np.abs(gradient).max()) / size_w, products, -lowest) <= STATIONARY
+    size_x = unit_x + max(float(np.abs(moved).max()), float(np.abs(z2).max()))
+    largest_w = max(float(np.abs(part).max(initial=0.0)) for part in (w, z1, t))
+    size_w = unit_w + max(largest_w, unit_w / unit_x * size_x)
+    gradient = w + problem.A.T @ moved - rows.sides.force(z1) - problem.A.T @ z2
+    bounded, room = ~rows.free, rows.width - z2[rows.boxed]
+    of_x = np.concatenate([gaps, (rows.signs * z2)[bounded], room])
+    of_w = np.concatenate([(rows.signs * raised)[bounded], z1, t])
+    lowest = min(float(of_x.min(initial=0.0)) / size_x, float(of_w.min(initial=0.0)) / size_w)
+    products = np.abs(np.concatenate([gaps * z1, (raised * z2)[bounded], room * t])).max(initial=0.0)
+    off = max(float(np.abs(gradient).max()), float(np.abs(w[rows.free]).max(initial=0.0))) / size_w
+    return max(off, float(products) / (size_x * size_w), -lowest) <= STATIONARY

@@ -30,7 +30,7 @@ from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import balanced, extreme, level
-from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
+from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
@@ -282,20 +282,15 @@ def _account(case: Case, settled: Attempt | None) -> str:
 
 
 def _archive_without_path(search: Search, found: Solution) -> None:
-    """Where no path was needed the archive holds the message, and the solution as the end of the KKT or Wang's path.
+    """Where no path was needed the archive holds the message, and the solution as the end of the KKT path.
 
-    With z1 = w and z2 = x a solution satisfies the equations of that homotopy at lambda = 0.
+    With z1 = |w| and z2 = x a solution satisfies the equations of that homotopy at lambda = 0.
     """
-    problem = found.problem
-    homotopy = KKTHomotopy(problem) if isinstance(problem, LCP) else WangHomotopy(problem)
+    homotopy = KKTHomotopy(found.problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate
     if end is not None:
-        x, w = end.x, np.maximum(end.w, 0.0)
-        if isinstance(homotopy, KKTHomotopy):
-            y = np.concatenate([x, w, x])
-        else:
-            y = np.append(x, np.maximum(homotopy.sides.pull(end.w), 0.0))
+        y = homotopy.at_solution(end.x, end.w)
         u, residual = np.append(y, 0.0), largest(homotopy.residual(y, 0.0))
         observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
         path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))
