@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon
 from scipy.sparse.csgraph import structural_rank
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, finite
 from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
 from continuation.linear.refine import Factored
@@ -86,7 +86,7 @@ class Face:
             for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
                 x = self._corrected(x, self.q if self.exact and standard else self.w(x))
             w = self.w(x)
-        if not (np.isfinite(x).all() and np.isfinite(w).all()):
+        if not (finite(x) and finite(w)):
             return None
         if self.exact:
             w[self.active] = 0.0
@@ -156,7 +156,7 @@ class Faces:
     def _made(self, state: State, shift: float, centre: Array | None) -> Face | None:
         problem = self.problem
         active, ranges = state == BETWEEN, self.structure.ranges
-        inside = np.flatnonzero(active) if ranges is None else ranges.inside(active)
+        inside = active.nonzero()[0] if ranges is None else ranges.inside(active)
         shifts = ranges.shifts(shift) if ranges is not None and shift else shift
         q = problem.q if centre is None else problem.q - shifts * centre
         inverse: Callable[[Array], Array] | None
@@ -165,7 +165,7 @@ class Faces:
         elif self.structure.band is not None and ranges is None:
             inverse, exact = self._banded(active, shift), True
         else:
-            block = problem.A[inside][:, inside]
+            block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
             factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
             inverse = None if factor is None else factor.solve
         if inverse is None:
@@ -176,8 +176,9 @@ class Faces:
 
     def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
         # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.
-        block = np.asfortranarray(block)
-        block[np.diag_indices(len(block))] += shift
+        block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
+        if shift:
+            block[np.diag_indices(len(block))] += shift
         if self.structure.symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
         # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.

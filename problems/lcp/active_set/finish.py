@@ -16,7 +16,7 @@ from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
 from problems.lcp.homotopies.kkt import KKTHomotopy
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
 
 SIGN_CORRECTIONS = 2
@@ -237,7 +237,7 @@ class Finish:
         # A certificate is worth its cost where the signs are right to about the tolerance.
         if not self._plausible(face.state, x, w):
             return x, w, False
-        best = certify(self.problem, self.problem.clipped(x))
+        best = certified(self.problem, self.problem.clipped(x))
         for _ in range(SIGN_CORRECTIONS):
             if best.relative_residual <= ROUND_OFF:
                 break
@@ -245,7 +245,7 @@ class Finish:
             if not np.isfinite(better).all():
                 break
             x = better
-            certificate = certify(self.problem, self.problem.clipped(x))
+            certificate = certified(self.problem, self.problem.clipped(x))
             if certificate.relative_residual < best.relative_residual:
                 best = certificate
         if not best.solves(self.tolerance):
@@ -255,7 +255,7 @@ class Finish:
             else:
                 zeros = self.problem.settled(best.x, best.w)
             if (zeros != best.x).any():
-                best = certify(self.problem, zeros)
+                best = certified(self.problem, zeros)
         if confirmed(self.problem, best, self.tolerance):
             self.certificate = best
             return best.x, best.w, True

@@ -46,8 +46,9 @@ the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
 
 LEVELLED = 16.0
 """Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
-stays as it is, and active sets of an LCP are tried as it is. Finding units and changing to them takes longer than
-solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone LCPs, n = 60: 0.5 of 1.3 ms)."""
+stays as it is; where they are within this factor of another, active sets of an LCP are tried as it is. Finding units
+and changing to them takes longer than solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone LCPs, n = 60:
+0.5 of 1.3 ms)."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
@@ -110,14 +111,26 @@ def balanced(problem: MixedLCP) -> Scaled | None:
 
 def level(problem: MixedLCP) -> bool:
     """Whether the largest entries of rows and columns are so alike that other units would change next to nothing."""
+    least, most = _range(problem)
+    return most <= LEVELLED * least and 1.0 / LEVELLED <= most <= LEVELLED
+
+
+def alike(problem: MixedLCP) -> bool:
+    """The same but for a common factor, which changes nothing of what active sets do."""
+    least, most = _range(problem)
+    return most <= LEVELLED * least and 1.0 / EXTREME <= most <= EXTREME
+
+
+def _range(problem: MixedLCP) -> tuple[float, float]:
+    """The least and the largest of the largest entries of rows and columns."""
     if problem.sparse:
         entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
         np.maximum.at(both, problem.n + problem.A.indices, entries)
     else:
         size = np.abs(problem.A)
-        both = np.concatenate([size.max(axis=axis) for axis in (0, 1)])
-    return bool(both.max() <= LEVELLED * both.min() and 1.0 / LEVELLED <= both.max() <= LEVELLED)
+        both = np.concatenate([size.max(axis=0), size.max(axis=1)])
+    return float(both.min()), float(both.max())
 
 
 def extreme(problem: MixedLCP) -> bool:

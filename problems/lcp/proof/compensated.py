@@ -17,8 +17,8 @@ _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.int64(~0x7FFFFFF)
 """Keeps the leading 26 bits of a double: the product of two such numbers is exact."""
 
-_BLOCK = 2**15
-"""Entries of A in a block of rows."""
+_BLOCK = 2**13
+"""Entries of A in a block of rows: 64 KiB, of which a few at a time stay in the cache."""
 
 _LARGE = 1e240
 """Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
@@ -86,6 +86,8 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
+    if size.min() >= 1.0 / _LARGE and size.max() <= _LARGE:
+        return Terms(problem.A, x, w, size, none)  # w is finite where the size is
     doubtful, small = ~np.isfinite(w) | ~(size <= _LARGE), size < 1.0 / _LARGE
     if small.any():
         doubtful |= small & _filled(problem, x)
@@ -131,25 +133,41 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 def _dense_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, Array, int]:
     """(sum, what it lost, sum of magnitudes, number of terms) of each row, by blocks of rows that stay in the cache."""
-    support = np.flatnonzero(x)
-    factors, everywhere = x[support], support.size == x.size
-    total, lost, size = problem.q.copy(), np.zeros(problem.n), np.abs(problem.q)
-    step = max(_BLOCK // max(support.size, 1), 1)
-    for begin in range(0, problem.n if support.size else 0, step):
+    support = x.nonzero()[0]
+    m, n = support.size, problem.n
+    if m == 0:
+        return problem.q.copy(), np.zeros(n), np.abs(problem.q), 1
+    factors = x[support][:, None]
+    step = max(_BLOCK // m, 1)
+    if step >= n:
+        return *summed(_terms(problem.A, support, x.size), factors, problem.q), m + 1
+    parts = np.empty((3, n))
+    for begin in range(0, n, step):
         rows = slice(begin, begin + step)
-        entries = problem.A[rows] if everywhere else problem.A[rows][:, support]
-        product, error = _two_product(entries, factors)
-        lost[rows] += error.sum(axis=1)
-        size[rows] += np.abs(product).sum(axis=1)
-        # In halves: a row of k terms is summed in log2(k) passes over arrays, and every rounding error is kept.
-        while product.shape[1] > 1:
-            half = product.shape[1] // 2
-            summed, rounding = _two_sum(product[:, :half], product[:, half : 2 * half])
-            lost[rows] += rounding.sum(axis=1)
-            product = summed if 2 * half == product.shape[1] else np.hstack([summed, product[:, -1:]])
-        total[rows], rounding = _two_sum(total[rows], product[:, 0])
-        lost[rows] += rounding
-    return total, lost, size, support.size + 1
+        parts[:, rows] = summed(_terms(problem.A[rows], support, x.size), factors, problem.q[rows])
+    return parts[0], parts[1], parts[2], m + 1
+
+
+def _terms(A: Array, support: NDArray[np.intp], n: int) -> Array:
+    """The columns of a matrix that count, as rows."""
+    return A.T if support.size == n else A.T[support]
+
+
+def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
+    """Sums of products along the first axis, and constants: the rounded sum, what it lost, the sum of magnitudes.
+
+    Parameters
+    ----------
+    entries : ndarray, shape (m, ...)
+    factors : ndarray
+        That broadcasts to the same shape.
+    constants : ndarray, shape (...)
+    """
+    product, lost = _two_product(entries, factors)
+    terms = np.concatenate([constants[None], product])
+    partial = np.add.accumulate(terms, axis=0)
+    lost += _lost(partial[:-1], product, partial[1:])
+    return partial[-1], np.add.reduce(lost, axis=0), np.add.reduce(np.abs(terms), axis=0)
 
 
 def _sparse_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, Array, int]:
@@ -174,8 +192,12 @@ def _sparse_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Arr
 def _two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     """The rounded sum and its rounding error, exactly (Knuth)."""
     total = a + b
+    return total, _lost(a, b, total)
+
+
+def _lost(a: Array, b: Array, total: Array) -> Array:
     virtual = total - a
-    return total, (a - (total - virtual)) + (b - virtual)
+    return (a - (total - virtual)) + (b - virtual)
 
 
 def _two_product(a: Array, b: Array) -> tuple[Array, Array]:

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import scipy.sparse as sp
+from attrs import frozen
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgesv
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
@@ -11,6 +16,11 @@ from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify_exactly
 from problems.lcp.proof.compensated import accurate_w
+
+EPS = float(np.finfo(float).eps)
+
+UNDERFLOW = float(np.finfo(float).tiny) / EPS
+"""Below this products may have lost digits to underflow."""
 
 LARGEST_DECIDED = 12
 """Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
@@ -52,7 +62,7 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
         return False
     if certificate.relative_residual <= ENTRIES or problem.n > LARGEST_DECIDED:
         return True
-    return certify_exactly(problem, certificate.x).solves
+    return exact_nearby(problem, certificate.x)
 
 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
@@ -90,39 +100,125 @@ def exact_nearby(problem: MixedLCP, x: Array) -> bool:
     ----------
     Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
     """
-    return (problem.standard and _clearly_exact(problem, x)) or certify_exactly(problem, x).solves
+    # Asked by the finish, by the search and for the outcome, of the same point.
+    point, answer = problem.known.get("exact", (None, False))
+    if point is None or not np.array_equal(point, x):
+        answer = (problem.standard and _clearly_exact(problem, x)) or certify_exactly(problem, x).solves
+        problem.known["exact"] = x, answer
+    return bool(answer)
 
 
 def _clearly_exact(problem: MixedLCP, x: Array) -> bool:
-    """Whether floats prove it: the equations of the face, in units of x, have a solution near 1 with w > 0 elsewhere.
-
-    With an approximate inverse R of the block B and |I - R B| <= d < 1, B is not singular, and B u = r has
-    |u| <= |R| |r| / (1 - d) in the largest norm.
-    """
-    on = x > 0.0
-    if not on.any():
-        return bool((problem.q >= 0.0).all())
+    """Whether floats prove it; mostly plain arithmetic is enough."""
+    if not x.any():
+        return bool(problem.q.min() >= 0.0)
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
-    w, bound = accurate_w(problem, x)
-    terms = A[:, on] * x[on]
-    sizes = np.abs(terms)
-    largest = sizes[on].max(axis=1)
-    if not largest.min() > np.finfo(float).tiny / np.finfo(float).eps:
-        return False  # products may have lost digits to underflow
-    block = terms[on] / largest[:, None]
+    found = Faced.of(A, problem.q, x)
+    return bool(found.exact(*found.plain) or found.exact(*accurate_w(problem, x)))
+
+
+@frozen(eq=False)
+class Faced:
+    """The equations of the faces of points of one LCP or of a stack, in units of x, with approximate inverses.
+
+    Where the others are off a face its block B has rows of the identity. With an approximate inverse R and
+    |I - R B| <= d < 1, B is not singular, and B u = r has |u| <= |R| |r| / (1 - d) in the largest norm.
+
+    Attributes
+    ----------
+    on : ndarray of bool, shape (..., n)
+        Where x > 0.
+    total, largest : Array of shape (..., n)
+        Sum and largest of the terms of each row of A x, the largest 1 off the face.
+    plain : tuple of Array
+        w, and how far it may be off by rounding.
+    size : Array of shape (..., n, n)
+        |R|.
+    defect : Array of shape (...)
+        d, NaN or infinite where nothing is proved.
+    """
+
+    on: NDArray[np.bool_]
+    total: Array
+    largest: Array
+    plain: tuple[Array, Array]
+    size: Array
+    defect: Array
+
+    @classmethod
+    def of(cls, A: Array, q: Array, x: Array) -> Faced:
+        """For points x >= 0.
+
+        Parameters
+        ----------
+        A : ndarray, shape (..., n, n)
+        q, x : ndarray, shape (..., n)
+        """
+        on, n = x > 0.0, x.shape[-1]
+        terms = A * np.where(on, x, 0.0)[..., None, :]
+        sizes = np.abs(terms)
+        total = sizes.sum(axis=-1)
+        largest = np.where(on, np.maximum(sizes.max(axis=-1), UNDERFLOW), 1.0)
+        fine = largest.min(axis=-1) > UNDERFLOW
+        one = identity(n)
+        block = np.where(on[..., None], terms, one)
+        block /= largest[..., None]
+        inverse = inverses(block)
+        # What rounding of the block and of the product may hide (Higham, section 3.5), twice; no row of |B| sums to
+        # more than n.
+        size, rounding = np.abs(inverse), 2.0 * (n + 4) * EPS
+        off = np.abs(inverse @ block - one)
+        off += n * rounding * size
+        # The error of a sum of n + 1 products (Higham, section 3.1).
+        bound = 0.5 * rounding * (total + np.abs(q)) + n * np.finfo(float).tiny
+        plain = terms.sum(axis=-1) + q, bound
+        return cls(on, total, largest, plain, size, np.where(fine, off.sum(axis=-1).max(axis=-1), np.inf))
+
+    def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
+        """Whether the equations have a solution near x with w > 0 elsewhere.
+
+        Parameters
+        ----------
+        w, bound : ndarray, shape (..., n)
+            w, and how far it may be off.
+        """
+        right = np.where(self.on, (np.abs(w) + bound) / self.largest, 0.0)
+        moved = (self.size @ right[..., None])[..., 0].max(axis=-1) * (1.0 + ROUND_OFF) / (1.0 - self.defect)
+        clear = self.on | (w - bound > 2.0 * moved[..., None] * self.total)
+        exact: NDArray[np.bool_] = (self.defect < 0.5) & (moved < 0.5) & clear.all(axis=-1)
+        return exact
+
+
+@lru_cache(maxsize=32)
+def identity(n: int) -> Array:
+    """The matrix, read-only.
+
+    Parameters
+    ----------
+    n : int
+    """
+    one = np.eye(n)
+    one.flags.writeable = False
+    return one
+
+
+def inverses(blocks: Array) -> Array:
+    """Approximate inverses of a stack of matrices; NaN where one is singular.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (..., n, n)
+    """
+    if blocks.ndim == 2:
+        found, singular = dgesv(blocks, identity(len(blocks)))[2:]
+        return np.full_like(blocks, np.nan) if singular else found
     try:
-        inverse = np.linalg.inv(block)
+        return np.asarray(np.linalg.inv(blocks), dtype=float)
     except np.linalg.LinAlgError:
-        return False
-    k = len(block)
-    # What rounding of the block and of the product below may hide (Higham, section 3.5), twice.
-    rounding = 2.0 * (k + 4) * float(np.finfo(float).eps)
-    size = np.abs(inverse)
-    defect = float((np.abs(inverse @ block - np.eye(k)) + rounding * (size @ np.abs(block))).sum(axis=1).max())
-    if not defect < 0.5:
-        return False
-    off = float((size @ ((np.abs(w) + bound)[on] / largest)).max()) * (1.0 + rounding) / (1.0 - defect)
-    return bool(off < 0.5 and (w - bound > 2.0 * off * sizes.sum(axis=1))[~on].all())
+        if len(blocks) == 1:
+            return np.full_like(blocks, np.nan)
+        half = len(blocks) // 2  # numpy does not say which one it is
+        return np.concatenate([inverses(blocks[:half]), inverses(blocks[half:])])
 
 
 def stationary(problem: MixedLCP, y: Array) -> bool:

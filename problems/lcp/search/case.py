@@ -8,7 +8,7 @@ from attrs import define, field
 
 from continuation.arrays import Array
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
-from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.data.problem import MixedLCP, State, active_state
 from problems.lcp.search.pivots import Nearby
 from problems.lcp.search.search import Search
 
@@ -69,6 +69,8 @@ class Case:
     @property
     def first_state(self) -> State:
         """The state that the point nearest to zero asks for."""
+        if self.problem.standard:
+            return active_state(self.problem.q < 0.0)
         x = self.problem.near_zero
         return self.problem.states(x, self.problem.w(x))
 

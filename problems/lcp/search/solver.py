@@ -24,18 +24,19 @@ from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
-from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme, level
+from problems.lcp.data.scaling import alike, balanced, extreme
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
+from problems.lcp.search import at_once
 from problems.lcp.search.case import Case
 from problems.lcp.search.judging import answer, beyond_floats, of_program, unscaled, with_fixed
 from problems.lcp.search.outcome import Outcome, Solution
@@ -159,8 +160,14 @@ def solve(
         )  # fmt: skip
         return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
-    postponed = automatic and finish and not path and problem.standard
-    postponed = postponed and problem.n > LARGEST_DECIDED and level(problem)
+    postponed = automatic and finish and not path and problem.standard and alike(problem)
+    quick = postponed and problem.n <= at_once.LARGEST and not problem.sparse
+    kept: dict[bytes, Face] | None = {} if quick else None
+    if quick and archive is None and start is None and near is None and problem.q.min() < 0.0:
+        with np.errstate(all="ignore"):
+            immediate = at_once.at_once(Faces(Structure(problem), kept=kept), tolerance)
+        if immediate is not None:
+            return immediate
     scaled = balanced(problem) if not postponed and (automatic or extreme(problem)) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
@@ -172,7 +179,7 @@ def solve(
     structure = Structure(problem if scaled is None else scaled.problem)
     search = Search(
         structure,
-        Finish(Faces(structure), tolerance) if finish else None,
+        Finish(Faces(structure, kept=kept), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
         None if archive is None else PathLog(as_file("archive", archive), title=_title(problem)),
@@ -227,9 +234,10 @@ def _check_arguments(
         raise TypeError(f"finish: expected True or False, found {finish!r}")
     if budget is not None and not isinstance(budget, Budget):
         raise TypeError(f"budget: expected a Budget, found {budget!r}")
-    known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
-    check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
-    checked(options)
+    if options:
+        known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
+        check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
+        checked(options)
 
 
 def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
