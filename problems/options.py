@@ -30,6 +30,8 @@ def finite_or_none(instance: Any, attribute: Attribute[Any], value: Any) -> None
 def real_array(name: str, value: Any) -> Array:
     """A copy of `value` as an array of floats, if it is made of real numbers that a float can hold.
 
+    What nobody can change, a read-only array that owns its floats by rows, is taken as it is.
+
     Parameters
     ----------
     name : str
@@ -42,6 +44,9 @@ def real_array(name: str, value: Any) -> Array:
     ValueError
         For anything else: complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
     """
+    if type(value) is np.ndarray and value.dtype == float and value.base is None and value.flags.c_contiguous:
+        if not value.flags.writeable:
+            return value
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:

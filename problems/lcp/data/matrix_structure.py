@@ -48,14 +48,11 @@ def semidefinite(symmetric: Array) -> bool:
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
-    # The transposes are in LAPACK's order.
-    if (diagonal > 0.0).all() and dpotrf(symmetric.T, lower=1)[1] == 0:
-        return True
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    scaled = symmetric * scale
-    scaled *= scale[:, None]
-    scaled[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n
-    return bool(dpotrf(scaled.T, lower=1, overwrite_a=1)[1] == 0)
+    # Scaling by D adds to its diagonal what is added here to that of the matrix: a factorisation does not feel D.
+    shifted = symmetric.copy()
+    shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * np.where(diagonal > 0.0, diagonal, 1.0)
+    # The transpose is in LAPACK's order.
+    return bool(dpotrf(shifted.T, lower=1, overwrite_a=1, clean=0)[1] == 0)
 
 
 @frozen(eq=False)
@@ -160,6 +157,8 @@ class Structure:
     @cached_property
     def symmetric(self) -> bool:
         """Whether A = A' exactly."""
+        if "symmetric" in self.problem.known:
+            return True
         if self.problem.sparse:
             return float(abs(self.problem.A - self.transpose).max()) == 0.0
         # A row and a column tell most matrices apart, at a thousandth of the cost of all of them.

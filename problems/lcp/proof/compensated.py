@@ -12,13 +12,17 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.inequalities import Inequalities
+from problems.lcp.proof.slices import sliced_terms
 
 _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.int64(~0x7FFFFFF)
 """Keeps the leading 26 bits of a double: the product of two such numbers is exact."""
 
-_BLOCK = 2**13
-"""Entries of A in a block of rows: 64 KiB, of which a few at a time stay in the cache."""
+_AT_ONCE = 2**13
+"""Entries of A, 64 KiB, up to which all products are taken at once; of more slices are quicker."""
+
+_BLOCK = 2**15
+"""Entries of A in a block of rows: 256 KiB, of which two at a time stay in the cache."""
 
 _LARGE = 1e240
 """Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
@@ -137,14 +141,17 @@ def _dense_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Arra
     m, n = support.size, problem.n
     if m == 0:
         return problem.q.copy(), np.zeros(n), np.abs(problem.q), 1
-    factors = x[support][:, None]
-    step = max(_BLOCK // m, 1)
-    if step >= n:
-        return *summed(_terms(problem.A, support, x.size), factors, problem.q), m + 1
+    if m * n <= _AT_ONCE:
+        return *summed(_terms(problem.A, support, x.size), x[support][:, None], problem.q), m + 1
     parts = np.empty((3, n))
-    for begin in range(0, n, step):
-        rows = slice(begin, begin + step)
-        parts[:, rows] = summed(_terms(problem.A[rows], support, x.size), factors, problem.q[rows])
+    # Columns that do not count cost less than to leave them out, where they are few.
+    entries, factors = (problem.A, x) if 2 * m > x.size else (problem.A[:, support], x[support])
+    for rows, terms, size in sliced_terms(entries, factors, max(_BLOCK // factors.size, 1)):
+        constants = problem.q[rows]
+        terms = np.concatenate([constants[None], terms])
+        partial = np.add.accumulate(terms, axis=0)
+        lost = _lost(partial[:-1], terms[1:], partial[1:])
+        parts[:, rows] = partial[-1], np.add.reduce(lost, axis=0), size + np.abs(constants)
     return parts[0], parts[1], parts[2], m + 1
 
 
