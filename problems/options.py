@@ -44,9 +44,9 @@ def real_array(name: str, value: Any) -> Array:
     ValueError
         For anything else: complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
     """
-    if type(value) is np.ndarray and value.dtype == float and value.base is None and value.flags.c_contiguous:
-        if not value.flags.writeable:
-            return value
+    own = type(value) is np.ndarray and value.base is None and value.flags.c_contiguous and not value.flags.writeable
+    if own and value.dtype == float:
+        return value
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:

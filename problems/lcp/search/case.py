@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from attrs import define, field
 
 from continuation.arrays import Array
+from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import MixedLCP, State, active_state
 from problems.lcp.search.pivots import Nearby
@@ -68,11 +69,18 @@ class Case:
 
     @property
     def first_state(self) -> State:
-        """The state that the point nearest to zero asks for."""
+        """The state that the point nearest to zero asks for; after a few gradients where A may be definite."""
         if self.problem.standard:
             return active_state(self.problem.q < 0.0)
+        if self.definite_perhaps:
+            return projected_state(self.problem)
         x = self.problem.near_zero
         return self.problem.states(x, self.problem.w(x))
+
+    @property
+    def definite_perhaps(self) -> bool:
+        """Whether A is symmetric, nothing that is known excludes that it is definite, and it is no Z-matrix."""
+        return self.known.symmetric and not self.known.z_matrix and not self.known.negative_diagonal
 
     @property
     def semidefinite(self) -> bool:

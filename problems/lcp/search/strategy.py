@@ -213,10 +213,6 @@ def _has_coarser_problems(case: Case) -> bool:
     return suitable(case.search.structure)
 
 
-def _definite_perhaps(case: Case) -> bool:
-    return case.known.symmetric and not case.known.z_matrix and not case.known.negative_diagonal
-
-
 def _monotone(case: Case) -> bool:
     return case.semidefinite and not case.known.symmetric
 
@@ -295,7 +291,7 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("a problem nearby", _near, _from_guess, "Solved from the solution of a problem nearby, before any path."),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
-    Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
+    Attempt("active sets of A + shift I, from x = 0", lambda c: c.definite_perhaps, _proximally_from_zero, _SETTLED),
     Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
     Attempt("units of its own", lambda c: c.search.postponed, _rescaled, ""),
