@@ -6,16 +6,15 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, largest
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
-from problems.lcp.data.scaling import units
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
+from problems.lcp.proof.off import DROWNED, drowned_part, shares_in_rows
 from problems.lcp.proof.rational import IntegerRow, Integers, fractions, integer_rows, integers, solve_exactly
 from problems.options import finite_vector
 
@@ -29,9 +28,6 @@ ROUND_OFF = 64 * float(np.finfo(float).eps)
 
 SMALL = 1e-6
 """Relative to the terms of the rows: an x_i and a w_i below this may both be zero in truth."""
-
-DROWNED = 1e-6
-"""The most that a row may be off, relative to the largest |q_i| in balanced units, however large its terms are."""
 
 
 @frozen(eq=False)
@@ -148,10 +144,10 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
         distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
         products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))
         forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
-    shares = _shares(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
+    shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
         # A mid of three, in which what was not asked for is infinite.
-        relative = np.maximum(relative, -_shares(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
+        relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
     off = np.abs(np.minimum(shares, relative))
     return Certificate(
         x=x,
@@ -161,7 +157,7 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
         negative_x=float(np.maximum(np.maximum(-above, -below), 0.0).max()),
         negative_w=float(np.maximum(forbidden, 0.0).max()),
         complementarity=float(products.max()),
-        drowned=_drowned(problem, terms, off),
+        drowned=drowned_part(problem, terms, off),
     )
 
 
@@ -175,7 +171,7 @@ def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
     asked &= x != 0.0
     if low < 0.0:
         asked |= x < 0.0
-    shares = _shares(terms, x, x, asked) if asked.any() else np.where(x > 0.0, np.inf, 0.0)
+    shares = shares_in_rows(terms, x, x, asked) if asked.any() else np.where(x > 0.0, np.inf, 0.0)
     off = np.minimum(shares, relative)
     return Certificate(
         x=x,
@@ -185,53 +181,8 @@ def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
         negative_x=max(-low, 0.0),
         negative_w=max(-float(w.min()), 0.0),
         complementarity=complementarity,
-        drowned=_drowned(problem, terms, np.abs(off)),
+        drowned=drowned_part(problem, terms, np.abs(off)),
     )
-
-
-def _shares(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
-    """Each distance of an x_i from a bound with its sign, as its largest share in the terms of a row; else infinite.
-
-    It is infinite where it is not asked for. An x_i in no row at all can be anything but is at its bound where w_i is
-    not zero: any other is off by all of itself.
-    """
-    shares = np.where(distance == 0.0, 0.0, np.inf)
-    indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
-    if indices.size:
-        inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
-        sizes = np.abs(terms.x[indices])
-        moved = distance[indices] != x[indices]
-        if moved.any():
-            # Over powers of two the rows hold shares of x_i, from which those of the distance follow.
-            with np.errstate(all="ignore"):
-                scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
-            known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
-            sizes = np.where(moved, known, sizes)
-        with np.errstate(under="ignore"):
-            if sp.issparse(terms.A):
-                columns = abs(sp.csr_array(terms.A)[:, indices])
-                present = (columns != 0.0).sum(axis=0) > 0
-                most = (sp.diags_array(inverse) @ (columns @ sp.diags_array(sizes))).max(axis=0).toarray().ravel()
-            else:
-                columns = np.abs(terms.A[:, indices])
-                present = (columns > 0.0).any(axis=0)
-                most = (columns * sizes * inverse[:, None]).max(axis=0)
-        shares[indices] = np.sign(distance[indices]) * np.where(present, most, 1.0)
-    return shares
-
-
-def _drowned(problem: MixedLCP, terms: Terms, off: Array) -> float:
-    """See `Certificate.drowned`; the balanced units are asked for only where a row is off by more than its own q_i."""
-    with np.errstate(over="ignore", under="ignore"):
-        q = np.ldexp(problem.q, -terms.exponents) if terms.exponents.any() else problem.q
-        asked = off * terms.size > DROWNED * np.abs(q)  # nowhere where off is zero
-    if not asked.any():
-        return 0.0
-    rows, _ = units(problem)
-    with np.errstate(over="ignore", under="ignore"):
-        size = float(np.ldexp(np.abs(problem.q), rows).max())
-        worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())
-    return worst / size if size > 0.0 else 0.0
 
 
 @frozen(eq=False)
@@ -306,8 +257,8 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
     every = np.ones(problem.n, dtype=bool)
-    above = _shares(terms, x, x - problem.lower, every)
-    below = _shares(terms, x, problem.upper - x, every)
+    above = shares_in_rows(terms, x, x - problem.lower, every)
+    below = shares_in_rows(terms, x, problem.upper - x, every)
     nearest = np.where(above <= below, LOWER, UPPER)
     state = np.where(above <= w, LOWER, np.where(below <= -w, UPPER, BETWEEN))
     state = np.where(problem.fixed, LOWER, state)

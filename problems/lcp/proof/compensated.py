@@ -24,7 +24,7 @@ _AT_ONCE = 2**13
 _BLOCK = 2**15
 """Entries of A in a block of rows: 256 KiB, of which two at a time stay in the cache."""
 
-_LARGE = 1e240
+LARGE = 1e240
 """Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
 of products below 1e-260 are no longer exact."""
 
@@ -50,10 +50,22 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
     """
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, terms = _rows(problem, x)
-        gamma = 4.0 * (terms + 2) * _UNIT
-        bound = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
+        bound = error_bound(w, size, terms)
     overflowed = ~np.isfinite(w) | ~np.isfinite(bound)
     return np.where(overflowed, np.inf, w), np.where(overflowed, np.inf, bound)
+
+
+def error_bound(w: Array, size: Array, terms: int) -> Array:
+    """How far a sum in twice the working precision, of so many terms with magnitudes that add up to `size`, is off.
+
+    Parameters
+    ----------
+    w, size : Array
+    terms : int
+    """
+    gamma = 4.0 * (terms + 2) * _UNIT
+    bound: Array = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
+    return bound
 
 
 @frozen(eq=False)
@@ -90,9 +102,9 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
-    if size.min() >= 1.0 / _LARGE and size.max() <= _LARGE:
+    if size.min() >= 1.0 / LARGE and size.max() <= LARGE:
         return Terms(problem.A, x, w, size, none)  # w is finite where the size is
-    doubtful, small = ~np.isfinite(w) | ~(size <= _LARGE), size < 1.0 / _LARGE
+    doubtful, small = ~np.isfinite(w) | ~(size <= LARGE), size < 1.0 / LARGE
     if small.any():
         doubtful |= small & _filled(problem, x)
     if not doubtful.any():

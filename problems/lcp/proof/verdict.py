@@ -16,6 +16,7 @@ from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify_exactly
 from problems.lcp.proof.compensated import accurate_w
+from problems.lcp.proof.pieces import inverses
 
 EPS = float(np.finfo(float).eps)
 
@@ -163,7 +164,7 @@ class Faced:
         one = identity(n)
         block = np.where(on[..., None], terms, one)
         block /= largest[..., None]
-        inverse = inverses(block)
+        inverse = _inverse(block)
         # What rounding of the block and of the product may hide (Higham, section 3.5), twice; no row of |B| sums to
         # more than n.
         size, rounding = np.abs(inverse), 2.0 * (n + 4) * EPS
@@ -202,23 +203,12 @@ def identity(n: int) -> Array:
     return one
 
 
-def inverses(blocks: Array) -> Array:
-    """Approximate inverses of a stack of matrices; NaN where one is singular.
-
-    Parameters
-    ----------
-    blocks : ndarray, shape (..., n, n)
-    """
-    if blocks.ndim == 2:
-        found, singular = dgesv(blocks, identity(len(blocks)))[2:]
-        return np.full_like(blocks, np.nan) if singular else found
-    try:
-        return np.asarray(np.linalg.inv(blocks), dtype=float)
-    except np.linalg.LinAlgError:
-        if len(blocks) == 1:
-            return np.full_like(blocks, np.nan)
-        half = len(blocks) // 2  # numpy does not say which one it is
-        return np.concatenate([inverses(blocks[:half]), inverses(blocks[half:])])
+def _inverse(block: Array) -> Array:
+    """An approximate inverse, NaN where there is none; of a stack each."""
+    if block.ndim > 2:
+        return inverses(block)
+    found, singular = dgesv(block, identity(len(block)))[2:]
+    return np.full_like(block, np.nan) if singular else found
 
 
 def stationary(problem: MixedLCP, y: Array) -> bool:
