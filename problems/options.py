@@ -46,7 +46,8 @@ def real_array(name: str, value: Any) -> Array:
     """
     own = type(value) is np.ndarray and value.base is None and value.flags.c_contiguous and not value.flags.writeable
     if own and value.dtype == float:
-        return value
+        kept: Array = value
+        return kept
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:

@@ -71,7 +71,9 @@ class Case:
     def first_state(self) -> State:
         """The state that the point nearest to zero asks for; after a few gradients where A may be definite."""
         if self.problem.standard:
-            return active_state(self.problem.q < 0.0)
+            # Of a sparse Z-matrix, a grid, zeros of q too, which else join one by one (Chandrasekaran's method).
+            grid = self.problem.sparse and self.known.z_matrix and float(self.problem.A.diagonal().min()) > 0.0
+            return active_state(self.problem.q <= 0.0 if grid else self.problem.q < 0.0)
         if self.definite_perhaps:
             return projected_state(self.problem)
         x = self.problem.near_zero
