@@ -173,7 +173,13 @@ def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
         return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
 
     return _dressed(
-        rng, n, units, scalar=p, curve=lambda s: (0.0, s), crossings=[(0.0, at)], begin=float(-rng.uniform(1.0, 2.0)),
+        rng,
+        n,
+        units,
+        scalar=p,
+        curve=lambda s: (0.0, s),
+        crossings=[(0.0, at)],
+        begin=float(-rng.uniform(1.0, 2.0)),
         end=float(rng.uniform(1.0, 2.0)),
     )
 
@@ -186,8 +192,14 @@ def arm(rng: np.random.Generator, n: int, units: float) -> Crossed:
         return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
 
     return _dressed(
-        rng, n, units, scalar=p, curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],
-        begin=float(-rng.uniform(0.3, 3.0)), end=0.3,
+        rng,
+        n,
+        units,
+        scalar=p,
+        curve=lambda x: (x, at + k * x * x),
+        crossings=[(0.0, at)],
+        begin=float(-rng.uniform(0.3, 3.0)),
+        end=0.3,
     )
 
 
@@ -200,6 +212,12 @@ def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
         return x * (x - k * (s - at)), 2.0 * x - k * (s - at), -k * x
 
     return _dressed(
-        rng, n, units, scalar=p, curve=lambda s: (0.0 if straight else k * (s - at), s), crossings=[(0.0, at)],
-        begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)),
+        rng,
+        n,
+        units,
+        scalar=p,
+        curve=lambda s: (0.0 if straight else k * (s - at), s),
+        crossings=[(0.0, at)],
+        begin=float(-rng.uniform(1.0, 2.0)),
+        end=float(rng.uniform(1.0, 2.0)),
     )

@@ -54,7 +54,7 @@ def sliced_terms(A: Array, x: Array, block: int) -> Iterator[tuple[slice, Array,
         # Times powers of two, so that the largest entry of a row is about its largest product.
         left = A[rows] * scale
         magnitudes = np.abs(left)
-        sizes, top = magnitudes @ np.abs(mantissas), np.exp2(np.ceil(np.log2(magnitudes.max(axis=1))))[:, None]
+        sizes, top = magnitudes @ np.abs(mantissas), np.ldexp(1.0, np.frexp(magnitudes.max(axis=1))[1])[:, None]
         terms = np.empty((7, len(left)))
         for k in range(2):
             leading = _leading(left, top, digits)
