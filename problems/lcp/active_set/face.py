@@ -179,7 +179,8 @@ class Faces:
         block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
         if shift:
             block[np.diag_indices(len(block))] += shift
-        if self.structure.symmetric and (factor := _cholesky(block)) is not None:
+        # Of order 1 LU is a division, rounded once, where Cholesky's takes a root.
+        if len(block) > 1 and self.structure.symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
         # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
         definite = self.structure.symmetric and self.structure.semidefinite

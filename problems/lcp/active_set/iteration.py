@@ -32,6 +32,7 @@ class Ended(Enum):
     SETTLED = "the signs ask for the same set again"
     TRIED = "the set was tried before"
     SINGULAR = "the equations of the face have no finite solution"
+    IRREGULAR = "the equations of the face are singular, and no more such faces were wanted"
     CYCLING = "the number of changes does not fall"
     STEPS = "all steps are used up"
 
@@ -46,10 +47,13 @@ class Policy:
         Corrections of the guess, so that steps + 1 faces are solved at most.
     patience : int or None
         Corrections in a row without a new low of the number of changed indices, after which it is given up.
+    regular : bool
+        Whether it ends after the first face whose equations are singular.
     """
 
     steps: int
     patience: int | None = None
+    regular: bool = False
 
 
 @define(eq=False)
@@ -138,6 +142,8 @@ def iterate(
         changes.append(int(np.count_nonzero(following != state)))
         if changes[-1] == 0:
             return Iterated(Ended.SETTLED, state, x)
+        if policy.regular and not face.exact:
+            return Iterated(Ended.IRREGULAR, following, x)
         if policy.patience is not None and _cycling(changes, policy.patience):
             return Iterated(Ended.CYCLING, state, x)
         state = following

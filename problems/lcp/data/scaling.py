@@ -46,9 +46,12 @@ the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
 
 LEVELLED = 16.0
 """Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
-stays as it is; where they are within this factor of another, active sets of an LCP are tried as it is. Finding units
-and changing to them takes longer than solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone LCPs, n = 60:
-0.5 of 1.3 ms)."""
+stays as it is. Finding units and changing to them takes longer than solving it then (n = 1000: 0.25 of 0.45 s)."""
+
+ALIKE = 256.0
+"""Where they are within this factor of another, active sets and pivots are tried on an LCP as it is. Finding units
+takes longer than that (monotone LCPs, n = 60: 0.5 of 1.3 ms), and two digits more or fewer decide nothing there; arches
+of five stones have 50."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
@@ -116,9 +119,9 @@ def level(problem: MixedLCP) -> bool:
 
 
 def alike(problem: MixedLCP) -> bool:
-    """The same but for a common factor, which changes nothing of what active sets do."""
+    """Whether they are so alike, but for a common factor, that active sets and pivots can do without other units."""
     least, most = _range(problem)
-    return most <= LEVELLED * least and 1.0 / EXTREME <= most <= EXTREME
+    return most <= ALIKE * least and 1.0 / EXTREME <= most <= EXTREME
 
 
 def _range(problem: MixedLCP) -> tuple[float, float]:
@@ -258,8 +261,12 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     n = pattern.shape[0]
     if not sp.issparse(pattern) and pattern.all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
-    entries = sp.coo_array(pattern)
-    graph = sp.coo_array((entries.data, (entries.row, n + entries.col)), shape=(2 * n, 2 * n))
+    if sp.issparse(pattern):
+        counts, columns = np.diff(pattern.indptr), pattern.indices
+    else:
+        counts, columns = np.count_nonzero(pattern, axis=1), pattern.nonzero()[1]
+    starts = np.concatenate([[0], np.cumsum(counts), np.full(n, columns.size)])
+    graph = sp.csr_array((np.ones(columns.size), n + columns, starts), shape=(2 * n, 2 * n))
     labels = connected_components(graph, directed=False)[1]
     return labels[:n], labels[n:]
 

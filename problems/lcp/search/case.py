@@ -32,6 +32,8 @@ class Case:
         The solution of a problem nearby, in the units of the search.
     facts : MatrixFacts or None
         What has been found out about the matrix by now.
+    pivoted : bool
+        Whether Lemke's method was tried.
     proof_sought : bool
         Whether a proof was looked for.
     followed : str
@@ -50,6 +52,7 @@ class Case:
     executor: Executor | None
     guess: Nearby | None = None
     facts: MatrixFacts | None = field(default=None, init=False)
+    pivoted: bool = field(default=False, init=False)
     proof_sought: bool = field(default=False, init=False)
     followed: str = field(default="", init=False)
     tried: int = field(default=0, init=False)

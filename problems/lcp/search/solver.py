@@ -165,7 +165,7 @@ def solve(
     kept: dict[bytes, Face] | None = {} if quick else None
     if quick and archive is None and start is None and near is None and problem.q.min() < 0.0:
         with np.errstate(all="ignore"):
-            immediate = at_once.at_once(Faces(Structure(problem), kept=kept), tolerance)
+            immediate = at_once.at_once(Finish(Faces(Structure(problem), kept=kept), tolerance))
         if immediate is not None:
             return immediate
     scaled = balanced(problem) if not postponed and (automatic or extreme(problem)) else None
