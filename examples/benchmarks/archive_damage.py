@@ -1,6 +1,6 @@
 """Damaged archives by the thousand: each operation gives an error or the right data, soon, and in little memory.
 
-python examples/benchmarks/archive_benchmark.py --damage 1000
+    python examples/benchmarks/archive_benchmark.py --damage 1000
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Kills by the thousand: whatever is written, what was committed stays, and a final name means a whole file.
 
-python examples/benchmarks/archive_benchmark.py --kills 500
+    python examples/benchmarks/archive_benchmark.py --kills 500
 """
 
 from __future__ import annotations

@@ -48,11 +48,7 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--restarts", metavar="N", type=_counted, help="random starts at most; default: 1000 with auto")
     parser.add_argument("--seed", metavar="N", type=_counted, default=0, help="of the random starts; default: 0")
     parser.add_argument(
-        "--budget-seconds",
-        "--seconds",
-        dest="seconds",
-        metavar="S",
-        type=_positive,
+        "--budget-seconds", "--seconds", dest="seconds", metavar="S", type=_positive,
         help="wall-clock time; default: work that takes about a minute",
     )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")

@@ -77,8 +77,19 @@ class Crossed:
 
     @property
     def resolution(self) -> float:
-        """What round-off in y leaves of a crossing's place: more where zero is far off and branches nearly touch."""
-        return 100.0 * float(np.finfo(float).eps * np.abs(self.origin / self.scales).max()) / self.angle
+        """What round-off leaves of a crossing's place: in y, where zero is far off, and in the matrix products of H'.
+
+        More where branches nearly touch.
+        """
+        found = 0.0
+        for x0, s in self.crossings:
+            size = np.abs(np.append(*self.point(x0, s))) / self.scales
+            inner = np.eye(self.origin.size - 1)
+            inner[1:, 0] = null = -self._follow(x0, s)[1]
+            products = np.abs(self.unmix) @ np.abs(self.mix @ np.append(1.0, -null))
+            products = np.abs(np.linalg.inv(self.equations)[0]) @ (np.abs(self.equations) @ (np.abs(inner) @ products))
+            found = max(found, float(np.abs(self.unmix[0]) @ size[:-1] + size[-1] + products))
+        return 100.0 * float(np.finfo(float).eps) * found / self.angle
 
     def start(self) -> tuple[Array, float]:
         return self.point(*self.curve(self.begin))
@@ -173,13 +184,7 @@ def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
         return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
 
     return _dressed(
-        rng,
-        n,
-        units,
-        scalar=p,
-        curve=lambda s: (0.0, s),
-        crossings=[(0.0, at)],
-        begin=float(-rng.uniform(1.0, 2.0)),
+        rng, n, units, scalar=p, curve=lambda s: (0.0, s), crossings=[(0.0, at)], begin=float(-rng.uniform(1.0, 2.0)),
         end=float(rng.uniform(1.0, 2.0)),
     )
 
@@ -192,14 +197,8 @@ def arm(rng: np.random.Generator, n: int, units: float) -> Crossed:
         return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
 
     return _dressed(
-        rng,
-        n,
-        units,
-        scalar=p,
-        curve=lambda x: (x, at + k * x * x),
-        crossings=[(0.0, at)],
-        begin=float(-rng.uniform(0.3, 3.0)),
-        end=0.3,
+        rng, n, units, scalar=p, curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],
+        begin=float(-rng.uniform(0.3, 3.0)), end=0.3,
     )
 
 
@@ -212,12 +211,6 @@ def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
         return x * (x - k * (s - at)), 2.0 * x - k * (s - at), -k * x
 
     return _dressed(
-        rng,
-        n,
-        units,
-        scalar=p,
-        curve=lambda s: (0.0 if straight else k * (s - at), s),
-        crossings=[(0.0, at)],
-        begin=float(-rng.uniform(1.0, 2.0)),
-        end=float(rng.uniform(1.0, 2.0)),
+        rng, n, units, scalar=p, curve=lambda s: (0.0 if straight else k * (s - at), s), crossings=[(0.0, at)],
+        begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)),
     )

@@ -111,10 +111,10 @@ class Rows:
         z, s : ndarray, shape (n,)
         t : ndarray, one a box
         """
-        if self.problem.standard:
-            return np.concatenate([s, z])
-        bounded = ~self.free
-        return np.concatenate([(self.signs * s)[bounded], (self.signs * z)[bounded], t, self.width - z[self.boxed]])
+        inside = self.moved(z, s, t)
+        if self.boxed.size:
+            inside[-self.boxed.size :] += self.width
+        return inside
 
     def moved(self, z: Array, s: Array, t: Array) -> Array:
         """How `inside` changes with increments of z, s and t.

@@ -104,11 +104,7 @@ def test_xarray_opens_the_file_without_us(tmp_path, engine):
     with xarray.open_dataset(tmp_path / "run.h5", engine=engine) as data:
         data.load()
     assert dict(data.sizes) == {
-        "point": len(path) + len(path.turning_points),
-        "path": 1,
-        "component": 2,
-        "controller": 4,
-        "event": 2,
+        "point": len(path) + len(path.turning_points), "path": 1, "component": 2, "controller": 4, "event": 2,
     }
     assert set(data.coords) == {"path", "component"}
     assert data.y.dims == ("point", "component")

@@ -1,5 +1,8 @@
 """The guess of an active set by projected gradients: right where that is easy, and worth its cost elsewhere."""
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -7,16 +10,8 @@ from problems import lcp
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER
 
-
-def random_program(kind, n, seed):
-    rng = np.random.default_rng(seed)
-    if kind == "condition 1e6":
-        Q, _ = np.linalg.qr(rng.standard_normal((n, n)))
-        P = (Q * np.logspace(0, -6, n)) @ Q.T
-    else:
-        M = rng.standard_normal((n // 2 if kind == "rank n/2" else n, n))
-        P = M.T @ M / n + (0.1 * np.eye(n) if kind == "definite" else 0.0)
-    return lcp.from_qp((P + P.T) / 2, rng.standard_normal(n), lower=-1, upper=1)
+BENCHMARK = Path(__file__).parents[4] / "examples" / "benchmarks" / "mixed" / "programs.py"
+random_data = runpy.run_path(str(BENCHMARK))["problem"]
 
 
 def test_a_diagonal_matrix_needs_one_step_in_any_units():
@@ -28,7 +23,8 @@ def test_a_diagonal_matrix_needs_one_step_in_any_units():
 @pytest.mark.parametrize(("kind", "counted"), [("rank n/2", 15), ("definite", 13), ("condition 1e6", 11)])
 def test_few_corrections_are_left(kind, counted):
     """Of five programs together; from x = 0 they are 50, 27 and 54."""
-    found = [lcp.solve(random_program(kind, 100, seed)) for seed in range(5)]
+    data = [random_data(kind, 100, seed) for seed in range(5)]
+    found = [lcp.solve(lcp.from_qp(P, c, lower=low, upper=high)) for P, c, low, high in data]
     assert all(solution.success for solution in found)
     assert max(solution.certificate.relative_residual for solution in found) <= 1e-14
     assert sum(solution.counts.factorizations for solution in found) == counted

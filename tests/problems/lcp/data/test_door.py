@@ -25,15 +25,8 @@ def corrupt(array, place, value):
 CORRUPT = {
     f"{array}[{place}] = {value}": (array, place, value)
     for array, place, value in [
-        ("indices", 0, 7),
-        ("indices", 0, -1),
-        ("indices", 0, 10**6),
-        ("indices", 0, -(10**6)),
-        ("indices", 0, 2**31 - 1),
-        ("indptr", 2, 0),
-        ("indptr", 1, 99),
-        ("indptr", 1, 10**8),
-        ("indptr", 1, -5),
+        ("indices", 0, 7), ("indices", 0, -1), ("indices", 0, 10**6), ("indices", 0, -(10**6)),
+        ("indices", 0, 2**31 - 1), ("indptr", 2, 0), ("indptr", 1, 99), ("indptr", 1, 10**8), ("indptr", 1, -5),
     ]
 }
 
