@@ -77,8 +77,19 @@ class Crossed:
 
     @property
     def resolution(self) -> float:
-        """What round-off in y leaves of a crossing's place: more where zero is far off and branches nearly touch."""
-        return 100.0 * float(np.finfo(float).eps * np.abs(self.origin / self.scales).max()) / self.angle
+        """What round-off leaves of a crossing's place: in y, where zero is far off, and in the matrix products of H'.
+
+        More where branches nearly touch.
+        """
+        found = 0.0
+        for x0, s in self.crossings:
+            size = np.abs(np.append(*self.point(x0, s))) / self.scales
+            inner = np.eye(self.origin.size - 1)
+            inner[1:, 0] = null = -self._follow(x0, s)[1]
+            products = np.abs(self.unmix) @ np.abs(self.mix @ np.append(1.0, -null))
+            products = np.abs(np.linalg.inv(self.equations)[0]) @ (np.abs(self.equations) @ (np.abs(inner) @ products))
+            found = max(found, float(np.abs(self.unmix[0]) @ size[:-1] + size[-1] + products))
+        return 100.0 * float(np.finfo(float).eps) * found / self.angle
 
     def start(self) -> tuple[Array, float]:
         return self.point(*self.curve(self.begin))
