@@ -3,7 +3,7 @@
 ``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target.
 """
 
-from continuation.auditing import arclength, audit, refine
+from continuation.auditing import audit, refine
 from continuation.branch_switching import branch_directions, switch_branch
 from continuation.budget import Budget
 from continuation.certificate import Proof, certify
@@ -16,9 +16,11 @@ from continuation.evaluation.functions import from_functions
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.events.branch_point import BranchPoint
+from continuation.guard import Guard
 from continuation.homotopy import Homotopy
 from continuation.interrupted import Interrupted
 from continuation.kinks.start import kink_rays
+from continuation.length import arclength
 from continuation.metric import Automatic, Euclidean, Metric
 from continuation.path import LocatedEvent, Path, Step
 from continuation.predictors import Predictor
@@ -45,6 +47,7 @@ __all__ = [
     "Euclidean",
     "EvaluationError",
     "Event",
+    "Guard",
     "Homotopy",
     "Interrupted",
     "Kind",

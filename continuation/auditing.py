@@ -1,4 +1,4 @@
-"""A traced path examined afterwards: its length by quadrature, and whether a retrace finds the same path."""
+"""A traced path examined afterwards: whether a retrace finds the same path, and points between its own."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from continuation.budget import Budget
 from continuation.controllers import Bounds, Decision, StepMeasures
 from continuation.counts import Counts
 from continuation.ends.closed_curve import SAME_POINT, passes_start
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import Automatic, Euclidean, Metric, Weighted, inner, norm
+from continuation.evaluation.evaluator import Evaluator
+from continuation.length import metric_of, require_step
+from continuation.metric import Metric, inner, norm
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization, linearize
@@ -26,97 +27,9 @@ from continuation.status import Status
 from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
-_MIDDLE = 2
-_CHECK_NODES = np.concatenate(([0.0], _NODES[1:4], [1.0]))
-_CHECK_WEIGHTS: Array = np.linalg.solve(np.vander(_CHECK_NODES, increasing=True).T, 1.0 / np.arange(1.0, 6.0))
-"""The interpolatory rule, of degree 5, on the inner Gauss nodes and the ends, where the speed is known anyway."""
-
-_AGREEMENT = 1e-8
-"""Relative difference of the two rules; Gauss's, of degree 9, is then far more accurate."""
-
-_DIVISIONS = 20
-
-
-def arclength(homotopy: Any, path: Path, metric: Metric | None = None) -> float:
-    """The length of a traced path, by Gauss's quadrature on points of the path itself.
-
-    Each step is cut by planes orthogonal to its chord (in the homotopy's metric); where the path meets a plane its
-    speed is |v| / (border . v), v the tangent there. Five nodes a step, more where they do not suffice, so that the
-    error is one of quadrature (about 1e-9) and not of an interpolant.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-        The one that was traced.
-    path : Path
-        Of at least one step.
-    metric : Metric, optional
-        Euclidean in (y, lam) unless given; need not be that of the trace.
-
-    Raises
-    ------
-    ValueError
-        If the path has no step.
-    ArithmeticError
-        If the path cannot be followed between two of its points, as in a branch point.
-    """
-    _require_step(path)
-    solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
-    planes, rule = _metric_of(homotopy, path), Euclidean() if metric is None else metric
-    total = 0.0
-    current: Array | None = None
-    measure: Array | None = None
-    before: Linearization | None = None
-    for step in path.steps:
-        current = planes.weights(step.u, step.tangent, current)
-        here = linearize(solver.evaluator, step.u, current, current * step.tangent)
-        if before is not None and measure is not None:
-            try:
-                total += _length(solver, before, here, measure, _DIVISIONS)
-            except EvaluationError as error:
-                where = f"path: steps {step.index - 1} and {step.index} are not joined"
-                raise ArithmeticError(f"{where}: {error}") from error
-        before, measure = here, rule.weights(step.u, step.tangent, measure)
-    return total
-
-
-def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Array, divisions: int) -> float:
-    """The length from a to b in the metric of `measure`; the planes are orthogonal in the metric of a."""
-    chord = norm(a.weights, b.u - a.u)
-    if chord <= 1e-14 * norm(a.weights, a.u):
-        return norm(measure, b.u - a.u)
-    border = a.weights * (b.u - a.u) / chord
-    segment = hermite(a.u, a.tangent, b.u, b.tangent, border)
-    nearer = (a if t < 0.5 else b for t in _NODES)
-    inside = [
-        solver.project_and_linearize(near, segment.at(t), border) for near, t in zip(nearer, _NODES)
-    ]
-    points = (a, *inside, b)
-    along = np.array([float(np.dot(border, point.tangent)) for point in points])
-    if (along > 0.0).all():
-        speeds = np.array([norm(measure, point.tangent) for point in points]) / along
-        gauss = chord * float(np.dot(_WEIGHTS, speeds[1:-1]))
-        check = chord * float(np.dot(_CHECK_WEIGHTS, speeds[[0, 2, 3, 4, 6]]))
-        if abs(gauss - check) <= _AGREEMENT * gauss:
-            return gauss
-    if divisions == 0:
-        raise EvaluationError(f"the path could not be measured near lam = {a.lam:g}")
-    middle = inside[_MIDDLE]
-    return sum(_length(solver, p, q, measure, divisions - 1) for p, q in ((a, middle), (middle, b)))
-
-
-def _metric_of(homotopy: Any, path: Path) -> Metric:
-    """The homotopy's own metric, else the one in which the path ended."""
-    own: Metric | None = getattr(homotopy, "metric", None)
-    if own is not None:
-        return own
-    weights = path.steps[-1].weights
-    if weights is None:
-        extent = np.ptp(path.u, axis=0)
-        weights = Automatic().of_extent(np.where(extent > 0.0, extent, float(extent.max()) or 1.0))
-    return Weighted(weights[:-1], float(weights[-1]))
+BEFORE = 0.1
+"""So much of the last step before a branch point on which a path ends, a retrace begins: near enough to see it all, and
+far enough for a matrix of about the size that it has elsewhere."""
 
 
 @frozen(eq=False)
@@ -126,7 +39,8 @@ class Audit:
     Attributes
     ----------
     same : bool
-        Whether the retrace passes through every point of the path, in order and direction, with as many turning points.
+        Whether the retrace passes through every point of the path, in order and direction, with as many turning points
+        and branch points.
     sentence : str
         The finding in words.
     first : int or None
@@ -210,13 +124,19 @@ def audit(
     ValueError
         If the path has no step.
     """
-    _require_step(path)
-    rule, tolerance = metric or _metric_of(homotopy, path), as_tolerance(tolerance)
+    require_step(path)
+    rule, tolerance = metric or metric_of(homotopy, path), as_tolerance(tolerance)
     indices = [k for k, step in enumerate(path.steps) if k == 0 or (step.u != path.steps[k - 1].u).any()]
     sign = 1.0
     if backwards:
         indices, sign = indices[::-1], -1.0
-    knots = _knots([path.steps[k] for k in indices], path.kinks, sign, rule)
+    steps, crossings = [path.steps[k] for k in indices], path.branch_points
+    if backwards and crossings and crossings[-1].ends_step and crossings[-1].step == steps[0].index:
+        # From a branch point no path begins regularly.
+        s = steps[0].arclength + BEFORE * (steps[1].arclength - steps[0].arclength)
+        crossings = crossings[:-1]
+        steps[0] = evolve(steps[0], u=refine(homotopy, path, s, tolerance), tangent=steps[1].tangent)
+    knots = _knots(steps, path.kinks, sign, rule)
     tracer = Tracer(
         homotopy,
         preset=CONSERVATIVE,
@@ -230,15 +150,16 @@ def audit(
     met = _follow(tracer, knots, tolerance)
     if met < len(knots):
         return Audit(False, _missed(path, indices[met], tracer.path), indices[met], tracer.path)
-    turns, expected = _turns(tracer, knots[-1], tolerance), len(path.turning_points)
-    same = turns == expected
-    sentence = f"The retrace passes through all points, with {turns} turning points"
-    return Audit(same, sentence + ("." if same else f" instead of {expected}."), None, tracer.path)
-
-
-def _require_step(path: Path) -> None:
-    if len(path) < 2:
-        raise ValueError(f"path: expected at least two points, found {len(path)}")
+    words, same = [], True
+    for name, found, stored in (
+        ("turning points", tracer.path.turning_points, path.turning_points),
+        ("branch points", tracer.path.branch_points, crossings),
+    ):
+        passed, expected = _passed(tracer, found, knots[-1], tolerance), len(stored)
+        same = same and passed == expected
+        words.append(f"{passed} {name}" + ("" if passed == expected else f" instead of {expected}"))
+    sentence = f"The retrace passes through all points, with {' and '.join(words)}."
+    return Audit(same, sentence, None, tracer.path)
 
 
 def _knots(steps: list[Step], kinks: list[LocatedEvent], sign: float, metric: Metric) -> list[Knot]:
@@ -266,7 +187,12 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
         assert tracer.state is not None
         weights = tracer.state.weights
         here = linearize(solver.evaluator, step.u, weights, weights * step.tangent)
-        while before is not None and met < len(knots) and _meets(solver, knots[met], before, here):
+        # At a branch point no plane is met regularly: it is met where the retrace locates the same one.
+        located = [event for event in tracer.path.branch_points if event.step == step.index]
+        while before is not None and met < len(knots) and (
+            _meets(solver, knots[met], before, here)
+            or any(_same(weights, event, knots[met], solver.tolerance) for event in located)
+        ):
             met, met_at = met + 1, step.arclength
         # Between two points of one path lies little more than their chord; a loop that was left out is longer.
         if met == len(knots) or step.arclength - met_at > 2.0 * (knots[met].arclength - knots[met - 1].arclength):
@@ -276,26 +202,27 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
 
 
 def _meets(solver: PathSolver, knot: Knot, before: Linearization, after: Linearization) -> bool:
-    if inner(after.weights, after.tangent, knot.tangent) > 0.0 and _same(after, knot.u, solver.tolerance):
+    if _same(after.weights, after, knot, solver.tolerance):
         return True
     arc = Arc(before, after, before.border, hermite(before.u, before.tangent, after.u, after.tangent, before.border))
     unit = evolve(knot, tangent=knot.tangent / norm(after.weights, knot.tangent))
     return passes_start(solver, unit, after.weights, arc)
 
 
-def _same(point: Linearization, wanted: Array, tolerance: Tolerance) -> bool:
-    return tolerance.measure(point.u - wanted, point.weights) <= SAME_POINT
+def _same(weights: Array, point: Linearization | LocatedEvent, knot: Knot, tolerance: Tolerance) -> bool:
+    onward = inner(weights, point.tangent, knot.tangent) > 0.0
+    return onward and tolerance.measure(point.u - knot.u, weights) <= SAME_POINT
 
 
-def _turns(tracer: Tracer, end: Knot, tolerance: Tolerance) -> int:
-    """Turning points up to the end; the last step may lie beyond it."""
+def _passed(tracer: Tracer, events: list[LocatedEvent], end: Knot, tolerance: Tolerance) -> int:
+    """Events up to the end; the last step may lie beyond it."""
     assert tracer.state is not None
     last, weights = len(tracer.path) - 1, tracer.state.weights
     return sum(
         event.step < last
         or inner(weights, end.tangent, event.u - end.u) <= 0.0
         or tolerance.measure(event.u - end.u, weights) <= SAME_POINT
-        for event in tracer.path.turning_points
+        for event in events
     )
 
 

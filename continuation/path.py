@@ -128,6 +128,11 @@ class Path:
         return [event for event in self.events if event.kind == Kind.TURNING_POINT and event.name == "turning point"]
 
     @property
+    def branch_points(self) -> list[LocatedEvent]:
+        """The located simple branch points."""
+        return [event for event in self.events if event.kind == Kind.BRANCH_POINT]
+
+    @property
     def kinks(self) -> list[LocatedEvent]:
         """The kinks, where the path goes from one smooth piece of the map to another."""
         return [event for event in self.events if event.kind == Kind.KINK]

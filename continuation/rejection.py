@@ -26,6 +26,7 @@ class Rejection(Enum):
     CROSSINGS = "several branches cross on the arc"
     OTHER_BRANCH = "the arc crosses a branch and ends on it"
     AT_CROSSING = "the arc ends in a crossing, as far as can be told"
+    GUARD = "a guard refuses the arc"
     MIDPOINT = "the inside of the arc is not on the path"
     RAISED = "the homotopy raised an exception of its own at a point that was tried"
     ARC = "the inside of the arc could not be evaluated"

@@ -36,6 +36,9 @@ RESUMABLE = (
     Status.PREDICTOR_FAILED, Status.ABANDONED, Status.RAISED,
 )
 
+_YOUNGER = ("guards",)
+"""Options that files do not have which are older than these."""
+
 
 @documented
 def resume(
@@ -201,7 +204,7 @@ def _options(
     stored = {}
     trees: Any = checkpoint.run.get("options")
     for name in OPTIONS:
-        if name in given:
+        if name in given or (name in _YOUNGER and trees is not None and name not in trees):
             continue
         try:
             tree = trees[name]

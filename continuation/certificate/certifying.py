@@ -12,7 +12,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.certificate.cells import Cells, between, joined
-from continuation.certificate.folds import Piece, pieces
+from continuation.certificate.folds import Piece, Signs, pieces
 from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts, SupportsQuadratic
@@ -179,7 +179,8 @@ class Search:
                 trial = trial.with_tubes(trial.radius, np.full(len(trial), FINE))
             found = search(self.engine, trial)
             proved = found.cells.take(found.proved)
-            counted, by_cell = self._counted(proved, depth == DEPTH)
+            known = [one for one in found.signs if one is not None]
+            counted, by_cell = self._counted(proved, known, depth == DEPTH)
             settled = found.proved.copy()
             settled[settled] = counted
             done.append(proved.take(counted))
@@ -198,12 +199,12 @@ class Search:
         numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
         return cells.take(order), gaps, numbered
 
-    def _counted(self, cells: Cells, last: bool) -> tuple[Mask, list[list[Piece]]]:
+    def _counted(self, cells: Cells, known: list[Signs], last: bool) -> tuple[Mask, list[list[Piece]]]:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
         if not len(cells):
             return np.zeros(0, bool), []
         by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
-        for piece in pieces(self.engine, self.plain, cells):
+        for piece in pieces(self.engine, self.plain, cells, known):
             by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from attrs import frozen
 
@@ -55,7 +57,7 @@ class Turn:
     certain: bool
 
 
-def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
+def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Signs] = ()) -> list[Piece]:
     """Pieces of all cells in order, cut until the sign of the tangent, or of its derivative, is known.
 
     Parameters
@@ -65,19 +67,25 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
         For second derivatives.
     cells : Cells
         Proved ones.
+    known : sequence of Signs, optional
+        Of each cell, where the bounds of its test told them; those serve where they hold for all radii.
     """
     slabs = slabs_of(cells)
     radius = slabs.cells.radius
     found: list[Piece] = []
     for depth in range(DEPTH + 1):
-        sign, radius, judged = _signs(engine, slabs, radius, depth > 0)
         bend = np.zeros(len(slabs), dtype=np.intp)
-        # Where bounds are sharp, a first cut tells most of what has no sign, for less than the second derivative costs.
-        if not sign.all() and (depth or not engine.exact):
-            bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
-        known = (sign != 0) | (bend != 0)
-        share = np.bincount(slabs.owner, known) / np.maximum(np.bincount(slabs.owner), 1)
-        keep = known | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
+        if known and not depth:
+            sign, radius = (np.concatenate([getattr(one, name) for one in known]) for name in ("sign", "radius"))
+        else:
+            told, judged = _judged_signs(engine, slabs, radius, depth > 0)
+            sign, radius = told.sign, told.radius
+            # Where bounds are sharp, a first cut tells most of what has no sign, for less than the second derivative.
+            if not sign.all() and (depth or not engine.exact):
+                bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
+        clear = (sign != 0) | (bend != 0)
+        share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
+        keep = clear | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
         rows = zip(*(x[keep].tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
         found += [Piece(cell, middle - half, middle + half, a, b) for cell, middle, half, a, b in rows]
         if keep.all():
@@ -87,18 +95,56 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells) -> list[Piece]:
     return sorted(found, key=lambda piece: (piece.cell, piece.lo))
 
 
-def _signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> tuple[Index, Array, Judged]:
-    """Signs of the parameter's component, radii within which the curve lies on the slab, and the bounds for them."""
-    judged = engine.judge(slabs, radius)
-    for _ in range(NARROWER if engine.exact else int(narrow)):
-        # The curve lies in the image of its box, which on a part of a tube is smaller.
-        with np.errstate(all="ignore"):
-            inner = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
-            radius = np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
-        if not engine.exact:
-            judged = engine.judge(slabs, radius)
-    t = tangent(judged, radius, slabs.cells.radius)
-    return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0)), radius, judged
+@frozen(eq=False)
+class Signs:
+    """Signs of the parameter's component of the tangent on slabs, and radii within which the curve lies there."""
+
+    sign: Index
+    radius: Array
+
+    def split(self, owner: Index, count: int) -> list[Signs]:
+        """Those of each cell; the slabs are in the order of their cells."""
+        ends = np.cumsum(np.bincount(owner, minlength=count))[:-1]
+        return [Signs(*part) for part in zip(np.split(self.sign, ends), np.split(self.radius, ends))]
+
+
+def signs(judged: Judged, radius: Array, tube: Array) -> Signs:
+    """From bounds that hold for all radii.
+
+    Parameters
+    ----------
+    judged : Judged
+    radius : ndarray, shape (slabs, N + 1)
+        Within which the curve lies.
+    tube : ndarray, shape (slabs, N + 1)
+        Radii with which the test holds.
+    """
+    for _ in range(NARROWER):
+        radius = _narrowed(judged, radius)
+    return Signs(_sign(judged, radius, tube), radius)
+
+
+def _judged_signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> tuple[Signs, Judged]:
+    """From new bounds, and these."""
+    judged, tube = engine.judge(slabs, radius), slabs.cells.radius
+    if engine.exact:
+        return signs(judged, radius, tube), judged
+    if narrow:
+        radius = _narrowed(judged, radius)
+        judged = engine.judge(slabs, radius)
+    return Signs(_sign(judged, radius, tube), radius), judged
+
+
+def _narrowed(judged: Judged, radius: Array) -> Array:
+    """The curve lies in the image of its box, which on a part of a tube is smaller."""
+    with np.errstate(all="ignore"):
+        inner = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
+        return np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
+
+
+def _sign(judged: Judged, radius: Array, tube: Array) -> Index:
+    t = tangent(judged, radius, tube)
+    return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0))
 
 
 def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> Index:

@@ -66,8 +66,10 @@ def nodes(engine: Engine, cells: Cells, s: Array) -> Nodes:
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
     least = NEAR * EPS * np.abs(u) + CLOSE * cells.radius
     largest, done = ROOM * cells.radius + 4.0 * least, np.zeros(len(cells), bool)
-    for _ in range(ROUNDS):
-        judged = engine.judge(slabs, largest)
+    judged = engine.judge(slabs, largest)
+    for k in range(ROUNDS):
+        if k and not engine.exact:
+            judged = engine.judge(slabs, largest)
         with np.errstate(all="ignore"):
             radius = np.fmin(np.maximum(2.0 * judged.misfit, least), largest)
             for _ in range(RADII):

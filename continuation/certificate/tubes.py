@@ -7,6 +7,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
+from continuation.certificate.folds import Signs, signs
 from continuation.certificate.krawczyk import Engine, Judged
 from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
 
@@ -95,11 +96,14 @@ class Found:
     proved : ndarray of bool, shape (cells,)
     undefined : ndarray of bool, shape (cells,)
         Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
+    signs : list of Signs or None
+        Of each proved cell, where the engine's bounds are exact and told them too.
     """
 
     cells: Cells
     proved: Mask
     undefined: Mask
+    signs: list[Signs | None]
 
 
 def search(engine: Engine, cells: Cells) -> Found:
@@ -114,6 +118,7 @@ def search(engine: Engine, cells: Cells) -> Found:
     radius = np.zeros_like(scale)
     slabs = cells.slabs.copy()
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
+    told: list[Signs | None] = [None] * count
     radius[:] = FIRST * scale / (2.0 * slabs[:, None])
     pending = np.arange(count)
     for _ in range(ROUNDS):
@@ -124,6 +129,11 @@ def search(engine: Engine, cells: Cells) -> Found:
         judged = engine.judge(parts, tried.radius[parts.owner])
         wanted, kappa, off = _fixed_point(parts, judged, tried, scale[pending])
         good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
+        if engine.exact and good.any():
+            tube = wanted[parts.owner]
+            by_cell = signs(judged, tube, tube).split(parts.owner, len(tried))
+            for k in np.flatnonzero(good).tolist():
+                told[pending[k]] = by_cell[k]
         undefined[pending] = ~np.isfinite(off)
         radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
@@ -137,7 +147,7 @@ def search(engine: Engine, cells: Cells) -> Found:
             (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
         )
         pending = pending[~good & (slabs[pending] <= MOST_SLABS)]
-    return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, undefined)
+    return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, undefined, told)
 
 
 def _fixed_point(slabs: Slabs, judged: Judged, cells: Cells, scale: Array) -> tuple[Array, Array, Array]:

@@ -114,15 +114,21 @@ ROUNDS = 10
 
 def level(r: Array, terms: Array) -> float:
     """The largest component of a residual beside the round-off of its terms, as `Evaluator.round_off` sees it."""
-    size = np.abs(r)
-    live = size > 0.0
-    return float((size[live] / np.maximum(terms[live], TINY)).max()) if live.any() else 0.0
+    return float((np.abs(r) / np.maximum(terms, TINY)).max())
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
     """Whether a component of the residual at u is far above the round-off of what that equation is made of."""
     r = evaluator.residual(u)
     return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
+
+
+SAME_TERMS = 0.1
+"""A component that changed by less than this part of it leaves the round-off of its terms what it was, about."""
+
+
+def _alike(u: Array, v: Array) -> bool:
+    return bool((np.abs(u - v) <= SAME_TERMS * np.abs(u)).all())
 
 
 Direction = Callable[[int, Array, Array, float], Array]
@@ -193,8 +199,9 @@ def iterate(
                     break
                 before = left if fresh else np.inf
                 k, ratio = (count + 2 * fresh, 1.0) if fresh else (count, worst)
-                iteration = Iteration(iteration.x, POLISHING)
-                iteration.run(partial(polished, k, ratio), leftover, settled)
+                looked, iteration = iteration.x, Iteration(iteration.x, POLISHING)
+                if iteration.run(partial(polished, k, ratio), leftover, settled) and _alike(looked, iteration.x):
+                    break
         elif iteration.stalled:
             rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"
         elif not done:

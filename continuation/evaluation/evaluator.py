@@ -6,6 +6,7 @@ import dis
 import math
 import os
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -49,6 +50,15 @@ class SingularPointError(EvaluationError):
     """The bordered matrix has no factorisation at a point: it is singular there, as in a branch point."""
 
     rejection = Rejection.SINGULAR
+
+
+@lru_cache(maxsize=4)
+def _moves(n: int) -> Array:
+    """Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them."""
+    generic = generic_vector(n)
+    size = np.abs(generic)
+    moves: Array = np.sign(generic) * (0.5 + 0.5 * size / size.max())
+    return moves
 
 
 @frozen(eq=False)
@@ -198,9 +208,7 @@ class Evaluator:
         Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
         an equation may cancel in one of them. `residual` is H(u).
         """
-        # Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them.
-        generic, step = generic_vector(u.size), LOOK * np.spacing(np.abs(u))
-        moves = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
+        step, moves = LOOK * np.spacing(np.abs(u)), _moves(u.size)
         looks = (self.residual(u + step * moves), self.residual(u + step * moves[::-1]))
         terms: Array = np.maximum(*(np.abs(look - residual) for look in looks)) * (ULPS / LOOK)
         return terms

@@ -1,7 +1,7 @@
 """What makes an arc count: orientation, connectedness; then where the path ends on it, and the events on it.
 
-A further check of an arc belongs into `Examiner.examine`, between the crossing of branches and the end; it answers with
-a `Rejection`.
+A further check of a user's own is a `Guard`. One of the library belongs into `Examiner.examine`, between the crossing
+of branches and the end, and answers with a `Rejection`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces
 from continuation.events.scan import first_terminal, scan_events
+from continuation.guard import objection
 from continuation.kinks.crossing import Crossing, cross
 from continuation.kinks.first import first_zero
 from continuation.path import LocatedEvent
@@ -120,6 +121,9 @@ class Examiner:
             crossing = crossing if last == len(found) - 1 else None
             ending = ArcEnd(cut(ending.arc, stopping), EndsAt.EVENT, events[i].kind, bool(whole))
             found = found[: last + 1]
+        for guard in self.settings.guards:
+            if words := objection(guard, ending.arc):
+                return _rejected(attempt, Rejection.GUARD, words)
         located = [self._located(i, event, point, state, ending.arc.b) for i, event in found]
         if branch is not None:
             known = {"rays": branch.rays} if branch.rays is not None else MULTIPLE

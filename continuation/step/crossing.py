@@ -121,7 +121,8 @@ class Crossings:
             Where the path ends on the arc, if it does: what lies beyond does not count.
         """
         # An arc that was cut, as at a kink, is the beginning of what was predicted.
-        attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
+        if arc.b is not attempt.point:
+            attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
         looked = self._looked(arc, attempt, prediction)
         places = max(([t for t in found if t < BEYOND] for found in looked.values()), key=len, default=[])
         if flipped and not places and (apply := self._derivative(arc.b.u)) is not None:
@@ -164,7 +165,9 @@ class Crossings:
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         if at > 1.0:
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
-        if not flipped:
+        if not flipped or doubtful:
+            # With a second crossing behind it the sign is that of the other branch: how well the corrector contracts
+            # tells the two apart.
             return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
         return self._point(arc, found, at)
 
@@ -208,10 +211,11 @@ class Crossings:
         contracts = attempt.correction.contraction <= RELIABLE
         least, found = CHANGED if contracts else 0.5 * CHANGED, {}
         series = hasattr(prediction, "segment")
-        for at in EIGHTHS if series else LOOKS:
+        for k, at in enumerate(EIGHTHS if series else LOOKS):
             if (apply := self._derivative(prediction(at * attempt.h))) is None:
                 break
-            found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, max(BEYOND / at, 1.0 / least))]
+            ahead = max(BEYOND / at, 1.0 / least)
+            found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, ahead, turned=k)]
             if not found[LOOKS[0]] and not series:
                 break
         if series:

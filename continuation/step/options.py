@@ -21,6 +21,7 @@ from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.events import Event
 from continuation.events.box import Box
+from continuation.guard import Guard
 from continuation.metric import Metric
 from continuation.predictors import Predictor
 from continuation.presets import DEFAULT, Preset
@@ -46,6 +47,9 @@ class PartOptions(TypedDict, total=False):
         In which arclength is measured. By default the homotopy's own, else `Automatic`.
     events : sequence of Event, default ()
         Added to the homotopy's own; turning points and branch points are watched for unasked.
+    guards : sequence of Guard, default ()
+        Functions of an arc that say why it does not count, or None: checks of your own. A step that one refuses is
+        tried again, shorter; no archive holds them.
     check_jacobian : bool, default False
         Compare the Jacobian with the residual at the start; a wrong one is a ValueError that says where.
     examine : bool, default True
@@ -60,6 +64,7 @@ class PartOptions(TypedDict, total=False):
     controller: Controller | None
     metric: Metric | None
     events: Sequence[Event]
+    guards: Sequence[Guard]
     check_jacobian: bool
     examine: bool
 
@@ -107,6 +112,7 @@ DEFAULTS: Options = {
     "controller": None,
     "metric": None,
     "events": (),
+    "guards": (),
     "check_jacobian": False,
     "examine": True,
     "tolerance": 1e-8,
@@ -140,6 +146,7 @@ PARTS = {
 }
 
 OBSERVER = Part(("step", "event", "end"), "an observer")
+GUARD = Part(("__call__",), "guards: functions of an arc")
 EVENT = Part(("monitor", "name", "kind", "terminal", "direction"), "events (wrap a function in Monitor(function))")
 
 
@@ -186,6 +193,7 @@ def checked(options: Mapping[str, Any]) -> Options:
         if options.get(name) is not None:
             instance_with(name, options[name], *part)
     each("events", asked["events"], EVENT)
+    each("guards", asked["guards"], GUARD)
     for name in ("check_jacobian", "examine"):
         if not isinstance(value := options.get(name, False), bool | np.bool_):
             raise complain(TypeError, name, "True or False", value)

@@ -15,6 +15,7 @@ from continuation.correctors import Corrector
 from continuation.events import Event, KinkPoint, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
+from continuation.guard import Guard
 from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces
 from continuation.labels import Labels
 from continuation.metric import Automatic, Metric
@@ -34,6 +35,8 @@ class Settings:
     events : tuple of Event
         The homotopy's own and the caller's, with turning points of the parameter and branch points added where
         nobody asks for them.
+    guards : tuple of Guard
+        Checks of arcs that the caller adds.
     tolerance : Tolerance
     budget : Budget
     target : float or None
@@ -47,6 +50,7 @@ class Settings:
     controller: Controller
     metric: Metric
     events: tuple[Event, ...]
+    guards: tuple[Guard, ...]
     tolerance: Tolerance
     budget: Budget
     target: float | None
@@ -92,6 +96,7 @@ def complete_settings(homotopy: Any, asked: Options, start: Callable[[], Array])
         controller=_capped(_first(asked["controller"], preset.controller), asked["max_step"]),
         metric=_first(asked["metric"], own, Automatic()),
         events=(*_events(homotopy, asked), *_box(homotopy, asked, start)),
+        guards=tuple(asked["guards"]),
         tolerance=as_tolerance(asked["tolerance"]),
         budget=_first(asked["budget"], Budget()),
         target=checked_target(getattr(homotopy, "target", 0.0) if names_homotopy(target) else target),

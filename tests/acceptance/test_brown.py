@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from continuation import Status, trace
-from continuation.auditing import arclength, audit
+from continuation.auditing import audit
+from continuation.length import arclength
 from problems.nonlinear import brown, fixed_point, newton
 
 from ..util import every_preset

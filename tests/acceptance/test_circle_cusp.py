@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from continuation import Status, TargetValue, trace
-from continuation.auditing import arclength, audit
+from continuation.auditing import audit
+from continuation.length import arclength
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp
 

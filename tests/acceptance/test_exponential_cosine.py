@@ -7,8 +7,9 @@ import pytest
 from attrs import evolve
 
 from continuation import Status, trace
-from continuation.auditing import arclength, audit
+from continuation.auditing import audit
 from continuation.controllers import Bounds, Geometric
+from continuation.length import arclength
 from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance

@@ -9,8 +9,9 @@ from scipy.integrate import quad
 
 import continuation
 from continuation import TurningPoint, trace
-from continuation.auditing import arclength, audit
+from continuation.auditing import audit
 from continuation.controllers import AllgowerGeorg, Bounds, Curvature, IterationCount
+from continuation.length import arclength
 from problems.bifurcation import FreudensteinRoth
 
 from ..util import every_preset

@@ -131,7 +131,9 @@ class Faces:
         """The problem."""
         return self.structure.problem if self.current is None else self.current
 
-    def face(self, state: State, shift: float = 0.0, centre: Array | None = None) -> Face | None:
+    def face(
+        self, state: State, shift: float = 0.0, centre: Array | None = None, regular: bool = False
+    ) -> Face | None:
         """The face of a state, factored; None where that is impossible.
 
         Parameters
@@ -141,11 +143,13 @@ class Faces:
             Added to the diagonal of A.
         centre : Array, optional
             Of a proximal problem, whose q is ``q - shift centre``.
+        regular : bool
+            Whether it is impossible where its equations are singular.
         """
         if self.kept is None or shift or centre is not None:
-            return self._made(state, shift, centre)
+            return self._made(state, shift, centre, regular)
         key = state.tobytes()
-        face = self.kept.pop(key, None) or self._made(state, shift, centre)
+        face = self.kept.pop(key, None) or self._made(state, shift, centre, regular)
         if face is None:
             return None
         self.kept[key] = face
@@ -153,7 +157,7 @@ class Faces:
             self.kept.pop(next(iter(self.kept)))
         return evolve(face, problem=self.problem, q=self.problem.q)
 
-    def _made(self, state: State, shift: float, centre: Array | None) -> Face | None:
+    def _made(self, state: State, shift: float, centre: Array | None, regular: bool) -> Face | None:
         problem = self.problem
         active, ranges = state == BETWEEN, self.structure.ranges
         inside = active.nonzero()[0] if ranges is None else ranges.inside(active)
@@ -166,7 +170,7 @@ class Faces:
             inverse, exact = self._banded(active, shift), True
         else:
             block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
-            factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
+            factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift, regular)
             inverse = None if factor is None else factor.solve
         if inverse is None:
             return None
@@ -174,7 +178,7 @@ class Faces:
             inverse = ranges.completed(active, inside, inverse, shift)
         return Face(problem, state, active, inverse, exact or centre is not None, shifts, q)
 
-    def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
+    def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
         # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.
         block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
         if shift:
@@ -183,9 +187,11 @@ class Faces:
         if len(block) > 1 and self.structure.symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
         # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
-        definite = self.structure.symmetric and self.structure.semidefinite
+        definite = self.structure.symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
+        if regular:
+            return None, False
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * max(_norm(block), 1e-300)
         return (_cholesky if definite else _lu)(block), False
 

@@ -161,12 +161,15 @@ def solve(
         return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
     postponed = automatic and finish and not path and problem.standard and alike(problem)
+    # What scaling to floats would round is decided by exact arithmetic where that is cheap.
+    postponed = postponed and (problem.n > LARGEST_DECIDED or not extreme(problem))
     quick = postponed and problem.n <= at_once.LARGEST and not problem.sparse
     kept: dict[bytes, Face] | None = {} if quick else None
-    if quick and archive is None and start is None and near is None and problem.q.min() < 0.0:
+    immediate = None
+    if quick and start is None and near is None and problem.q.min() < 0.0:
         with np.errstate(all="ignore"):
             immediate = at_once.at_once(Finish(Faces(Structure(problem), kept=kept), tolerance))
-        if immediate is not None:
+        if immediate is not None and archive is None:
             return immediate
     scaled = balanced(problem) if not postponed and (automatic or extreme(problem)) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
@@ -193,7 +196,9 @@ def solve(
     strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
     with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
-        if beyond:
+        if immediate is not None:
+            found = immediate
+        elif beyond:
             found = beyond_floats(problem, tolerance)
         else:
             settled = settled_by(case, strategy)

@@ -88,13 +88,15 @@ def cells(n, preset, scale=1.0, origin=0.0):
 
 
 @every_preset
+@pytest.mark.parametrize("n", [5, 20])
 @pytest.mark.parametrize("units", [(1.0, 0.0), (1e-6, 2e-4)], ids=["plain", "shifted"])
-def test_cells_that_are_all_alike(preset, units):
-    path = cells(5, preset, *units)
+def test_cells_that_are_all_alike(preset, units, n):
+    """Of 20 cells 38 branch points, in pairs that lie near each other: the look along a step needs three dimensions."""
+    path = cells(n, preset, *units)
     assert path.status is Status.STOPPED_AT_EVENT
     np.testing.assert_allclose([fold.lam for fold in path.turning_points], [34.356925, 18.887068], atol=1e-6)
-    # Where 3 - 2 cos(k pi / 5) + g(x) = 0, g the derivative of the reaction: in closed form by its roots.
-    g = [3.0 - 2.0 * np.cos(k * np.pi / 5.0) for k in range(1, 5)]
+    # Where 3 - 2 cos(k pi / n) + g(x) = 0, g the derivative of the reaction: in closed form by its roots.
+    g = [3.0 - 2.0 * np.cos(k * np.pi / n) for k in range(1, n)]
     expected = sorted(
         float(x.real)
         for s in g
