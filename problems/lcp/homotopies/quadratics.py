@@ -48,7 +48,7 @@ def kkt_form(homotopy: Any) -> Quadratic:
     A, q, sides = _dense(problem.A), problem.q, rows.sides
     # Each unknown as a row of coefficients of (y, lam), and lam itself.
     whole = np.eye(N + 1)
-    x, z1, z2, t = (whole[np.arange(N)[place]] for place in homotopy.places)
+    x, z1, z2, t = (whole[place] for place in homotopy.places)
     lam, pull = whole[-1:], sides.sign[:, None] * np.eye(n)[sides.index]
     end = np.broadcast_to(rows.end, n)
     F = A @ x + A.T @ (x - z2) - pull.T @ z1
