@@ -44,7 +44,7 @@ $(VENV)/.dev: pyproject.toml | $(VENV)/bin/python
 
 # The studies of speed against accuracy, at a moderate size: tables and figures in build/chart.
 # The longest first, so that two processes end together.
-STUDIES := engine lcp robustness scaling order
+STUDIES := engine lcp robustness scaling order scenes
 chart: $(VENV)/.chart
 	$(MAKE) -j2 $(STUDIES:%=chart-%)
 $(STUDIES:%=chart-%): chart-%: $(VENV)/.chart

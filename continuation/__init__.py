@@ -11,6 +11,7 @@ from continuation.citation import cite
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.counts import Counts
+from continuation.curves import Curve, Family
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.functions import from_functions
 from continuation.evaluation.jacobian_check import check_jacobian
@@ -44,9 +45,11 @@ __all__ = [
     "Controller",
     "Corrector",
     "Counts",
+    "Curve",
     "Euclidean",
     "EvaluationError",
     "Event",
+    "Family",
     "Guard",
     "Homotopy",
     "Interrupted",

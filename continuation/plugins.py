@@ -1,4 +1,5 @@
-"""Homotopies that installed packages offer under a name: the entry points of the group `continuation.homotopies`.
+"""What installed packages offer under a name: homotopies, the entry points of the group `continuation.homotopies`, and
+scenes, those of `continuation.scenes`.
 
 In the ``pyproject.toml`` of a package::
 
@@ -23,6 +24,9 @@ from typing import Any
 from attrs import NOTHING, frozen
 
 GROUP = "continuation.homotopies"
+SCENES = "continuation.scenes"
+
+_KINDS = {GROUP: "homotopy", SCENES: "scene"}
 
 Factory = Callable[..., Any]
 """What an entry point names: options to homotopy."""
@@ -66,10 +70,13 @@ class Plugin:
     name : str
     points : tuple of EntryPoint
         One, unless packages quarrel about the name.
+    kind : str
+        What is made: a homotopy, a scene.
     """
 
     name: str
     points: tuple[EntryPoint, ...]
+    kind: str = _KINDS[GROUP]
 
     @property
     def origin(self) -> str:
@@ -92,7 +99,7 @@ class Plugin:
         except Exception as error:  # Whatever a foreign module raises while it is imported.
             reason = f"{type(error).__name__}: {error}"
             raise PluginError(f"{self.name}: {self.origin} cannot be loaded: {reason}") from error
-        return _callable(self.name, factory)
+        return _callable(self.name, factory, self.kind)
 
 
 @frozen
@@ -116,19 +123,27 @@ class Description:
     references: tuple[str, ...]
 
 
-def available() -> dict[str, Plugin]:
-    """All registered names, sorted, without importing anything."""
-    points = grouped(entry_points(group=GROUP))
-    return {name: Plugin(name, tuple(points[name])) for name in sorted(points)}
+def available(group: str = GROUP) -> dict[str, Plugin]:
+    """All registered names, sorted, without importing anything.
+
+    Parameters
+    ----------
+    group : str
+        `GROUP`, or `SCENES`.
+    """
+    points = grouped(entry_points(group=group))
+    return {name: Plugin(name, tuple(points[name]), _KINDS[group]) for name in sorted(points)}
 
 
-def find(name: str) -> Factory:
+def find(name: str, group: str = GROUP) -> Factory:
     """The class or function behind a name.
 
     Parameters
     ----------
     name : str
         A registered name, or ``module:object`` for one that is not registered.
+    group : str
+        `GROUP`, or `SCENES`.
 
     Raises
     ------
@@ -136,12 +151,12 @@ def find(name: str) -> Factory:
         If there is none by that name, or it cannot be loaded.
     """
     if ":" in name:
-        return _imported(name)
-    known = available()
+        return _imported(name, _KINDS[group])
+    known = available(group)
     if name not in known:
         near = get_close_matches(name, known, n=3)
         hint = f"did you mean {' or '.join(near)}?" if near else f"known are {', '.join(known) or 'none'}"
-        raise PluginError(f"{name}: no homotopy of this name is installed; {hint}")
+        raise PluginError(f"{name}: no {_KINDS[group]} of this name is installed; {hint}")
     return known[name].load()
 
 
@@ -184,9 +199,27 @@ def make(name: str, values: Mapping[str, Any] | None = None) -> Any:
     PluginError
         As `find`.
     TypeError
+        As `called`.
+    """
+    return called(name, find(name), values)
+
+
+def called(name: str, factory: Factory, values: Mapping[str, Any] | None = None) -> Any:
+    """What a factory makes of options by name.
+
+    Parameters
+    ----------
+    name : str
+        Of the factory, for messages.
+    factory : callable
+    values : mapping, optional
+
+    Raises
+    ------
+    TypeError
         If an option is unknown or missing, naming it and those that there are.
     """
-    factory, values = find(name), dict(values or {})
+    values = dict(values or {})
     known = options(factory)
     names = [option.name for option in known]
     listed = ", ".join(map(str, known)) or "none"
@@ -218,7 +251,7 @@ def owners(points: Sequence[EntryPoint]) -> str:
     return " and ".join(point.dist.name if point.dist else point.value for point in points)
 
 
-def _imported(path: str) -> Factory:
+def _imported(path: str, kind: str) -> Factory:
     module, _, attribute = path.partition(":")
     try:
         found: Any = importlib.import_module(module)
@@ -226,12 +259,12 @@ def _imported(path: str) -> Factory:
             found = getattr(found, part)
     except Exception as error:  # Whatever a foreign module raises while it is imported.
         raise PluginError(f"{path}: cannot be loaded: {type(error).__name__}: {error}") from error
-    return _callable(path, found)
+    return _callable(path, found, kind)
 
 
-def _callable(name: str, factory: Any) -> Factory:
+def _callable(name: str, factory: Any, kind: str) -> Factory:
     if not callable(factory):
-        raise PluginError(f"{name}: expected a class or function that makes a homotopy, found {type(factory).__name__}")
+        raise PluginError(f"{name}: expected a class or function that makes a {kind}, found {type(factory).__name__}")
     loaded: Factory = factory
     return loaded
 

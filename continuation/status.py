@@ -75,6 +75,7 @@ class Kind(IntEnum):
     EVENT = 5
     KINK = 6
     SINGULAR_POINT = 7
+    HOPF = 8
 
     def __repr__(self) -> str:
         return f"Kind.{self.name}"

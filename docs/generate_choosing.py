@@ -32,6 +32,8 @@ FIGURES = {
     "scaling-curves": chart.Scaling("seconds"),
     "scaling-lcp": chart.Scaling("seconds"),
     "robustness": chart.Profile("factorizations"),
+    "scenes-meshes": chart.Precision("answer", "seconds"),
+    "scenes-exact": chart.Precision("answer", "seconds"),
 }
 TABLES = {
     "cost-model": order.CostModel(),

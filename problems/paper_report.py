@@ -144,5 +144,3 @@ def show(x: Array, digits: int = 7) -> str:
     """A vector as short text; components that are zero to the accuracy of a path as 0."""
     size = float(np.abs(x).max())
     return "(" + ", ".join("0" if abs(value) <= SOLVED_TO * size else f"{value:.{digits}g}" for value in x) + ")"
-
-

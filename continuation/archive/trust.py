@@ -20,12 +20,16 @@ import scipy.sparse as sp
 
 from continuation import budget, controllers, correctors, events, metric, predictors, tolerance
 from continuation.archive.codec import UnstorableError, path_of
+from continuation.curves import curve, family
 from continuation.evaluation import functions
 from continuation.events import box, branch_point
 
 ENTRY_POINTS = "continuation.homotopies"
 
-_MODULES = (budget, controllers, correctors, events, box, branch_point, functions, metric, predictors, tolerance)
+_MODULES = (
+    *(budget, controllers, correctors, curve, events, box, branch_point),
+    *(family, functions, metric, predictors, tolerance),
+)
 _REAL = "fiub"
 
 

@@ -109,6 +109,7 @@ def _time_panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: st
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.margins(x=0.08, y=0.08)
+    few_ticks(axes.xaxis)
     few_ticks(axes.yaxis)
     axes.set_xlabel("seconds (errors are round-off)", fontsize="small")
     _failures(axes, failures, len(names))

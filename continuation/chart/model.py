@@ -91,6 +91,11 @@ class Answer:
     message: str = ""
 
 
+def everywhere(problem: Problem) -> bool:
+    """True."""
+    return True
+
+
 @frozen(eq=False)
 class Method:
     """A way to solve the problems of a study.
@@ -103,8 +108,11 @@ class Method:
         (problem, rung) to an Answer. What it raises is caught and counts as a failure.
     laddered : bool
         Whether the ladder concerns it; otherwise it runs once a problem.
+    applies : callable
+        A problem to whether the method is one for it; by default for all. Where it is none there is no row.
     """
 
     name: str
     run: Callable[[Problem, Rung], Answer]
     laddered: bool = True
+    applies: Callable[[Problem], bool] = everywhere

@@ -36,6 +36,7 @@ def run(study: Study, watch: Watch | None = None) -> Results:
         (problem, method, rung)
         for problem in study.problems
         for method in study.methods
+        if method.applies(problem)
         for rung in (study.ladder.rungs if method.laddered else study.ladder.rungs[:1])
     ]
     rows: list[Row] = []

@@ -22,8 +22,11 @@ _continuation() {{
 complete -o default -F _continuation continuation
 """
 
-NAMED = ("trace", "check", "plugins")
-"""Commands whose argument is a homotopy."""
+NAMED = {
+    "trace": (plugins.GROUP,), "check": (plugins.GROUP,), "plugins": (plugins.GROUP, plugins.SCENES),
+    "solve": (plugins.SCENES,),
+}  # fmt: skip
+"""Commands whose argument is a homotopy, or a scene, by the groups of these."""
 
 
 def register(subparsers: Subparsers) -> None:
@@ -54,4 +57,4 @@ def _run(arguments: argparse.Namespace, subparsers: Subparsers) -> int:
 
 def _words(name: str, parser: argparse.ArgumentParser) -> list[str]:
     options = [option for action in parser._actions for option in action.option_strings if option.startswith("--")]
-    return [*options, *(plugins.available() if name in NAMED else ())]
+    return [*options, *(known for group in NAMED.get(name, ()) for known in plugins.available(group))]

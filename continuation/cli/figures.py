@@ -88,7 +88,6 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
     """What `draw` draws on its axes, above the step sizes; no window opens, with any backend of matplotlib."""
     from matplotlib.figure import Figure
 
-    from continuation.archive.atomic import beside, publish
     from continuation.plot import plot_steps
 
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
@@ -96,12 +95,19 @@ def save(file: str, path: Any, title: str, draw: Callable[[Any], object]) -> Non
     draw(above)
     above.set_title(title, fontsize="medium")
     plot_steps(path, below)
+    write(figure, Path(file))
+
+
+def write(figure: Any, file: Path) -> None:
+    """A figure into a file, whole or not at all."""
+    from continuation.archive.atomic import beside, publish
+
     picture = BytesIO()
-    figure.savefig(picture, format=Path(file).suffix[1:].lower(), dpi=DOTS_PER_INCH)
+    figure.savefig(picture, format=file.suffix[1:].lower(), dpi=DOTS_PER_INCH)
     # Beside it first: where the disk is full, what was there stays.
-    with beside(Path(file)) as part:
+    with beside(file) as part:
         part.write_bytes(picture.getvalue())
-        publish(part, Path(file), replace=True)
+        publish(part, file, replace=True)
 
 
 def _draw(axes: Any, path: Any, arguments: argparse.Namespace) -> None:

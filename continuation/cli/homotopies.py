@@ -29,7 +29,7 @@ MOST_PRINTED = 10
 
 def register(subparsers: Subparsers) -> None:
     """Add the commands."""
-    parser = subparsers.add_parser("plugins", help="the homotopies that are installed, with their options")
+    parser = subparsers.add_parser("plugins", help="homotopies and scenes that are installed, with their options")
     parser.add_argument("name", metavar="NAME", nargs="?", help="one of them, with its references in full")
     parser.set_defaults(run=_list)
 
@@ -80,18 +80,20 @@ def _add_homotopy(parser: argparse.ArgumentParser) -> None:
 
 
 def _list(arguments: argparse.Namespace) -> int:
-    known = plugins.available()
+    scenes = plugins.available(plugins.SCENES)
+    known = {**plugins.available(), **scenes}
     if arguments.name is not None:
         with unknown(arguments.name):
-            factory = plugins.find(arguments.name)
+            factory = plugins.find(arguments.name, plugins.SCENES if arguments.name in scenes else plugins.GROUP)
         described = plugins.describe(factory)
         origin = known[arguments.name].origin if arguments.name in known else arguments.name
-        print("\n".join([*_entry(arguments.name, described, origin), *_full(described)]))
+        kind = known[arguments.name].kind if arguments.name in known else ""
+        print("\n".join([*_entry(arguments.name, described, origin, kind), *_full(described)]))
         return SUCCESS
     broken = []
     for name, plugin in known.items():
         try:
-            print("\n".join(_entry(name, plugins.describe(plugin.load()), plugin.origin)))
+            print("\n".join(_entry(name, plugins.describe(plugin.load()), plugin.origin, plugin.kind)))
         except plugins.PluginError as error:
             broken.append(str(error))
     for complaint in broken:
@@ -99,9 +101,11 @@ def _list(arguments: argparse.Namespace) -> int:
     return SUCCESS
 
 
-def _entry(name: str, described: plugins.Description, origin: str) -> list[str]:
+def _entry(name: str, described: plugins.Description, origin: str, kind: str) -> list[str]:
     options = ", ".join(map(str, described.options)) or "none"
     lines = [f"{name}", f"    {described.summary}", f"    options: {options}"]
+    if kind == "scene":
+        lines.append(f"    a scene: continuation solve scene {name}")
     if described.problem_class:
         lines.append(f"    for: {described.problem_class}")
     if described.references:

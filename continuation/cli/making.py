@@ -32,9 +32,9 @@ def importable(name: str) -> None:
 
 
 def homotopy_of(
-    name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None
+    name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None, group: str = plugins.GROUP
 ) -> tuple[Any, Mapping[str, Any]]:
-    """The homotopy that NAME KEY=VALUE ... stand for, and the options read.
+    """The homotopy, or the scene, that NAME KEY=VALUE ... stand for, and the options read.
 
     Parameters
     ----------
@@ -44,6 +44,8 @@ def homotopy_of(
         ``KEY=VALUE``.
     known : mapping, optional
         Options that hold where no text says otherwise.
+    group : str
+        Of `continuation.plugins`.
 
     Raises
     ------
@@ -52,12 +54,12 @@ def homotopy_of(
     """
     importable(name)
     with unknown(name):
-        factory = plugins.find(name)
+        factory = plugins.find(name, group)
     written = {option.name: option.annotation for option in plugins.options(factory)}
     values = {**(known or {}), **_values(texts, written)}
     try:
         with refused(name):
-            return plugins.make(name, values), values
+            return plugins.called(name, factory, values), values
     except UsageError as complained:
         error = complained.__cause__
         if not isinstance(error, (TypeError, ValueError)):

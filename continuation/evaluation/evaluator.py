@@ -271,6 +271,9 @@ class Evaluator:
 
 def _unevaluated(what: str, error: BaseException) -> EvaluationError:
     """The error for a function that raised: of `math`, numpy and scipy it is the domain's edge, else its author's."""
+    if isinstance(error, EvaluationError):
+        # Of a homotopy that evaluates others, which has said it.
+        return error
     place = error.__traceback__
     while place is not None and place.tb_next is not None:
         place = place.tb_next

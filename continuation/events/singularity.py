@@ -107,7 +107,7 @@ def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
     if sp.issparse(H_y):
         return sp.csc_array(sp.hstack([H_y, sp.csc_array(column)]))
     if not isinstance(H_y, np.ndarray):
-        raise EvaluationError("a matrix is needed at a branch point, and the Jacobian is an operator")
+        raise EvaluationError("a matrix is needed here, and the Jacobian is an operator")
     return np.hstack([H_y, column])
 
 

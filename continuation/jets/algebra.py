@@ -1,6 +1,6 @@
-"""The two algebras that a jet can live in: one direction to high order, or many directions to first order.
+"""The algebras that a jet can live in: one direction to high order, many to first order, or many beside one direction.
 
-Both keep coefficients along the leading axis, so everything linear is shared; they differ in products,
+All keep coefficients along the leading axis, so everything linear is shared; they differ in products,
 quotients and compositions only.
 """
 
@@ -77,5 +77,38 @@ class Gradient:
         return np.concatenate([value[None], slope * a[1:]])
 
 
+@frozen
+class Mixed:
+    """The gradient's algebra over the dual numbers, s^2 = 0: derivatives along one direction of those in many.
+
+    Coefficients: 1, the e_i, s, and the s e_i.
+    """
+
+    def product(self, product: Callable[[Array, Array], Array], a: Array, b: Array) -> Array:
+        """The product rule, twice."""
+        if len(a) == 1 or len(b) == 1:
+            return product(a, b)
+        half = len(a) // 2
+        value = GRADIENT.product(product, a[:half], b[:half])
+        slope = GRADIENT.product(product, a[:half], b[half:]) + GRADIENT.product(product, a[half:], b[:half])
+        return np.concatenate([value, slope])
+
+    def quotient(self, a: Array, b: Array) -> Array:
+        """The quotient as a product."""
+        series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
+        inverse = self.compose(series.reciprocal, b) if len(b) > 1 else 1.0 / b
+        return self.product(np.multiply, a, inverse)
+
+    def compose(self, rule: series.Rule, a: Array) -> Array:
+        """The chain rule, with two derivatives from the rule's own series at order 2."""
+        value, slope, half_bend = rule(np.stack([a[0], np.ones_like(a[0]), np.zeros_like(a[0])]))
+        out = slope * a
+        half = len(a) // 2
+        out[0] = value
+        out[half + 1 :] += 2.0 * half_bend * a[half] * a[1:half]
+        return np.asarray(out)
+
+
 TAYLOR = Taylor()
 GRADIENT = Gradient()
+MIXED = Mixed()

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.jets.algebra import GRADIENT, TAYLOR
+from continuation.jets import series
+from continuation.jets.algebra import GRADIENT, MIXED, TAYLOR
 from continuation.jets.array import Jet, as_jet, wrap
 
 _BLOCK = 128
@@ -139,6 +140,37 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
         c[np.arange(1, 1 + count), np.arange(begin, begin + count)] = 1.0
         line = wrap(c, GRADIENT)
         columns.append(np.moveaxis(as_jet(f(line), line).c[1:], 0, -1))
+    return np.concatenate(columns, axis=-1)
+
+
+def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
+    """The derivative along v of the Jacobian of f: R^m -> R^n at x, f''(x)[v, .], without truncation error.
+
+    Parameters
+    ----------
+    f : callable
+        Written in numpy functions that jets know.
+    x, v : array_like, shape (m,)
+
+    Returns
+    -------
+    ndarray, (n, m)
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
+    """
+    x, v = _numbers(x, "x"), _numbers(v, "v")
+    columns = []
+    for begin in range(0, len(x), _BLOCK):
+        count = min(_BLOCK, len(x) - begin)
+        c = np.zeros((2 + 2 * count, len(x)))
+        c[0], c[1 + count] = x, v
+        c[np.arange(1, 1 + count), np.arange(begin, begin + count)] = 1.0
+        line = wrap(c, MIXED)
+        value = series.extended(as_jet(f(line), line).c, len(c))
+        columns.append(np.moveaxis(value[2 + count :], 0, -1))
     return np.concatenate(columns, axis=-1)
 
 

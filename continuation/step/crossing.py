@@ -35,6 +35,10 @@ EIGHTHS = (*LOOKS, 0.125, 0.375, 0.625, 0.875)
 STRIDE = 0.125
 """Between these."""
 
+NEARLY, MOST_LOOKS = 0.9, 12
+"""Between two looks lies a pair of crossings if from either side H' seems to be singular soon: from so much on, a
+parabola says where to look again, so many times in all."""
+
 CHANGED = 0.25
 """Where H' has changed by more than this part half way, it is looked at on either side too, since two crossings may lie
 before and one behind: on 3,200 steps of acceptance problems that is one in forty. Half as much will do where the
@@ -128,8 +132,9 @@ class Crossings:
         if flipped and not places and (apply := self._derivative(arc.b.u)) is not None:
             places = singular_places(arc.a, apply, arc.b.border, 1.0)
         last = np.inf if end is None else position(arc, end) / position(arc, arc.b.u)
-        places = [t for t in places if t < last]
-        if end is not None and not (places or (flipped and last == 1.0)):
+        guesses, places = places, [t for t in places if t < last]
+        # Where the sign changes beyond the end, that is to be explained all the same: the arc may have left its branch.
+        if end is not None and not (places or flipped):
             return None
         if end is None and any(abs(t - 1.0) < APART for t in places):
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
@@ -152,7 +157,7 @@ class Crossings:
                 return None
         found = None
         if places or flipped:
-            t = self._refined(arc, attempt, prediction, (inside or places or [LOOKS[0]])[0])
+            t = self._refined(arc, attempt, prediction, (inside or places or guesses or [LOOKS[0]])[0])
             found = self._found(arc, prediction(t * attempt.h))
         if found is None and not flipped and (behind := self._behind(arc, attempt)) is not None:
             found = self._found(arc, arc.segment.at(behind))
@@ -211,13 +216,16 @@ class Crossings:
         contracts = attempt.correction.contraction <= RELIABLE
         least, found = CHANGED if contracts else 0.5 * CHANGED, {}
         series = hasattr(prediction, "segment")
-        for k, at in enumerate(EIGHTHS if series else LOOKS):
+        looks = list(EIGHTHS if series else LOOKS)
+        for k, at in enumerate(looks):
             if (apply := self._derivative(prediction(at * attempt.h))) is None:
                 break
             ahead = max(BEYOND / at, 1.0 / least)
             found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, ahead, turned=k)]
             if not found[LOOKS[0]] and not series:
                 break
+            if series and len(EIGHTHS) <= len(found) == len(looks) < MOST_LOOKS and (peak := _peak(found)) is not None:
+                looks.append(peak)
         if series:
             # So near to the path they need not be extrapolated far: a place counts where a look is behind it.
             found = {at: [t for t in places if t < at + STRIDE] for at, places in found.items()}
@@ -290,6 +298,19 @@ class Crossings:
         """The branch point as a point of the path, its tangent that of the branch which goes on."""
         rays = found.rays(arc.segment.derivative(at), arc.a.weights)
         return Crossed(evolve(arc.a, u=found.u, tangent=rays[1]), rays)
+
+
+def _peak(found: dict[float, list[float]]) -> float | None:
+    """Where between looks H' may be singular twice: it was nearly so, and less on either side; None if nowhere."""
+    at = np.sort([t for t, places in found.items() if places])
+    near = np.array([t / found[t][0] for t in at])
+    k = int(near.argmax()) if near.size else 0
+    if not 0 < k < near.size - 1 or not NEARLY < near[k] < 1.0:
+        return None
+    # The vertex of the parabola through the three.
+    a, b, c = np.polyfit(at[k - 1 : k + 2] - at[k], near[k - 1 : k + 2], 2)
+    peak = float(at[k] - 0.5 * b / a)
+    return peak if min(abs(peak - at)) > APART and c - 0.25 * b * b / a > near[k] else None
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:

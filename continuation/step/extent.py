@@ -88,7 +88,7 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     h = NEAR * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    low, high = 0.0, np.inf
+    begin, low, high = h, 0.0, np.inf
     found, off = h, np.zeros_like(u)
     for _ in range(TRIALS):
         try:
@@ -109,6 +109,8 @@ def initial_extent(
                 found, off = rest * h, rest**2 * d
                 break
             if h > FARTHEST:
+                # Nothing but the start's own size is left to measure by.
+                found, off = begin / NEAR, off * (begin / NEAR / h) ** 2
                 break
         h *= min(max(TURN / max(turned, TURN / GROWTH), 0.1), GROWTH)
         if not low < h < high:

@@ -1,4 +1,4 @@
-"""``continuation solve FILE``: an LCP, a problem with bounds or a QP from a file, its solution on stdout."""
+"""``continuation solve FILE``: an LCP, a problem with bounds, a QP from a file, or a scene; its solution on stdout."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from continuation.cli.archives import complaints
 from continuation.cli.parser import paint, parsed
+from problems.commands import scene
 from problems.commands.arguments import PROBLEM_FORMATS, file_of, named
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
@@ -33,10 +34,12 @@ def register(subparsers: Subparsers) -> None:
         "solve",
         help="solve a linear complementarity problem, with bounds or not, or a quadratic program",
         description="Find x >= 0 with w = A x + q >= 0 and x_i w_i = 0; with bounds in the file, x between them. "
-        "Or minimise 1/2 x'P x + c'x under the constraints in the file. Exit status: 0 solved, 1 not, 2 bad input.",
+        "Or minimise 1/2 x'P x + c'x under the constraints in the file. With the word scene for the file: a scene of "
+        "`continuation plugins` by its name, and its answer. Exit status: 0 solved, 1 not, 2 bad input.",
     )
     formats = f"{PROBLEM_FORMATS}; in HDF5 a group as file.h5:/group; - for stdin"
     parser.add_argument("file", metavar="FILE", help=formats)
+    parser.add_argument("scene", metavar="NAME KEY=VALUE", nargs="*", help=f"after {scene.WORD}: which, its parameters")
     parser.add_argument("--q", metavar="FILE", help="q in a file of its own")
     parser.add_argument("--homotopy", choices=("auto", *HOMOTOPIES), default="auto", help="default: auto")
     parser.add_argument("--x0", metavar="FILE", help="the start: x0 > 0 with A x0 + q > 0, as in the paper")
@@ -48,7 +51,11 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--restarts", metavar="N", type=_counted, help="random starts at most; default: 1000 with auto")
     parser.add_argument("--seed", metavar="N", type=_counted, default=0, help="of the random starts; default: 0")
     parser.add_argument(
-        "--budget-seconds", "--seconds", dest="seconds", metavar="S", type=_positive,
+        "--budget-seconds",
+        "--seconds",
+        dest="seconds",
+        metavar="S",
+        type=_positive,
         help="wall-clock time; default: work that takes about a minute",
     )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
@@ -62,6 +69,10 @@ def run(arguments: argparse.Namespace) -> int:
     from problems import lcp
     from problems.lcp.data.files import read_problem, read_program, read_vector
 
+    if arguments.file == scene.WORD:
+        return scene.run(arguments)
+    if arguments.scene:
+        raise UsageError("unrecognized arguments", " ".join(arguments.scene))
     _check_outputs(arguments)
     with complaints("--archive", new="--archive"), named(_ARGUMENTS), file_of(arguments.file) as file:
         program = read_program(file) if arguments.q is None else None

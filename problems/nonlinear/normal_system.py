@@ -81,4 +81,3 @@ def _principal(F_x: Matrix, alpha: Any) -> Matrix:
     ab = np.zeros((F_x.lower + F_x.upper + 1, alpha.size))
     ab[F_x.upper + rows - columns, columns] = kept.data
     return Banded(ab, F_x.lower, F_x.upper)
-

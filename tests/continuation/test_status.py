@@ -22,9 +22,10 @@ def test_a_path_says_whether_it_arrived():
 
 def test_numbers_are_those_of_the_archives():
     assert [int(status) for status in Status] == list(range(17))
-    assert [int(kind) for kind in Kind] == list(range(8))
+    assert [int(kind) for kind in Kind] == list(range(9))
     assert [kind.flag for kind in Kind] == [
         "regular", "start", "target", "turning_point", "branch_point", "event", "kink", "singular_point",
+        "hopf",
     ]  # fmt: skip
 
 

@@ -8,12 +8,12 @@ from continuation import chart
 from continuation.chart import catalogue
 from continuation.evaluation.jacobian_check import check_jacobian
 from problems import lcp
-from problems.charts import engine, families, order, rivals, robustness, scaling, subjects
+from problems.charts import engine, families, order, rivals, robustness, scaling, scenes, subjects
 from problems.charts import lcp as lcp_charts
 from problems.charts.chandrasekhar import Chandrasekhar
 from problems.lcp.classes.exact import principal_minors
 
-MODULES = (engine, lcp_charts, order, scaling, robustness)
+MODULES = (engine, lcp_charts, order, scaling, robustness, scenes)
 
 
 @pytest.mark.parametrize("module", MODULES, ids=lambda module: module.__name__.rpartition(".")[2])
@@ -153,3 +153,26 @@ def test_the_study_of_orders_names_the_order_that_is_taken():
     assert order.unknowns(by_name["KKT, n = 10"]) == 31
     table = order.CostModel().table(results)
     assert [line[0] for line in table.rows] == results.problems
+
+
+def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():
+    meshes, exact = (chart.run(study) for study in scenes.studies("smoke", False))
+    assert [(row.problem, row.method, row.failure) for row in meshes.rows] == [
+        ("string", "ours", ""), ("string", "L-BFGS-B (scipy)", "")
+    ]  # fmt: skip
+    assert [row.errors["unknowns"] for row in meshes.rows] == [10.0, 10.0]
+    assert [row.method for row in exact.rows] == ["ours", "L-BFGS-B (scipy)"]
+    ours = exact.rows[0]
+    assert ours.errors["answer"] <= 1e-15
+    assert ours.errors["memory"] == 8 * (16 + 4)
+    problem = chart.Problem("cournot", scenes.make("cournot"), options={"true": {"price": 50.0}})
+    wrong = scenes._method("wrong", False, lambda scene: {"price": 40.0})
+    answer = wrong.run(problem, chart.tolerances(1.0).rungs[0])
+    assert (answer.failure, answer.message) == ("wrong end", "the answer is off by 2.0e-01")
+
+
+def test_absent_rivals_of_scenes_are_named(monkeypatch):
+    monkeypatch.setattr(scenes.Rival, "installed", property(lambda rival: not rival.module))
+    (meshes, _) = scenes.studies("smoke", True)
+    assert "PIQP" in meshes.notes[0]
+    assert "not installed" in meshes.notes[0]

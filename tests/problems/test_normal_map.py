@@ -8,6 +8,7 @@ from continuation import Budget, Kind, Monitor, Status, TargetValue, trace
 from continuation.linear import Banded, SingularError
 from continuation.testing import check_homotopy
 from problems.nonlinear import NormalMap, bratu_under_obstacle
+from problems.scenes.painleve_rod import PainleveRod
 
 PSI = 2.0
 FOLD = 8.0 * np.exp(-PSI) * np.arccosh(np.exp(PSI / 2.0)) ** 2
@@ -76,7 +77,7 @@ def test_bratu_with_a_low_obstacle_has_no_fold():
 
 
 def test_painleves_rod_goes_back():
-    a = 0.8480762114
+    a = -PainleveRod().a
     rod = NormalMap.affine([[-a]], [0.0], [1.0], x0=[0.0], lam0=1.0, target=None)
     path = trace(rod, direction=-1, events=[OFF])
     (kink,) = path.kinks

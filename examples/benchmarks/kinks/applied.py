@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
 from continuation.arrays import Array
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "lcp"))
-from outside import Contact, time_step
+from problems.scenes.planar import Body, Contact, free_motion, time_step
+from problems.scenes.spatial_prices import trade
 
 Data = tuple[Array, Array]
 
 
-def _step(bodies: list[tuple[float, float, float, float]], contacts: list[Contact], mu: float, seed: int) -> Data:
+def _step(bodies: list[Body], contacts: list[Contact], mu: float, seed: int) -> Data:
     """One time step under gravity, from small velocities."""
     A, J, inverse = time_step(bodies, contacts, mu)
     force = np.concatenate([[0.0, -9.81 * m, 0.0] for m, _, _, _ in bodies])
     u = J @ (np.random.default_rng(seed).normal(0.0, 0.05, inverse.size) + 0.01 * inverse * force)
-    return A, np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(len(contacts))])
+    return A, free_motion(u)
 
 
 def boxes(seed: int) -> Iterator[Data]:
@@ -57,11 +54,10 @@ def prices(seed: int) -> Iterator[Data]:
     """Spatial price equilibria (Samuelson, Takayama and Judge): goods go where the price pays for it."""
     r = np.random.default_rng(seed)
     for m in (5, 10, 15, 20):
-        supply, demand = np.kron(np.eye(m), np.ones((1, m))), np.kron(np.ones((1, m)), np.eye(m))
-        a, b = r.uniform(1.0, 3.0, m), r.uniform(0.5, 1.5, m)
-        c, e = r.uniform(10.0, 20.0, m), r.uniform(0.5, 1.5, m)
-        A = supply.T @ np.diag(b) @ supply + demand.T @ np.diag(e) @ demand
-        yield A, supply.T @ a - demand.T @ c + r.uniform(1.0, 10.0, m * m)
+        supply = r.uniform(1.0, 3.0, m), r.uniform(0.5, 1.5, m)
+        demand = r.uniform(10.0, 20.0, m), r.uniform(0.5, 1.5, m)
+        problem = trade(supply, demand, r.uniform(1.0, 10.0, (m, m)))
+        yield problem.A, problem.q
 
 
 def leontief(seed: int) -> Iterator[Data]:

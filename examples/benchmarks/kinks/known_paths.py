@@ -6,7 +6,8 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.path import Path
-from problems.lcp import LCP, MixedLCP, along
+from problems.lcp import LCP
+from problems.scenes.lasso import penalised
 
 
 def murty(n: int) -> LCP:
@@ -18,11 +19,6 @@ def murty(n: int) -> LCP:
 def lasso(X: Array, y: Array) -> Path:
     """The path of min 1/2 |X b - y|^2 + t |b|_1 from the least t with b = 0 on, to 0."""
     return penalised(X.T @ X, X.T @ y)
-
-
-def penalised(G: Array, c: Array) -> Path:
-    """The same of min b'Gb/2 - c'b + t |b|_1."""
-    return along(MixedLCP(G, -c), np.zeros(c.size), (np.inf, 0.0), level=1.0)
 
 
 def mairal_yu(p: int) -> tuple[Array, Array]:
@@ -61,18 +57,3 @@ def frontier(n: int, seed: int = 0) -> tuple[Array, Array]:
     factors = random.normal(size=(n, max(3, n // 20)))
     mean = random.normal(0.1, 0.05, n)
     return mean, factors @ factors.T / factors.shape[1] * 0.04 + np.diag(random.uniform(0.01, 0.1, n))
-
-
-def critical_line(mean: Array, covariance: Array) -> Path:
-    """Markowitz' critical line: min x'Sx/2 - t m'x, x >= 0, e'x = 1, from the best asset alone to least variance."""
-    n = mean.size
-    e = np.ones(n)
-    A = np.block([[covariance, -e[:, None]], [e[None], np.zeros((1, 1))]])
-    problem = MixedLCP(A, np.append(np.zeros(n), -1.0), np.append(np.zeros(n), -np.inf))
-    best = int(np.argmax(mean))
-    x = np.eye(n)[best]
-    gap = np.delete(mean[best] - mean, best)
-    # From there on the best asset alone is the solution.
-    first = 1.1 * float((np.delete(covariance[best, best] - covariance[:, best], best) / gap).max(initial=0.0)) + 1e-3
-    multiplier = covariance[best, best] - first * mean[best]
-    return along(problem, np.append(-mean, 0.0), (first, 0.0), x=np.append(x, multiplier))

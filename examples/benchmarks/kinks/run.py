@@ -16,23 +16,18 @@ from typing import Any
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "lcp"))
 sys.path.insert(0, str(Path(__file__).parent))
 import applied
 from all_pieces import compared
-from known_paths import (
-    critical_line,
-    frontier,
-    integer_design,
-    integer_problem,
-    lasso,
-    mairal_yu,
-    murty,
-    penalised,
-)  # fmt: skip
+from known_paths import frontier, integer_design, integer_problem, lasso, mairal_yu, murty
 
 from continuation.arrays import Array
 from problems import lcp
 from problems.lcp import LCP, along
+from problems.scenes.lasso import penalised
+from problems.scenes.planar import free_motion, impulses, time_step
+from problems.scenes.portfolio import critical_line
 
 
 def timed(call: Callable[..., Any], *given: Any, repeats: int = 1, **options: Any) -> tuple[Any, float]:
@@ -246,7 +241,6 @@ def several(seeds: int) -> None:
 def stepping(seeds: int) -> None:
     """A pile under gravity, and an American option: seconds a step, without and with what was found before."""
     from generators import american_option
-    from outside import time_step
 
     optimize, number = rival("quantecon.optimize"), 8
     bodies = [(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(number)]
@@ -264,7 +258,7 @@ def stepping(seeds: int) -> None:
         force = np.tile([0.2 * np.sin(k / 8.0), -9.81, 0.0], number)
         free = v + 0.01 * inverse * force
         u = J @ free
-        q = np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(c)])
+        q = free_motion(u)
         cold, seconds = timed(lcp.solve, LCP(A, q))
         times["solve"].append(seconds)
         warm, seconds = timed(lcp.solve, LCP(A, q), guess=before)
@@ -276,9 +270,7 @@ def stepping(seeds: int) -> None:
         if optimize is not None:
             times["quantecon's Lemke"].append(timed(optimize.lcp_lemke, A, q)[1])
         before, x = warm, warm.x
-        impulse = np.empty(2 * c)
-        impulse[::2], impulse[1::2] = x[:c], x[c : 2 * c] - x[2 * c : 3 * c]
-        v = free + inverse * (J.T @ impulse)
+        v = free + inverse * (J.T @ impulses(x))
     for name, taken in times.items():
         if taken:
             say(f"pile, n = {4 * c}, {2 * seeds} steps, {name}: median {1e3 * np.median(taken):.2f} ms")

@@ -6,6 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from problems.lcp import LCP
+from problems.scenes.american_put import AmericanPut
 
 
 def positive_definite(n: int, seed: int) -> LCP:
@@ -87,17 +88,10 @@ def bimatrix(n: int, seed: int) -> LCP:
 
 def american_option(n: int) -> LCP:
     """A put by Black and Scholes in log-price, one implicit step of half a month; tridiagonal."""
-    rate, volatility, step = 0.05, 0.3, 1.0 / 24.0
-    price = np.linspace(np.log(0.1), np.log(10.0), n + 2)
-    h = price[1] - price[0]
-    a, b = 0.5 * volatility**2 / h**2, (rate - 0.5 * volatility**2) / (2.0 * h)
-    below, main, above = -step * (a - b), 1.0 + step * (2.0 * a + rate), -step * (a + b)
-    diagonals = [np.full(n - 1, below), np.full(n, main), np.full(n - 1, above)]
-    A = sp.diags_array(diagonals, offsets=[-1, 0, 1], dtype=float)
-    payoff = np.maximum(1.0 - np.exp(price), 0.0)
-    q = A @ payoff[1:-1] - payoff[1:-1]
-    q[0] -= step * (a - b) * payoff[0]
-    return LCP(A, q)
+    # The first step of the scene is half a year / 24 for these, on a grid from a tenth of the strike to ten times that.
+    deviation = 0.3 * np.sqrt(1.0 / 3.0)
+    put = AmericanPut(1.0, 1.0, 0.05, 0.3, maturity=1.0 / 3.0, n=n, steps=2, width=np.log(10.0) / deviation)
+    return put.problem()
 
 
 def obstacle_1d(n: int) -> LCP:

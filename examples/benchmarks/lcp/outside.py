@@ -20,13 +20,10 @@ from scipy.optimize import linprog
 from continuation import Budget
 from continuation.arrays import Array
 from problems import lcp
+from problems.scenes.game import bimatrix
+from problems.scenes.planar import Body, free_motion, impulses, time_step
 
 Data = tuple[Array, Array]
-Bodies = list[tuple[float, float, float, float]]
-"""Mass, moment of inertia, and place of each."""
-
-Contact = tuple[int, int, float, float, float, float]
-"""Body, body or -1 for the ground, place, and normal."""
 
 
 def box_qp(seed: int) -> Iterator[Data]:
@@ -57,24 +54,6 @@ def collapse(seed: int) -> Iterator[Data]:
         yield N.T @ S @ N, np.append(limit, limit) - N.T @ (elastic @ load) * factor
 
 
-def time_step(bodies: Bodies, contacts: list[Contact], mu: float) -> tuple[Array, Array, Array]:
-    """Stewart and Trinkle's matrix, J and 1 / mass."""
-    inverse = np.concatenate([[1.0 / m, 1.0 / m, 1.0 / i] for m, i, _, _ in bodies])
-    J = np.zeros((2 * len(contacts), inverse.size))
-    for c, (a, b, px, py, nx, ny) in enumerate(contacts):
-        for body, sign in ((a, 1.0), (b, -1.0)):
-            if body >= 0:
-                dx, dy = px - bodies[body][2], py - bodies[body][3]
-                part = slice(3 * body, 3 * body + 3)
-                J[2 * c, part] += sign * np.array([nx, ny, dx * ny - dy * nx])
-                J[2 * c + 1, part] += sign * np.array([-ny, nx, dx * nx + dy * ny])
-    W, one = (J * inverse) @ J.T, np.eye(len(contacts))
-    NN, NT, TN, TT = W[::2, ::2], W[::2, 1::2], W[1::2, ::2], W[1::2, 1::2]
-    zero = 0.0 * one
-    A = np.block([[NN, NT, -NT, zero], [TN, TT, -TT, one], [-TN, -TT, TT, one], [mu * one, -one, -one, zero]])
-    return A, J, inverse
-
-
 def contact(seed: int) -> Iterator[Data]:
     """A time step of bodies piled at random, with friction, from small velocities."""
     for k in range(100):
@@ -91,7 +70,7 @@ def contact(seed: int) -> Iterator[Data]:
         A, J, inverse = time_step(bodies, contacts, mu)
         force = np.concatenate([[0.0, -9.81 * m, 0.0] for m, _, _, _ in bodies])
         u = J @ (r.normal(0.0, 0.3, inverse.size) + 0.01 * inverse * force)
-        yield A, np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(len(contacts))])
+        yield A, free_motion(u)
 
 
 def unsolvable(seed: int) -> Iterator[Data]:
@@ -113,9 +92,8 @@ def unsolvable(seed: int) -> Iterator[Data]:
 
 def game(C: Array, D: Array) -> Data:
     """The LCP of a game with these costs."""
-    m = len(C)
-    zero = np.zeros((m, m))
-    return np.block([[zero, C - C.min() + 1.0], [(D - D.min() + 1.0).T, zero]]), -np.ones(2 * m)
+    problem = bimatrix(C - C.min() + 1.0, D - D.min() + 1.0)
+    return problem.A, problem.q
 
 
 def games(seed: int) -> Iterator[Data]:
@@ -200,7 +178,7 @@ FAMILIES = (
 def stack(steps: int = 100) -> list[float]:
     """Seconds for each step of 25 boxes on each other, n = 200, pushed by a growing force."""
     boxes, h = 25, 0.01
-    bodies: Bodies = [(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(boxes)]
+    bodies: list[Body] = [(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(boxes)]
     contacts = [(k, k - 1, side, float(k), 0.0, 1.0) for k in range(boxes) for side in (-0.5, 0.5)]
     A, J, inverse = time_step(bodies, contacts, 0.5)
     solver = lcp.Solver(A) if hasattr(lcp, "Solver") else None
@@ -210,17 +188,14 @@ def stack(steps: int = 100) -> list[float]:
         force[-3] += 0.08 * k
         free = v + h * inverse * force
         u = J @ free
-        q = np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(len(contacts))])
+        q = free_motion(u)
         began = time.process_time()
         found = lcp.solve(lcp.LCP(A, q)) if solver is None else solver.solve(q, active=active)
         taken.append(time.process_time() - began)
         wrong += not found.solved
         x = found.x
         active = x
-        c = len(contacts)
-        impulse = np.empty(2 * c)
-        impulse[::2], impulse[1::2] = x[:c], x[c : 2 * c] - x[2 * c : 3 * c]
-        v = free + inverse * (J.T @ impulse)
+        v = free + inverse * (J.T @ impulses(x))
     slow = sum(seconds > 0.01 for seconds in taken[1:])
     print(f"stack, {steps} steps of n = {len(q)}: the first {1e3 * taken[0]:.1f} ms; of the others median "
           f"{1e3 * np.median(taken[1:]):.2f} ms, largest {1e3 * max(taken[1:]):.2f} ms, above 10 ms {slow}; "

@@ -131,9 +131,7 @@ class Faces:
         """The problem."""
         return self.structure.problem if self.current is None else self.current
 
-    def face(
-        self, state: State, shift: float = 0.0, centre: Array | None = None, regular: bool = False
-    ) -> Face | None:
+    def face(self, state: State, shift: float = 0.0, centre: Array | None = None, regular: bool = False) -> Face | None:
         """The face of a state, factored; None where that is impossible.
 
         Parameters

@@ -29,6 +29,10 @@ ROUND_OFF = 64 * float(np.finfo(float).eps)
 SMALL = 1e-6
 """Relative to the terms of the rows: an x_i and a w_i below this may both be zero in truth."""
 
+UNDERFLOW = float(np.finfo(float).smallest_normal) / float(np.finfo(float).eps)
+"""A row whose terms are all below this, where others are of order 1, is satisfied as well as floats can: its products
+are no normal numbers. So is the far end of a solution that falls off by powers, away from the one q_i that is not 0."""
+
 
 @frozen(eq=False)
 class Certificate:
@@ -139,7 +143,9 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
         return _of_lcp(problem, terms, x)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         w = np.ldexp(terms.w, terms.exponents)
-        relative = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
+        size = np.ldexp(terms.size, terms.exponents)
+        lost = (terms.size == 0.0) | (size < UNDERFLOW * min(float(size.max()), 1.0))
+        relative = np.where(lost, 0.0, terms.w / np.where(lost, 1.0, terms.size))
         above, below = x - problem.lower, problem.upper - x
         distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
         products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))

@@ -15,6 +15,7 @@ from continuation.jets import (
     evaluate,
     jacobian,
     path_series,
+    second_derivatives,
     taylor,
     variable,
 )
@@ -240,6 +241,22 @@ def test_jacobian_agrees_with_the_series_along_each_direction():
     x = np.array([0.3, 1.2, 2.1])
     by_series = np.stack([taylor(f, x, 1, e)[1] for e in np.eye(3)], axis=1)
     np.testing.assert_allclose(jacobian(f, x), by_series, rtol=1e-14)
+
+
+@pytest.mark.parametrize("m", [3, 130])
+def test_second_derivatives_are_those_of_the_jacobian(m):
+    x, v = 1.5 + np.cos(np.arange(m)), np.sin(1.0 + np.arange(m))
+
+    def f(x):
+        ends = np.stack([np.arctan2(x[0], x[2]), np.hypot(x[0], x[1]), x[1] ** x[2], x[0] * 0.0 + 3.0])
+        return np.concatenate([np.exp(x[:2] * x[1]) / (1.0 + x[2]), np.sqrt(x[:3]) * np.sum(x * x), ends])
+
+    found = second_derivatives(f, x, v)
+    h = 1e-4
+    jacobians = [jacobian(f, x + k * h * v) for k in (-2, -1, 1, 2)]
+    wanted = (np.array([1.0, -8.0, 8.0, -1.0]) @ np.array(jacobians).reshape(4, -1)).reshape(found.shape) / (12.0 * h)
+    np.testing.assert_allclose(found, wanted, atol=1e-9 * np.abs(wanted).max())
+    np.testing.assert_array_equal(second_derivatives(lambda x: x[:1] * 0.0 + 1.0, x, v), np.zeros((1, m)))
 
 
 def test_jacobian_of_a_constant_and_of_a_list():

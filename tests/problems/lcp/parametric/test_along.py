@@ -72,14 +72,6 @@ def test_bounds_of_all_kinds():
         assert max(np.abs(natural.residual(u[:n], u[n])).max() for u in path.u) <= 1e-11
 
 
-def test_painleves_rod_turns_where_it_jams():
-    path = along(LCP([[-0.8480762114]], [0.0]), [1.0], (1.0, np.inf), x=[0.0], ray=[0.0, -1.0])
-    assert [kink.name for kink in path.kinks] == ["turning kink"]
-    assert path.kinks[0].u == pytest.approx([0.0, 0.0], abs=0.0)
-    x, t = path.endpoint.u
-    assert x == pytest.approx(t / 0.8480762114, rel=1e-15)
-
-
 def test_t_stands_still_where_a_block_is_singular():
     # x_0 grows along t = 1 from w_0 = 0 on, until w_1 vanishes.
     path = along(LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, 2.0]), [1.0, 0.0], (np.inf, 0.0))

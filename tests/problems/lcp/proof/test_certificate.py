@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from problems.lcp import LCP, MixedLCP
+from problems.lcp import LCP, MixedLCP, Outcome, solve
 from problems.lcp.proof.certificate import certify, certify_exactly, farkas
 from problems.lcp.proof.compensated import accurate_w
 from problems.lcp.proof.rational import PRIMES, solve_exactly
@@ -341,3 +341,17 @@ def test_a_huge_x_excuses_no_residual():
     # Found by the random check against enumeration: the rounding of x3 = 1.5e17 must not excuse w3 = -5.
     problem = LCP([[0, -1, 0], [3, 0, 0], [0, -2, 0]], [3.0, -3.0, 1.0])
     assert not certify(problem, np.array([1.0, 3.0, 1.5e17])).solves()
+
+
+def test_a_solution_that_falls_off_below_the_smallest_number_is_one():
+    n, e = 90, 1e-4
+    A = sp.diags_array([np.full(n - 1, -e), np.full(n, 1.0 + 2.0 * e), np.full(n - 1, -e)], offsets=[-1, 0, 1])
+    q = np.zeros(n)
+    q[0] = -1.0
+    found = solve(LCP(A, q))
+    assert found.outcome is Outcome.SOLVED
+    # What is small because everything is is judged as before.
+    assert certify(LCP(A, 1e-300 * q), np.zeros(n)).relative_residual == 1.0
+    off = found.x.copy()
+    off[5] *= 1.001
+    assert not certify(LCP(A, q), off).solves()

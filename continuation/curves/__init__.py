@@ -1,0 +1,6 @@
+"""Curves of events in a second parameter: homotopies made from families of homotopies."""
+
+from continuation.curves.curve import Curve
+from continuation.curves.family import Family
+
+__all__ = ["Curve", "Family"]

@@ -1,0 +1,170 @@
+"""Derivatives of a family H(y, lam; mu): first ones by both parameters, and second ones along a vector."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation.arrays import Array, generic_vector
+from continuation.counts import Counts
+from continuation.evaluation.derivatives import (
+    by_complex_step,
+    by_differences,
+    by_jets,
+    difference_along,
+    from_residual,
+    sizes,
+)
+from continuation.evaluation.evaluator import Evaluator
+from continuation.evaluation.functions import DifferentiableHomotopy
+from continuation.events.singularity import SECOND, full_derivative
+
+MOST = 128
+"""Columns up to which second derivatives come from jets, which make all of them; beyond, two Jacobians are cheaper."""
+
+AGREE = 1e-3
+"""Jets are believed where they agree with a difference so well, relative to the largest."""
+
+Member = Callable[[Any], Any]
+"""From mu to the homotopy."""
+
+
+@frozen(eq=False)
+class Calculus:
+    """How a family is differentiated: decided once, at a point.
+
+    Attributes
+    ----------
+    family : callable
+    source : str
+        Of the derivative of members that have none of their own; empty where they have.
+    jets : bool
+        Whether second derivatives, and those by mu, come from jets.
+    u0 : ndarray, shape (N + 2,)
+        (y, lam, mu), where that was decided.
+    extent : ndarray, shape (N + 1,)
+        How far y and lam go, about: what steps of differences are measured by.
+    reach, bend : float
+        Steps of differences in mu, of H and of H' v, relative to its size.
+    """
+
+    family: Member
+    source: str
+    jets: bool
+    u0: Array
+    extent: Array
+    reach: float
+    bend: float
+
+    def member(self, mu: float) -> Any:
+        """The homotopy at mu, with a derivative."""
+        homotopy = self.family(mu)
+        if not self.source:
+            return homotopy
+        if self.source == "jets":
+            return DifferentiableHomotopy(homotopy, by_jets(homotopy.residual))
+        if self.source == "complex step":
+            return DifferentiableHomotopy(homotopy, by_complex_step(homotopy.residual))
+        return DifferentiableHomotopy(homotopy, by_differences(homotopy.residual, self.u0[:-1]))
+
+    def evaluator(self, mu: float) -> Evaluator:
+        """The same as the engine sees it."""
+        return Evaluator(self.member(mu), Counts())
+
+    def residual(self, U: Any) -> Any:
+        """H(y, lam; mu) of one vector, or jet."""
+        return self.family(U[-1]).residual(U[:-2], U[-2])
+
+    def by_parameter(self, u: Array, mu: float) -> Array:
+        """H_mu at u = (y, lam), shape (N,)."""
+        if self.jets:
+            from continuation import jets
+
+            U = np.append(u, mu)
+            slope: Array = jets.taylor(self.residual, U, 1, np.arange(U.size) == u.size)[1]
+            return slope
+        h = self.reach * self._size(mu)
+        ahead, behind = (np.array(self.family(m).residual(u[:-1], float(u[-1]))) for m in (mu + h, mu - h))
+        return np.asarray((ahead - behind) / (2.0 * h), dtype=float)
+
+    def second(self, u: Array, mu: float, v: Array, left: Array) -> Array:
+        """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,).
+
+        Parameters
+        ----------
+        u : ndarray, shape (N + 1,)
+        mu : float
+        v : ndarray, shape (N + 1,)
+            Real.
+        left : ndarray, shape (N,)
+            May be complex.
+        """
+        if not v.any():
+            return np.zeros(u.size + 1)
+        if self.jets:
+            from continuation import jets
+
+            row: Array = left @ jets.second_derivatives(self.residual, np.append(u, mu), np.append(v, 0.0))
+            return row
+        return self._by_two_jacobians(u, mu, v, left)
+
+    def _by_two_jacobians(self, u: Array, mu: float, v: Array, left: Array) -> Array:
+        """By central differences of H' along v, and of H' v along mu."""
+        extent = np.maximum(self.extent, np.abs(u - self.u0[:-1]))
+        eps, h = SECOND / float(np.abs(v / extent).max()), self.bend * self._size(mu)
+        evaluator = self.evaluator(mu)
+        ahead, behind = (full_derivative(evaluator, u + e * v).T @ left for e in (eps, -eps))
+        later, before = (full_derivative(self.evaluator(m), u) @ v for m in (mu + h, mu - h))
+        return np.append((ahead - behind) / (2.0 * eps), left @ (later - before) / (2.0 * h))
+
+    def _size(self, mu: float) -> float:
+        return max(abs(mu), float(sizes(self.u0[-1:])[0]))
+
+
+def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
+    """How to differentiate a family, tried at a point.
+
+    Parameters
+    ----------
+    family : callable
+    u : ndarray, shape (N + 1,)
+    mu : float
+    extent : ndarray, shape (N + 1,)
+    """
+    homotopy = family(mu)
+    own = any(hasattr(homotopy, name) for name in ("jacobian", "bordered", "differential"))
+    source = "" if own else from_residual(homotopy.residual, (u[:-1], float(u[-1]))).source
+    U = np.append(u, mu)
+
+    v, left = extent * generic_vector(u.size), np.ones(u.size - 1)
+
+    def at(y: Array, m: float) -> Any:
+        return family(m).residual(y[:-1], float(y[-1]))
+
+    def bent(y: Array, m: float) -> Any:
+        return full_derivative(first.evaluator(m), y) @ v
+
+    along = np.zeros_like(U)
+    along[-1] = sizes(U[-1:])[0]
+    slope, reach = difference_along(at, U, along)
+    first = Calculus(family, source, False, U, extent, reach, reach)
+    plain = evolve(first, bend=difference_along(bent, U, along)[1])
+    with_jets = evolve(plain, jets=True)
+    if U.size > MOST:
+        return plain
+    try:
+        with np.errstate(all="ignore"):
+            agree = _alike(with_jets.by_parameter(u, mu), slope / along[-1])
+            agree = agree and _alike(with_jets.second(u, mu, v, left), plain.second(u, mu, v, left))
+    except (TypeError, ArithmeticError, ValueError, AttributeError):
+        return plain
+    return with_jets if agree else plain
+
+
+def _alike(found: Array, difference: Array) -> bool:
+    return found.shape == difference.shape and bool(
+        (np.abs(found - difference) <= AGREE * float(np.abs(difference).max())).all()
+    )

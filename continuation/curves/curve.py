@@ -1,0 +1,339 @@
+"""The curve that an event draws when a second parameter moves, as a homotopy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array, Matrix
+from continuation.bibliography import GOVAERTS
+from continuation.checks import FINITE, complain
+from continuation.curves.arguments import as_event, as_point, as_size
+from continuation.curves.calculus import Calculus, calculus_at
+from continuation.curves.conditions import HopfPoint, Singular
+from continuation.curves.correcting import corrected
+from continuation.curves.frequency import frequency_at
+from continuation.curves.here import Here
+from continuation.curves.local import Condition
+from continuation.curves.monitors import AlongTangent, Vanishing, without_tangent
+from continuation.events import Event, Monitor
+from continuation.events.singularity import full_derivative
+from continuation.homotopy import SupportsPieces
+from continuation.labels import Labels
+from continuation.linear import BorderedSystem
+from continuation.status import Kind
+
+LAST = 6
+"""Points, and members, that are kept: a corrector asks for the residual and the derivative at one, and events that lie
+on an arc look at its ends again."""
+
+PERSISTS = 1e-6
+"""What mu may do to H at a branch point, along the vector that H' does not reach, beside what it does to H at all:
+more, and branch points do not persist. The root of round-off and of the differences behind it."""
+
+
+@frozen(eq=False, slots=False, init=False)
+class Curve:
+    """The curve of an event in a second parameter: H(y, lam; mu) = 0 and g(y, lam; mu) = 0, a homotopy in mu.
+
+    Its unknowns are (y, lam), and beside them the frequency of Hopf points. It is traced, stored, plotted and watched
+    like any other; mu is what a trace calls the parameter.
+
+    ===========================  =======================================================================
+    event                        what holds along the curve
+    ===========================  =======================================================================
+    a turning point (fold)       H_y is singular
+    a branch point               H' = [H_y, H_lam] loses a rank, as it does in symmetric problems for every mu
+    a Hopf point                 H_y has a pair of eigenvalues +- i omega
+    a kink                       the switch that vanished there vanishes
+    ``TargetValue(value, k)``    the unknown k, or lam, keeps its value
+    ``TurningPoint(k)``          the unknown k turns
+    ``Monitor(function)``        the function of point and tangent vanishes
+    ===========================  =======================================================================
+
+    Along fold curves cusps and Bogdanov-Takens points are located. A cusp is a turning point of both parameters; where
+    mu alone turns, two branches of the family's member cross there, or a closed curve of it shrinks to a point. A Hopf
+    curve ends where its frequency is zero, a Bogdanov-Takens point; where H_y is singular on it is a "zero-Hopf" point.
+
+    Nothing is densified: the system is solved by elimination with the family's own factorisation, or, where H_y is
+    singular, one of H_y with a border of its own; second derivatives come from jets (up to 128 unknowns), or from two
+    Jacobians. A border that becomes nearly orthogonal to the null vector that it is to see is replaced by that vector,
+    at every point anew: nothing is remembered, so a path that is resumed is the one that was never stopped.
+
+    Parameters
+    ----------
+    family : callable
+        From mu to a homotopy: ``Family(homotopy, "attribute")``, a class, a function. Called with a jet, it gives a
+        homotopy whose residual runs on jets, or raises TypeError or ValueError.
+    event : LocatedEvent, Kind or Event
+        A point located on a path of a member of the family, or what kind of point it is (`Kind.TURNING_POINT`,
+        BRANCH_POINT, HOPF, KINK), or an event with a monitor.
+    at : LocatedEvent, Step or (y, lam), optional
+        Where the curve begins, about; by default the located event.
+    mu : float, optional
+        The second parameter there; by default the value that a `Family` has.
+    frequency : float, optional
+        Of a Hopf point, about; by default that of the eigenvalues of H_y which are nearest to the imaginary axis.
+    size : array_like, shape (N + 1,), optional
+        How far y and lam go, about; by default the metric of the located event, or the size of y and lam.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no point or no mu to begin with, or the event has no function that could vanish elsewhere.
+
+    References
+    ----------
+    W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM 2000, chapters 3, 4 and 8.
+    """
+
+    family: Any
+    event: Any = field(converter=as_event)
+    at: tuple[Array, float] = field(repr=False)
+    mu: float = field(validator=FINITE)
+    frequency: float | None
+    size: Array = field(repr=False)
+    target: None = field(default=None, init=False, repr=False)
+    _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
+    _members: dict[float, Any] = field(factory=dict, init=False, repr=False)
+
+    def __init__(
+        self,
+        family: Any,
+        event: Any,
+        at: Any = None,
+        mu: float | None = None,
+        frequency: float | None = None,
+        size: Any = None,
+    ) -> None:
+        if not callable(family):
+            raise complain(TypeError, "family", "a function from mu to a homotopy, or a Family", family)
+        at = event if at is None else at
+        if mu is None and (mu := getattr(family, "value", None)) is None:
+            raise complain(ValueError, "mu", "a number, since the family has no value of its own", mu)
+        y, lam = as_point(at)
+        self.__attrs_init__(family, event, (y, lam), mu, frequency, as_size(size, at, np.append(y, lam)))
+
+    def __attrs_post_init__(self) -> None:
+        member = self.family(self.mu)
+        unknowns = np.size(member.start()[0])
+        if unknowns != self.at[0].size:
+            raise ValueError(f"at: expected {unknowns} unknowns, as the family has, found {self.at[0].size}")
+        if self.event == Kind.KINK and not isinstance(member, SupportsPieces):
+            raise complain(TypeError, "family", "piecewise smooth homotopies, with `switches` and `piece`", member)
+        if hasattr(member, "observe"):
+            object.__setattr__(self, "observe", self._observed)
+        if hasattr(member, "max_step"):
+            object.__setattr__(self, "max_step", self._room)
+
+    def __reduce__(self) -> Any:
+        return Curve, (self.family, self.event, self.at, self.mu, self.frequency, self.size)
+
+    def start(self) -> tuple[Array, float]:
+        """The point (y, lam), with the frequency, and mu, brought onto the curve.
+
+        Raises
+        ------
+        ValueError
+            If branch points of the family do not persist when mu moves.
+        """
+        y = self._corrected.copy()
+        if self.event == Kind.BRANCH_POINT:
+            here = self._at(y, self.mu)
+            found = abs(float(here.local.base.solve(here.by_parameter, 0.0)[-1])) * np.abs(here.local.column).max()
+            if found > PERSISTS * np.abs(here.by_parameter).max():
+                raise ValueError("family: expected branch points for every mu, as in symmetric problems; these part")
+        return y, self.mu
+
+    @cached_property
+    def _corrected(self) -> Array:
+        """The point brought onto the curve at its mu, if Newton's method does that."""
+        y = np.append(*self.at)
+        if self.event != Kind.HOPF:
+            return corrected(self, y, self.mu, self.size)
+        return corrected(self, np.append(y, self._frequency), self.mu, np.append(self.size, self._frequency))
+
+    @cached_property
+    def _frequency(self) -> float:
+        if self.frequency is not None:
+            return float(self.frequency)
+        u = np.append(*self.at)
+        return frequency_at(full_derivative(self._calculus.evaluator(self.mu), u)[:, :-1])
+
+    @cached_property
+    def _signs(self) -> Array | None:
+        """Of the switches, at the start: the piece that the curve lies on."""
+        member = self.family(self.mu)
+        if not isinstance(member, SupportsPieces):
+            return None
+        return np.where(member.switches(*self.at) >= 0.0, 1, -1)
+
+    @cached_property
+    def _switch(self) -> int | None:
+        """Which of the switches vanishes along a curve of kinks."""
+        if self.event != Kind.KINK:
+            return None
+        return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at))))
+
+    def _member(self, mu: Any) -> Any:
+        if isinstance(mu, float) and mu in self._members:
+            return self._members[mu]
+        member = self.family(mu)
+        member = member if self._signs is None else member.piece(self._signs)
+        if isinstance(mu, float):
+            _keep(self._members, mu, member)
+        return member
+
+    @cached_property
+    def _calculus(self) -> Calculus:
+        return calculus_at(self._member, np.append(*self.at), self.mu, self.size)
+
+    @cached_property
+    def _condition(self) -> Condition:
+        calculus, event = self._calculus, self.event
+        if event in (Kind.TURNING_POINT, Kind.BRANCH_POINT):
+            return Singular.at_start(calculus, event == Kind.BRANCH_POINT)
+        if event == Kind.HOPF:
+            return HopfPoint.at_start(calculus, self._frequency)
+        if self._plain is not None:
+            return Vanishing.at_start(calculus, self._plain)
+        return AlongTangent.at_start(calculus, lambda x: self.event.monitor(*np.split(x, 2)))
+
+    @cached_property
+    def _plain(self) -> Callable[[Any], Any] | None:
+        """The function that vanishes, of (y, lam, mu) as one vector or jet; None where it looks at the tangent too."""
+        k = self._switch
+        if k is not None:
+            return lambda U: self.family(U[-1]).switches(U[:-2], U[-2])[k]
+        return None if isinstance(self.event, Kind) else without_tangent(self.event, np.append(*self.at))
+
+    def residual(self, y: Array, lam: float) -> Array:
+        """H and what is to vanish; shape (N + 1,), or (N + 2,) for Hopf points.
+
+        Parameters
+        ----------
+        y : ndarray
+            The unknowns: y and lam of the family, and what is beside them.
+        lam : float
+            The second parameter, mu.
+        """
+        if not isinstance(y, np.ndarray) and self._plain is not None:
+            # Jets and intervals.
+            U = np.concatenate([y, np.stack([lam])])
+            return np.concatenate([self._calculus.residual(U), np.stack([self._plain(U)])])
+        return self._at(y, lam).residual()
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """The derivative by the unknowns, dense or sparse as the family's, and by mu.
+
+        Parameters
+        ----------
+        y : ndarray
+        lam : float
+        """
+        return self._at(y, lam).matrices()
+
+    def differential(self, y: Array, lam: float, v: Array) -> Array:
+        """The derivative applied to a direction.
+
+        Parameters
+        ----------
+        y : ndarray
+        lam : float
+        v : ndarray
+            One longer than y.
+        """
+        return self._at(y, lam).times(v)
+
+    def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
+        """The derivative with a border, factored by elimination.
+
+        Parameters
+        ----------
+        y : ndarray
+        lam : float
+        border : ndarray
+            One longer than y.
+        """
+        return self._at(y, lam).bordered(border)
+
+    def _at(self, y: Array, lam: float) -> Here:
+        """What is known at a point, kept for a while."""
+        key = np.append(y, lam).tobytes()
+        if key not in self._recent:
+            u, beside = np.split(np.array(y, dtype=float), [self.size.size])
+            with np.errstate(all="ignore"):
+                local = self._condition.at(u, float(beside[0]) if beside.size else 0.0, float(lam))
+            _keep(self._recent, key, Here(self._calculus, u, beside, float(lam), local))
+        return self._recent[key]
+
+    @cached_property
+    def events(self) -> tuple[Event, ...]:
+        """Degenerate points: cusps and Bogdanov-Takens points; where another switch of a piecewise map vanishes."""
+        found: list[Event] = []
+        if self.event == Kind.HOPF:
+            found = [Monitor(_frequency, "Bogdanov-Takens", 1), Monitor(partial(self._sign, "zero-Hopf"), "zero-Hopf")]
+        if self.event == Kind.TURNING_POINT:
+            found = [Monitor(partial(self._sign, name), name) for name in ("cusp", "Bogdanov-Takens")]
+        others = range(0 if self._signs is None else self._signs.size)
+        found += [Monitor(partial(self._other, i), f"switch {i} vanishes", 1) for i in others if i != self._switch]
+        return tuple(found)
+
+    def _sign(self, name: str, u: Array, v: Array) -> float:
+        """A number of the condition's."""
+        return self._at(u[:-1], float(u[-1])).local.sign(name)
+
+    def _other(self, i: int, u: Array, v: Array) -> float:
+        """A switch of the family's member."""
+        n = self.size.size - 1
+        return float(self.family(float(u[-1])).switches(u[:n], float(u[n]))[i])
+
+    @property
+    def parameter_name(self) -> str:
+        """What the family calls its parameter."""
+        return getattr(self.family, "parameter_name", None) or "mu"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Those of the member's unknowns, if it names them, of its parameter, and of what is beside."""
+        labels = Labels.of(self.family(self.mu))
+        if not labels.names:
+            return ()
+        return (*labels.names, labels.parameter_name or "lambda", *self._condition.beside)
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Those of the member."""
+        return Labels.of(self.family(self.mu)).units
+
+    @property
+    def references(self) -> tuple[str, ...]:
+        """Those of the member, and of the method."""
+        return (*getattr(self.family(self.mu), "references", ()), GOVAERTS)
+
+    def _observed(self, y: Array, lam: float) -> dict[str, float]:
+        """What the member observes."""
+        n = self.size.size - 1
+        observed: dict[str, float] = self.family(lam).observe(y[:n], float(y[n]))
+        return observed
+
+    def _room(self, u: Array, v: Array) -> float:
+        """How far the member's path may go: mu stands still for it."""
+        n = self.size.size
+        return float(self._member(u[-1]).max_step(u[:n], v[:n]))
+
+
+def _keep(recent: dict[Any, Any], key: Any, value: Any) -> None:
+    """Put it beside the last few."""
+    recent[key] = value
+    if len(recent) > LAST:
+        del recent[next(iter(recent))]
+
+
+def _frequency(u: Array, v: Array) -> float:
+    """That of a Hopf point on its curve."""
+    return float(u[-2])

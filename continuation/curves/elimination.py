@@ -1,0 +1,101 @@
+"""The bordered system of a curve, solved with a factorisation that has H_y in it and a handful of numbers besides."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.linear import BorderedSystem, SingularError, factor_bordered
+
+
+@frozen(eq=False)
+class Eliminated:
+    """[[H_y, P], [G_y, G_p], [B_y, B_p]] of order N + m: P has the m columns of lam, the unknown beside, and mu.
+
+    With F = [[H_y, b], [c', d]] factored, y and s follow from c'y + d s = sigma and p; s = 0, the conditions and the
+    border are m + 1 equations in sigma and p, and det = det F times the determinant of these.
+
+    Attributes
+    ----------
+    base : BorderedSystem
+        F.
+    solved : ndarray, shape (N + 1, m + 1)
+        (y, s) that follow from sigma = 1, and from each of p.
+    rows : ndarray, shape (m, N + m)
+        The conditions and the border.
+    small : BorderedSystem
+        The m + 1 equations.
+    """
+
+    base: BorderedSystem
+    solved: Array
+    rows: Array
+    small: BorderedSystem
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return self.base.sign * self.small.sign
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The solution z, shape (N + m,).
+
+        Parameters
+        ----------
+        r : ndarray, shape (N + m - 1,)
+        rho : float
+        """
+        n = len(self.solved) - 1
+        x = self.base.solve(r[:n], 0.0)
+        left = np.append(r[n:], rho) - self.rows[:, :n] @ x[:n]
+        q = self.small.solve(np.append(-x[n], left[:-1]), float(left[-1]))
+        y = x[:n] + self.solved[:n] @ q
+        return np.concatenate([y, q[1:]])
+
+
+@frozen(eq=False)
+class Hiding:
+    """The same where the unknown beside follows from the others, and is not asked for."""
+
+    whole: Eliminated
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant."""
+        return self.whole.sign
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """The solution without that unknown.
+
+        Parameters
+        ----------
+        r : ndarray, shape (N + 1,)
+        rho : float
+        """
+        return np.delete(self.whole.solve(np.append(r, 0.0), rho), -2)
+
+
+def eliminated(base: BorderedSystem, columns: Array, rows: Array) -> Eliminated:
+    """Eliminate y.
+
+    Parameters
+    ----------
+    base : BorderedSystem
+    columns : ndarray, shape (N, m)
+    rows : ndarray, shape (m, N + m)
+
+    Raises
+    ------
+    SingularError
+        If the whole is singular.
+    """
+    n = len(columns)
+    first = base.solve(np.zeros(n), 1.0)
+    solved = np.column_stack([first, *(-base.solve(column, 0.0) for column in columns.T)])
+    below = rows[:, :n] @ solved[:n]
+    below[:, 1:] += rows[:, n:]
+    matrix = np.vstack([solved[n], below])
+    if not np.isfinite(matrix).all():
+        raise SingularError("the bordered solution is not finite")
+    return Eliminated(base, solved, rows, factor_bordered(matrix[:-1, :-1], matrix[:-1, -1], matrix[-1]))

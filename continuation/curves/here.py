@@ -1,0 +1,105 @@
+"""A curve's equations at one point: the residual, its derivative applied, as a matrix, and factored with a border."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+from scipy.sparse.linalg import LinearOperator
+
+from continuation.arrays import Array, Matrix
+from continuation.curves.calculus import Calculus
+from continuation.curves.elimination import Hiding, eliminated
+from continuation.curves.local import Local
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.events.singularity import full_derivative
+from continuation.linear import BorderedSystem
+
+
+@frozen(eq=False, slots=False)
+class Here:
+    """All that is known of a curve at a point; worked out once.
+
+    Attributes
+    ----------
+    calculus : Calculus
+    u : ndarray, shape (N + 1,)
+    beside : ndarray, shape (0,) or (1,)
+    mu : float
+    local : Local
+    """
+
+    calculus: Calculus
+    u: Array
+    beside: Array
+    mu: float
+    local: Local
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """Of the family's member."""
+        return self.calculus.evaluator(self.mu)
+
+    @cached_property
+    def apply(self) -> Callable[[Array], Array]:
+        """The map v -> H' v of the member; EvaluationError where that has a factorisation and no `differential`."""
+        apply = self.evaluator.differential(self.u)
+        if apply is None:
+            raise EvaluationError("the family has a factorisation of its own and no `differential`")
+        return apply
+
+    @cached_property
+    def by_parameter(self) -> Array:
+        """H_mu, shape (N,)."""
+        return self.calculus.by_parameter(self.u, self.mu)
+
+    @cached_property
+    def _rows(self) -> tuple[Array, Array | None]:
+        """Gradients of what vanishes, and of the unknown that is hidden, over those that are not."""
+        rows, n = self.local.rows, self.u.size
+        if self.local.hidden is None:
+            return rows, None
+        return np.delete(rows[:1], n, axis=1), -np.delete(rows[1], n)
+
+    def residual(self) -> Array:
+        """The equations."""
+        hidden = self.local.hidden
+        beside = self.beside if hidden is None else np.array([hidden])
+        return np.concatenate([self.evaluator.residual(self.u) + self.local.column @ beside, self.local.values])
+
+    def times(self, v: Array) -> Array:
+        """The derivative applied to a direction."""
+        n, (rows, follows) = self.u.size, self._rows
+        beside = v[n:-1] if follows is None else np.array([follows @ v])
+        H = self.apply(v[:n]) + self.local.column @ beside + v[-1] * self.by_parameter
+        return np.concatenate([H, rows @ v])
+
+    def matrices(self) -> tuple[Matrix, Array]:
+        """The derivative by the unknowns, dense or sparse as the family's, and by mu.
+
+        Where a number is hidden it is H' and a matrix of rank one: an operator, if H' is sparse.
+        """
+        full, (rows, follows) = full_derivative(self.evaluator, self.u), self._rows
+        column = self.local.column
+        last = np.append(self.by_parameter, rows[:, -1])
+        if follows is not None:
+            last[:-1] += column[:, 0] * follows[-1]
+            if sp.issparse(full):
+                order = self.u.size
+                return LinearOperator((order, order), lambda v: self.times(np.append(v, 0.0)), dtype=float), last
+            return np.vstack([full + column * follows[:-1], rows[:, :-1]]), last
+        if sp.issparse(full):
+            top = sp.hstack([full, sp.csc_array(column)])
+            return sp.vstack([top, sp.csc_array(rows[:, :-1])], format="csc"), last
+        return np.vstack([np.hstack([full, column]), rows[:, :-1]]), last
+
+    def bordered(self, border: Array) -> BorderedSystem:
+        """The derivative with a border, factored by elimination."""
+        local, n = self.local, self.u.size
+        columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), local.column, self.by_parameter])
+        if local.hidden is None:
+            return eliminated(local.base, columns, np.vstack([local.rows, border]))
+        return Hiding(eliminated(local.base, columns, np.vstack([local.rows, np.insert(border, n, 0.0)])))

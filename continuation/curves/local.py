@@ -1,0 +1,171 @@
+"""What a condition along a curve is made of: its values and gradients at a point, and factorisations with H_y in them.
+
+Vectors that have units are scaled by those of the start.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import field, frozen
+
+from continuation.arrays import Array, Matrix, generic_vector
+from continuation.curves.calculus import Calculus
+from continuation.curves.nullspace import LONG, REFRESHED, Factors, null_vectors
+from continuation.events.singularity import row_sizes
+from continuation.linear import BorderedSystem
+
+
+@frozen(eq=False, slots=False)
+class Local:
+    """A condition at a point; what a residual does not need is worked out when it is asked for.
+
+    Attributes
+    ----------
+    values : ndarray, shape (k,)
+    gradients : callable
+        Makes `rows`.
+    factored : callable
+        Makes `base`: [[H_y, b], [c', d]] for some border, factored.
+    column : ndarray, shape (N, k - 1)
+        Derivative of the equations H = 0 by the unknown beside.
+    hidden : float or None
+        The unknown beside where it is none, but a number that is added to H along the column: the last of the rows is
+        how it follows from the others.
+    signs : mapping of str to callable
+        Numbers whose signs tell degenerate points, from the rows.
+    """
+
+    values: Array
+    gradients: Callable[[], Array]
+    factored: Callable[[], BorderedSystem]
+    column: Array
+    hidden: float | None = None
+    signs: Mapping[str, Callable[[Array], float]] = field(factory=dict)
+
+    @cached_property
+    def rows(self) -> Array:
+        """Gradients over (y, lam), the unknown beside them if there is one, and mu: shape (k, N + 1 + k)."""
+        return self.gradients()
+
+    @cached_property
+    def base(self) -> BorderedSystem:
+        """The factorisation."""
+        return self.factored()
+
+    def sign(self, name: str) -> float:
+        """One of the signs."""
+        return self.signs[name](self.rows)
+
+
+class Condition(Protocol):
+    """What holds along the curve: at a point (u, extra, mu)."""
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """The name of the unknown beside (y, lam), if there is one."""
+        ...
+
+    def at(self, u: Array, beside: float, mu: float) -> Local:
+        """The condition at a point.
+
+        Parameters
+        ----------
+        u : ndarray, shape (N + 1,)
+        beside : float
+        mu : float
+        """
+        ...
+
+
+@frozen(eq=False, slots=False)
+class Scaled:
+    """H_y in units of the start: columns multiplied by extents, rows divided by what they are made of."""
+
+    calculus: Calculus
+    rows: Array
+
+    @classmethod
+    def at_start(cls, calculus: Calculus) -> Scaled:
+        """Measured where the calculus was decided."""
+        u0 = calculus.u0
+        sizes = row_sizes(calculus.evaluator(float(u0[-1])), calculus.extent, (u0[:-1],))
+        return cls(calculus, sizes)
+
+    @property
+    def extent(self) -> Array:
+        """Of y, shape (N,)."""
+        return self.calculus.extent[:-1]
+
+    def times(self, matrix: Matrix) -> Matrix:
+        """The scaled matrix."""
+        if sp.issparse(matrix):
+            return sp.csc_array(sp.diags_array(1.0 / self.rows) @ matrix @ sp.diags_array(self.extent))
+        return matrix * self.extent / self.rows[:, None]
+
+    def first(self, matrix: Matrix) -> tuple[Array, Array]:
+        """Borders for a matrix: its null vectors, about, by inverse iteration from vectors in general position."""
+        n = self.rows.size
+        b, c = generic_vector(n), generic_vector(2 * n)[n:]
+        for _ in range(2):
+            near = null_vectors(matrix, b / np.linalg.norm(b), c / np.linalg.norm(c))
+            b, c = near.left, near.right
+        return b / np.linalg.norm(b), c / np.linalg.norm(c)
+
+
+@frozen(eq=False)
+class ScaledBase:
+    """The factors of a scaled matrix, as those of the matrix."""
+
+    factors: Factors
+    scaled: Scaled
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant: scaling is by positive numbers."""
+        return self.factors.sign
+
+    def solve(self, r: Array, rho: float) -> Array:
+        """(x, s), shape (N + 1,)."""
+        x = self.factors.solve(np.append(r / self.scaled.rows, rho))
+        x[:-1] *= self.scaled.extent
+        return x
+
+
+@frozen(eq=False)
+class Tangential:
+    """[H_y, H_lam] bordered by a row that its kernel is not orthogonal to: one of the start's, or the kernel itself."""
+
+    calculus: Calculus
+    row: Array
+
+    @classmethod
+    def at_start(cls, calculus: Calculus) -> Tangential:
+        """With the kernel of the start for a row."""
+        first = cls(calculus, generic_vector(calculus.u0.size - 1) / calculus.extent)
+        u, mu = calculus.u0[:-1], float(calculus.u0[-1])
+        t = first.factored(u, mu)[1] / calculus.extent
+        return cls(calculus, t / float(np.linalg.norm(t)) / calculus.extent)
+
+    def factored(self, u: Array, mu: float) -> tuple[Any, Array]:
+        """The family's own factorisation, and the kernel, of length one in the extents of the start, oriented."""
+        extent, row = self.calculus.extent, self.row
+        evaluator = self.calculus.evaluator(mu)
+        for _ in range(REFRESHED):
+            system = evaluator.factor(u, row)
+            t = system.solve(np.zeros(u.size - 1), 1.0)
+            size = float(np.linalg.norm(t / extent))
+            if size * float(np.linalg.norm(row * extent)) <= LONG:
+                break
+            row = t / extent**2 / size
+        return system, t / size * (system.sign or 1)
+
+
+def last_column(full: Matrix) -> Array:
+    """H_lam of [H_y, H_lam], dense."""
+    column: Array = full[:, [-1]].toarray().ravel() if sp.issparse(full) else full[:, -1]
+    return column

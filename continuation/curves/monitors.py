@@ -1,0 +1,137 @@
+"""Conditions that are functions of the caller's: of a point, or of a point and the tangent there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array, generic_vector
+from continuation.curves.calculus import AGREE, Calculus
+from continuation.curves.local import Local, Scaled, Tangential, last_column
+from continuation.curves.nullspace import bordered, factor
+from continuation.evaluation.derivatives import by_differences, difference_along, sizes
+from continuation.events import Monitor, TargetValue
+from continuation.events.singularity import full_derivative
+
+
+@frozen(eq=False)
+class Vanishing:
+    """A function of (y, lam), and of mu, vanishes: a target value, a switch, a monitor of the caller's.
+
+    Attributes
+    ----------
+    function : callable
+        Of (y, lam, mu) as one vector, or jet.
+    gradient : callable
+        Of the vector.
+    """
+
+    tangential: Tangential
+    function: Callable[[Any], Any]
+    gradient: Callable[[Array], Array]
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """No unknown beside."""
+        return ()
+
+    @classmethod
+    def at_start(cls, calculus: Calculus, function: Callable[[Any], Any]) -> Vanishing:
+        """With a gradient that is right at the start."""
+        return cls(Tangential.at_start(calculus), function, gradient_of(function, calculus.u0))
+
+    def at(self, u: Array, beside: float, mu: float) -> Local:
+        """The condition at a point."""
+        U = np.append(u, mu)
+        values, empty = np.array([float(self.function(U))]), np.empty((u.size - 1, 0))
+        return Local(values, lambda: self.gradient(U)[None, :], lambda: self.tangential.factored(u, mu)[0], empty)
+
+
+@frozen(eq=False)
+class AlongTangent:
+    """A function of (y, lam) and of the tangent there vanishes: where an unknown turns, say.
+
+    The tangent's derivative comes from M dt = -H''[t, .], M = [H_y, H_lam] with a border, by one solve with M'.
+
+    Attributes
+    ----------
+    function : callable
+        Of u and v as one vector.
+    gradient : callable
+        Of the vector.
+    """
+
+    scaled: Scaled
+    tangential: Tangential
+    function: Callable[[Array], float]
+    gradient: Callable[[Array], Array]
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """No unknown beside."""
+        return ()
+
+    @classmethod
+    def at_start(cls, calculus: Calculus, function: Callable[[Any], Any]) -> AlongTangent:
+        """With a gradient that is right at the start."""
+        tangential, u, mu = Tangential.at_start(calculus), calculus.u0[:-1], float(calculus.u0[-1])
+        gradient = gradient_of(function, np.append(u, tangential.factored(u, mu)[1]))
+        return cls(Scaled.at_start(calculus), tangential, function, gradient)
+
+    def at(self, u: Array, beside: float, mu: float) -> Local:
+        """The condition at a point."""
+        calculus, extent, rows = self.scaled.calculus, self.scaled.calculus.extent, self.scaled.rows
+        system, t = self.tangential.factored(u, mu)
+
+        def gradients() -> Array:
+            by_u, by_t = np.split(self.gradient(np.append(u, t)), 2)
+            full, border = full_derivative(calculus.evaluator(mu), u), t / extent
+            H_lam = extent[-1] * last_column(full) / rows
+            M = bordered(self.scaled.times(full[:, :-1]), H_lam, border[:-1], float(border[-1]))
+            left = factor(M).solve(extent * by_t, adjoint=True)[:-1] / rows
+            return np.asarray(np.append(by_u, 0.0) - calculus.second(u, mu, t, left))[None, :]
+
+        values = np.array([self.function(np.append(u, t))])
+        return Local(values, gradients, lambda: system, np.empty((rows.size, 0)))
+
+
+def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
+    """What vanishes at an event, of (y, lam, mu) as one vector or jet; None where it looks at the tangent too.
+
+    Parameters
+    ----------
+    event : Event
+    u : ndarray, shape (N + 1,)
+        A point to try it at.
+    """
+    if isinstance(event, TargetValue):
+        place = event.component % u.size
+        return lambda U: U[place] - event.value
+    unknown = np.full(u.size, np.nan)
+    if not np.isfinite(event.monitor(u, unknown)):
+        return None
+    # `Monitor.monitor` makes a float of what the function gives.
+    function = event.function if isinstance(event, Monitor) else event.monitor
+    return lambda U: function(U[:-1], unknown)
+
+
+def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], Array]:
+    """The gradient of a function of a vector: by jets where they agree with a difference at x0, else by differences."""
+    w = sizes(x0) * generic_vector(x0.size)
+
+    def at(x: Array, last: float) -> Array:
+        return np.array([function(np.append(x, last))], dtype=float)
+
+    try:
+        from continuation import jets
+
+        found, wanted = jets.jacobian(function, x0), difference_along(at, x0, w)[0]
+        if found.shape == x0.shape and abs(found @ w - wanted[0]) <= AGREE * float(np.abs(found) @ np.abs(w)):
+            return lambda x: jets.jacobian(function, x)
+    except (TypeError, ArithmeticError, ValueError, AttributeError):
+        pass
+    plain = by_differences(at, x0)
+    return lambda x: np.column_stack(plain(x[:-1], float(x[-1])))[0]

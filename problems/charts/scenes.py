@@ -1,0 +1,154 @@
+"""Scenes by ours and by the methods of their fields: time against the error of the answer, with order and memory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+from attrs import evolve
+
+from continuation.chart import Answer, Error, Failure, Ladder, Method, Precision, Problem, Rung, Study, observed
+from continuation.chart.catalogue import Size
+from continuation.chart.model import everywhere
+from continuation.counts import Counts
+from problems.scenes import Rival, available, error, make, memory, order, solve
+
+WRONG = 1e-2
+"""An answer that is off by more is no answer."""
+
+
+def _of_model(measure: Callable[[Any], int]) -> Callable[[Problem, Answer], float]:
+    """A number of the model that was solved; taken after the run, so that the run is not longer for it."""
+    return lambda problem, answer: float(measure(_refined(problem, answer.observed.get("factor", 1.0)).problem()))
+
+
+COMPILING = 30.0
+"""Seconds that a first run may take and still be repeated: quantecon and numba compile themselves in it."""
+
+ERROR = observed("answer", "error of the answer, relative")
+ORDER = Error("unknowns", "unknowns of the model", _of_model(order))
+MEMORY = Error("memory", "bytes of the model", _of_model(memory))
+
+OURS = "ours"
+
+MESHES = ("american-put", "bearing", "bratu-lid", "converter", "membrane", "string", "torsion")
+"""Scenes with a mesh of n points: their error is that of the mesh, whatever the method."""
+
+COUNTS = ("jumps", "steps", "support vectors")
+"""Quantities that methods which leave no exact zeros do not tell."""
+
+LARGER: dict[str, dict[str, Any]] = {
+    "arch": {"stones": 60},
+    "converter": {"capacity": 1.0, "load": 36.0},
+    "denoising": {"samples": 1000},
+    "isotonic": {"samples": 1000},
+    "lasso": {"samples": 300, "features": 100},
+    "portfolio": {"correlation": 0.3},
+    "puck": {"edges": 64},
+    "regulator": {"horizon": 50},
+    "spatial-prices": {"offers": [4.0 + k for k in range(12)], "bids": [20.0 + 2.0 * k for k in range(12)]},
+    "svm": {"samples": 200, "width": 1.0},
+    "torsion": {"twist": 1.0},
+    "traffic": {"side": 12},
+    "unmixing": {"substances": 60, "channels": 400},
+}
+"""Sizes at which methods differ."""
+
+
+def studies(size: Size, compare: bool) -> Sequence[Study]:
+    """Two: scenes with a mesh, which is refined, and those whose answers are exact but for round-off."""
+    factors = {"smoke": (0.2,), "moderate": (0.5, 1.0, 2.0), "full": (0.5, 1.0, 2.0, 4.0, 8.0)}[size]
+    names = ("string", "cournot") if size == "smoke" else tuple(available())
+    larger: dict[str, dict[str, Any]] = {} if size == "smoke" else LARGER
+    meshes = [_problem(name, make(name, larger.get(name))) for name in names if name in MESHES]
+    exact = [_problem(name, make(name, larger.get(name))) for name in names if name not in MESHES]
+    common: dict[str, Any] = {
+        "errors": (ERROR, ORDER, MEMORY), "work": ("seconds",), "figures": (Precision("answer", "seconds"),),
+        "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": COMPILING,
+    }  # fmt: skip
+    ladder = Ladder("mesh", factors, lambda options, value: options)
+    return [
+        Study(name="scenes-meshes", title="Scenes with a mesh", problems=meshes, ladder=ladder,
+              methods=_methods(meshes, True, compare), notes=_notes(meshes, compare), **common),
+        Study(name="scenes-exact", title="Scenes without a mesh", problems=exact,
+              methods=_methods(exact, False, compare), notes=_notes(exact, compare), **common),
+    ]  # fmt: skip
+
+
+def _problem(name: str, scene: Any) -> Problem:
+    """With the answer to measure against: in closed form, else to all digits by ours, certified."""
+    known = scene.exact()
+    if name not in MESHES:
+        known = {**scene.answer(solve(scene)), **known}
+    known = {key: value for key, value in known.items() if key not in COUNTS}
+    return Problem(name, scene, options={"true": known}, n=order(scene.problem()), family=name)
+
+
+def _methods(problems: Sequence[Problem], mesh: bool, compare: bool) -> list[Method]:
+    """Ours, each rival of any of the scenes once, and where they are asked for those of other packages."""
+    rivals: dict[str, Rival] = {}
+    for problem in problems:
+        rivals.update({rival.name: rival for rival in problem.subject.rivals})
+    taken = [rival for rival in rivals.values() if not rival.module or (compare and rival.installed)]
+    return [_method(OURS, mesh, _ours), *(_rival(rival.name, mesh) for rival in taken)]
+
+
+def _notes(problems: Sequence[Problem], compare: bool) -> list[str]:
+    """Which packages take part, and which rivals are left out."""
+    if not compare:
+        return []
+    rivals = {rival.name: rival for problem in problems for rival in problem.subject.rivals}
+    there = sorted({_versioned(rival.module) for rival in rivals.values() if rival.module and rival.installed})
+    absent = [rival.name for rival in rivals.values() if not rival.installed]
+    return [
+        *([f"outside solvers: {', '.join(there)}"] if there else []),
+        *([f"left out, not installed: {', '.join(absent)}"] if absent else []),
+    ]
+
+
+def _versioned(module: str) -> str:
+    distribution = {"sklearn": "scikit-learn"}.get(module, module)
+    try:
+        return f"{distribution} {version(distribution)}"
+    except PackageNotFoundError:
+        return distribution
+
+
+def _refined(problem: Problem, factor: float) -> Any:
+    """The scene on a finer mesh, by a factor."""
+    scene = problem.subject
+    if problem.name not in MESHES:
+        return scene
+    # The put's errors in price and time are to fall alike.
+    more = {"steps": max(2, round(factor * scene.steps))} if hasattr(scene, "steps") else {}
+    return evolve(scene, n=max(4, round(factor * scene.n)), **more)
+
+
+def _method(
+    name: str, mesh: bool, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] = everywhere
+) -> Method:
+    """A method that answers a scene."""
+
+    def run(problem: Problem, rung: Rung) -> Answer:
+        factor = rung.value if mesh else 1.0
+        found = ask(_refined(problem, factor))
+        off = error(found, problem.options["true"])
+        well = math.isfinite(off) and off <= WRONG
+        message = "" if well else f"the answer is off by {off:.1e}"
+        failure = Failure.NONE if well else Failure.WRONG_END
+        return Answer(Counts(), observed={"answer": off, "factor": factor}, failure=failure, message=message)
+
+    return Method(name, run, mesh, applies)
+
+
+def _ours(scene: Any) -> Any:
+    return scene.answer(solve(scene))
+
+
+def _rival(name: str, mesh: bool) -> Method:
+    def ask(scene: Any) -> Any:
+        return next(rival for rival in scene.rivals if rival.name == name).run(scene)
+
+    return _method(name, mesh, ask, lambda problem: any(rival.name == name for rival in problem.subject.rivals))

@@ -1,0 +1,94 @@
+"""Rigid bodies in the plane that touch with friction: the LCP of one time step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from continuation.arrays import Array
+from problems.scenes.scene import Unknown
+
+Body = tuple[float, float, float, float]
+"""Mass, moment of inertia, and place."""
+
+Contact = tuple[int, int, float, float, float, float]
+"""Body, body or -1 for the ground, place, and normal, towards the first body."""
+
+
+def time_step(bodies: Sequence[Body], contacts: Sequence[Contact], friction: float) -> tuple[Array, Array, Array]:
+    """Stewart and Trinkle's matrix, with Coulomb's law of friction, in impulses and slip velocities.
+
+    The unknowns are normal impulses, impulses along the tangent to the right of the normal, those along the other one,
+    and slip velocities, each for all contacts. Two tangents are one edge each of the cone, which is exact in the plane.
+    The matrix is copositive, so that Lemke's method finds a solution whatever the state is; with three unknowns a
+    contact (Pfeiffer and Glocker) that is lost.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+    contacts : sequence of Contact
+    friction : float
+
+    Returns
+    -------
+    A : ndarray, shape (4 c, 4 c)
+    J : ndarray, shape (2 c, 3 b)
+        Velocities of the bodies to normal and tangential ones, in turns.
+    inverse : ndarray, shape (3 b,)
+        Inverse masses.
+
+    References
+    ----------
+    Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996); Anitescu and Potra, Nonlinear Dynamics 14 (1997).
+    """
+    inverse = np.concatenate([[1.0 / m, 1.0 / m, 1.0 / i] for m, i, _, _ in bodies])
+    J = np.zeros((2 * len(contacts), inverse.size))
+    for c, (a, b, px, py, nx, ny) in enumerate(contacts):
+        for body, sign in ((a, 1.0), (b, -1.0)):
+            if body >= 0:
+                dx, dy = px - bodies[body][2], py - bodies[body][3]
+                part = slice(3 * body, 3 * body + 3)
+                J[2 * c, part] += sign * np.array([nx, ny, dx * ny - dy * nx])
+                J[2 * c + 1, part] += sign * np.array([ny, -nx, -dx * nx - dy * ny])
+    W, one = (J * inverse) @ J.T, np.eye(len(contacts))
+    NN, NT, TN, TT = W[::2, ::2], W[::2, 1::2], W[1::2, ::2], W[1::2, 1::2]
+    zero = 0.0 * one
+    A = np.block([[NN, NT, -NT, zero], [TN, TT, -TT, one], [-TN, -TT, TT, one], [friction * one, -one, -one, zero]])
+    return A, J, inverse
+
+
+def free_motion(u: Array) -> Array:
+    """The vector q that belongs to the velocities at the contacts without any impulse.
+
+    Parameters
+    ----------
+    u : ndarray, shape (2 c,)
+        Normal and tangential, in turns.
+    """
+    return np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(u.size // 2)])
+
+
+def impulses(x: Array) -> Array:
+    """Normal and tangential impulses, in turns, shape (2 c,), of a solution of a time step.
+
+    Parameters
+    ----------
+    x : ndarray, shape (4 c,)
+    """
+    c = x.size // 4
+    return np.stack([x[:c], x[c : 2 * c] - x[2 * c : 3 * c]], axis=1).ravel()
+
+
+def contact_unknowns(contacts: int) -> tuple[Unknown, ...]:
+    """Those of a time step.
+
+    Parameters
+    ----------
+    contacts : int
+    """
+    return (
+        Unknown("normal impulses", contacts, "what keeps bodies apart"),
+        Unknown("tangential impulses", 2 * contacts, "friction, one for each of the two directions of an edge"),
+        Unknown("slip velocities", contacts, "whether a contact slides, where friction is at its limit"),
+    )

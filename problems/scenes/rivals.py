@@ -1,0 +1,189 @@
+"""Methods of other packages, and of the textbooks, that take the same problem; each is used where it is installed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.optimize import linprog, minimize
+
+from continuation.arrays import Array
+from problems.lcp.data.program import Program
+from problems.lcp.reference import lemke
+from problems.scenes.scene import Point, Quantities, Rival, conditions
+
+TOLERANCE = 1e-10
+"""Asked of interior-point methods: what they reach on well-scaled problems."""
+
+SWEEPS = 200_000
+"""Of projected Gauss-Seidel at most: some seconds on the problems of the charts."""
+
+
+def of_problem(name: str, module: str, method: Callable[[Any], Array]) -> Rival:
+    """A rival that takes the problem of a scene and returns its unknowns, or the first of them.
+
+    Parameters
+    ----------
+    name, module : str
+        As for `Rival`.
+    method : callable
+        The problem to a vector.
+    """
+
+    def run(scene: Any) -> Quantities:
+        found: Quantities = scene.answer(Point(np.asarray(method(scene.problem()), dtype=float)))
+        return found
+
+    return Rival(name, module, run)
+
+
+def _dense(A: Any) -> Array:
+    found: Array = A.toarray() if sp.issparse(A) else A
+    return found
+
+
+def _arrived(x: Any, well: bool, message: object) -> Array:
+    if x is None or not well:
+        raise ArithmeticError(f"no solution: {message}")
+    return np.asarray(x)
+
+
+def by_quantecon(problem: Any) -> Array:
+    """Lemke's method on tables, compiled.
+
+    Parameters
+    ----------
+    problem : LCP
+    """
+    found = conditions(problem)
+    result = import_module("quantecon.optimize").lcp_lemke(_dense(found.A), found.q, max_iter=100 * found.n)
+    return _arrived(result.z, result.success, f"status {result.status}")
+
+
+def by_tables(problem: Any) -> Array:
+    """Lemke's method on tables of numpy.
+
+    Parameters
+    ----------
+    problem : LCP
+    """
+    result = lemke(conditions(problem))
+    return _arrived(result.x, result.solved, result.message)
+
+
+@cache
+def _sweeper() -> Callable[..., Any]:
+    """Compiled: as a loop of Python it would be a hundred times slower, and no rival."""
+
+    def sweep(data: Any, columns: Any, rows: Any, q: Any, lower: Any, upper: Any, x: Any, most: int) -> int:
+        n = q.size
+        for k in range(most):
+            moved = largest = 0.0
+            for i in range(n):
+                w, diagonal = q[i], 0.0
+                for j in range(rows[i], rows[i + 1]):
+                    w += data[j] * x[columns[j]]
+                    if columns[j] == i:
+                        diagonal = data[j]
+                new = min(max(x[i] - w / diagonal, lower[i]), upper[i])
+                moved, x[i] = max(moved, abs(new - x[i])), new
+                largest = max(largest, abs(new))
+            if moved <= 1e-12 * largest:
+                return k
+        return -1
+
+    compiled: Callable[..., Any] = import_module("numba").njit(sweep)
+    return compiled
+
+
+def _gauss_seidel(problem: Any) -> Array:
+    found = conditions(problem)
+    A = sp.csr_array(found.A)
+    if not (A.diagonal() > 0.0).all():
+        raise ArithmeticError("projected Gauss-Seidel needs a positive diagonal")
+    x = found.near_zero.copy()
+    swept = _sweeper()(A.data, A.indices, A.indptr, found.q, found.lower, found.upper, x, SWEEPS)
+    return _arrived(x, swept >= 0, f"not in {SWEEPS} sweeps")
+
+
+def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
+    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a symmetric problem with bounds.
+
+    Parameters
+    ----------
+    problem : Program or MixedLCP
+    """
+    found = conditions(problem)
+    if not isinstance(problem, Program):
+        none = sp.csr_array((0, found.n))
+        return sp.csr_array(found.A), found.q, none, np.zeros(0), none, np.zeros(0), found.lower, found.upper
+    n, A = problem.n, sp.csr_array(found.A)
+    if problem.both.size:
+        raise ArithmeticError("rows with two sides are not handed on")
+    R, equal = A[n:, :n], np.isneginf(found.lower[n:])
+    free, signed = np.flatnonzero(equal), np.flatnonzero(~equal)
+    b = -found.q[n:]
+    return A[:n, :n], found.q[:n], R[free], b[free], R[signed], b[signed], found.lower[:n], found.upper[:n]
+
+
+def _piqp(problem: Any) -> Array:
+    P, c, B, b, G, h, lower, upper = program_of(problem)
+    library = import_module("piqp")
+    solver = library.SparseSolver()
+    solver.settings.eps_abs = solver.settings.eps_rel = TOLERANCE
+    B, G = sp.csc_matrix(B), sp.csc_matrix(G)
+    solver.setup(sp.csc_matrix(P), c, B, b, G, h, np.full(h.size, np.inf), lower, upper)
+    status = solver.solve()
+    return _arrived(solver.result.x, status == library.PIQP_SOLVED, status)
+
+
+def _clarabel(problem: Any) -> Array:
+    P, c, B, b, G, h, lower, upper = program_of(problem)
+    library = import_module("clarabel")
+    settings = library.DefaultSettings()
+    settings.verbose = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = TOLERANCE
+    low, high, one = np.isfinite(lower), np.isfinite(upper), sp.eye_array(c.size, format="csr")
+    rows = sp.csc_matrix(sp.vstack([B, -G, -one[low], one[high]]))
+    sides = np.concatenate([b, -h, -lower[low], upper[high]])
+    cones = [library.ZeroConeT(b.size), library.NonnegativeConeT(sides.size - b.size)]
+    found = library.DefaultSolver(sp.csc_matrix(sp.triu(P)), c, rows, sides, cones, settings).solve()
+    return _arrived(found.x, str(found.status) == "Solved", found.status)
+
+
+def _highs(problem: Any) -> Array:
+    _, c, B, b, G, h, lower, upper = program_of(problem)
+    found = linprog(c, A_ub=-G, b_ub=-h, A_eq=B if b.size else None, b_eq=b if b.size else None,
+                    bounds=np.column_stack([lower, upper]))  # fmt: skip
+    return _arrived(found.x, found.success, found.message)
+
+
+def _bfgs(problem: Any) -> Array:
+    P, c, _, b, _, h, lower, upper = program_of(problem)
+    if b.size or h.size:
+        raise ArithmeticError("L-BFGS-B takes bounds alone")
+
+    def value(x: Array) -> tuple[float, Array]:
+        slope = P @ x
+        return float(0.5 * (x @ slope) + c @ x), slope + c
+
+    start = np.clip(np.zeros(c.size), lower, upper)
+    options = {"maxiter": 15_000, "maxfun": 30_000, "ftol": 1e-16, "gtol": 1e-12}
+    found = minimize(value, start, jac=True, method="L-BFGS-B", bounds=np.column_stack([lower, upper]), options=options)
+    return np.asarray(found.x)
+
+
+LEMKE = of_problem("Lemke (quantecon)", "quantecon", by_quantecon)
+TABLES = of_problem("Lemke (tables, numpy)", "", by_tables)
+GAUSS_SEIDEL = of_problem("projected Gauss-Seidel (numba)", "numba", _gauss_seidel)
+PIQP = of_problem("PIQP", "piqp", _piqp)
+CLARABEL = of_problem("Clarabel", "clarabel", _clarabel)
+HIGHS = of_problem("HiGHS (scipy)", "", _highs)
+BFGS = of_problem("L-BFGS-B (scipy)", "", _bfgs)
+
+QUADRATIC = (PIQP, CLARABEL, BFGS)
+"""For symmetric problems with bounds alone."""

@@ -1,0 +1,153 @@
+"""What holds of every scene: its protocol, its minimal model, its picture; published answers are beside this file."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import attrs
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from continuation.testing import check_homotopy
+from problems.charts.scenes import COUNTS
+from problems.lcp import LCP, MixedLCP
+from problems.scenes import Point, Unknown, available, error, find, make, order, solve
+from problems.scenes.cournot import Cournot
+from problems.scenes.scene import conditions, mismatch
+
+from .util import EXACT_TO, FREE, MINIMAL, needless, small
+
+ROOT = Path(__file__).parents[3]
+NAMES = list(available())
+
+
+def test_every_scene_is_registered_and_installed():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    written = project["entry-points"]["continuation.scenes"]
+    # Entry points are read from the installed package: `pip install -e .` after a change of pyproject.toml.
+    assert {name: available()[name].points[0].value for name in written} == written
+    parts = {"__init__", "pictures", "planar", "registry", "rivals", "scene"}
+    files = {file.stem for file in (ROOT / "problems" / "scenes").glob("*.py")} - parts
+    assert {value.partition(":")[0].rpartition(".")[2] for value in written.values()} == files
+    assert set(NAMES) >= set(MINIMAL) == set(written)
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """Each scene at a small size, solved once."""
+    found = {}
+
+    def one(name):
+        if name not in found:
+            scene = small(name)
+            found[name] = scene, solve(scene)
+        return found[name]
+
+    return one
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_scene_is_a_frozen_value_with_defaults(name):
+    cls = find(name)
+    scene = cls()
+    assert scene == cls()
+    assert attrs.has(cls)
+    with pytest.raises(attrs.exceptions.FrozenInstanceError):
+        setattr(scene, attrs.fields(cls)[0].name, 1.0)
+    assert set(attrs.asdict(scene)) == {f.name for f in attrs.fields(cls)}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_answer_has_units_and_is_the_exact_one(name, solved):
+    scene, solution = solved(name)
+    answer = scene.answer(solution)
+    assert set(answer) == set(scene.units)
+    assert all(np.isfinite(np.asarray(value, dtype=float)).all() for value in answer.values()), answer
+    assert set(scene.exact()) <= set(answer)
+    assert mismatch(scene, solution) <= EXACT_TO[name]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_scene_has_an_unknown_that_its_answer_does_not_need(name):
+    scene = small(name)
+    fewest, reason = MINIMAL[name]
+    assert order(scene.problem()) == fewest, reason
+    assert all(kind.why and kind.count > 0 for kind in scene.unknowns)
+    assert needless(scene) == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_unknowns_without_bounds_are_those_that_cannot_be_eliminated(name):
+    problem = conditions(small(name).problem())
+    if isinstance(problem, MixedLCP):
+        free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
+        assert int(free.sum()) == FREE.get(name, (0, ""))[0]
+
+
+@attrs.frozen
+class Worse(Cournot):
+    """The same with a larger model."""
+
+    kind: str = "idle"
+
+    @property
+    def unknowns(self):
+        n = order(self.problem())
+        return (Unknown("quantities and what is not needed", n, "none"),)
+
+    def problem(self):
+        A, q = super().problem().A, super().problem().q
+        n, one = q.size, np.eye(q.size)
+        if self.kind == "idle":
+            return LCP(np.block([[A, np.zeros((n, 1))], [np.ones((1, n)), np.eye(1)]]), np.append(q, 1.0))
+        if self.kind == "split":
+            return LCP(np.block([[A, -A], [-A, A]]), np.append(q, -q))
+        return LCP(np.block([[A, one], [-one, 0.0 * one]]), np.append(q, np.full(n, 50.0)))
+
+    def answer(self, solution):
+        return super().answer(Point(solution.x[:4]))
+
+
+@pytest.mark.parametrize(
+    ("kind", "complaint"),
+    [("idle", "in no equation that the answer needs"), ("split", "one without a sign"), ("bound", "multiplier of a")],
+)
+def test_a_larger_model_is_noticed(kind, complaint):
+    assert any(complaint in found for found in needless(Worse(kind=kind)))
+    assert needless(Cournot()) == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_is_drawn_with_axes_that_say_what_they_are(name, solved):
+    scene, solution = solved(name)
+    figure = Figure()
+    axes = figure.subplots()
+    scene.draw(solution, axes)
+    assert axes.has_data()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_bad_parameters_are_refused_by_name(name):
+    with pytest.raises(TypeError, match="colour: expected an option"):
+        make(name, {"colour": 1})
+    first = attrs.fields(find(name))[0].name
+    with pytest.raises((TypeError, ValueError), match=rf"^{first}: expected"):
+        find(name)(**{first: "text"})
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_rivals_that_are_installed_agree(name):
+    scene = small(name)
+    exact = {**scene.answer(solve(scene)), **scene.exact()}
+    # Interior points leave no exact zeros to be counted, and are asked for 1e-10 of a residual, not of an answer.
+    exact = {key: value for key, value in exact.items() if key not in COUNTS}
+    for rival in scene.rivals:
+        if rival.installed and name != "painleve-rod":  # They find one of its two answers.
+            assert error(rival.run(scene), exact) <= max(1e-3, EXACT_TO[name]), rival.name
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if not isinstance(conditions(make(name).problem()), MixedLCP)])
+def test_the_homotopies_of_scenes_conform(name):
+    check_homotopy(small(name).problem())

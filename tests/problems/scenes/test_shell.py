@@ -1,0 +1,94 @@
+"""``continuation solve scene`` and ``continuation plugins``: scenes by name, of this package and of one's own."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, main
+
+
+@pytest.fixture
+def run(capsys):
+    """main(argv) -> (status, stdout, stderr)."""
+
+    def call(*argv):
+        status = main([str(argument) for argument in argv])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return call
+
+
+def test_a_scene_by_its_name(run, tmp_path):
+    picture = tmp_path / "block.png"
+    status, out, err = run("solve", "scene", "block", "speed=0.03", "--plot", picture)
+    assert (status, err) == (SUCCESS, "")
+    assert "scene      block speed=0.03" in out
+    assert "friction impulse  -0.03 N s" in out
+    assert "2 tangential impulses: friction" in out
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_as_json(run):
+    status, out, _ = run("solve", "scene", "cournot", "costs=[10,20]", "--json")
+    assert status == SUCCESS
+    answer = json.loads(out)
+    assert answer["unknowns"] == 2
+    assert answer["answer"]["price"] == pytest.approx(130.0 / 3.0)
+
+
+def test_a_path_that_ends_in_a_collapse_is_an_answer(run):
+    status, out, _ = run("solve", "scene", "truss")
+    assert status == SUCCESS
+    assert "collapse load        2.1 force" in out
+    status, out, err = run("solve", "scene", "truss", "load=3")
+    assert status == FAILURE
+    assert "the bars bear 2.1 at most, found 3" in err
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["scene"], "NAME: expected the name of a scene, found none"),
+        (["scene", "blok"], "blok: no scene of this name is installed; did you mean block?"),
+        (["scene", "block", "mass=-1"], "mass: expected a positive finite number, found -1"),
+        (["scene", "block", "color=1"], "color: expected an option of block"),
+        (["scene", "block", "--x0", "a.npy"], "--x0: expected a problem in a file, found a scene"),
+        (["file.npz", "block"], "unrecognized arguments: block"),
+    ],
+)
+def test_bad_input_is_one_line(run, words, complaint):
+    status, out, err = run("solve", *words)
+    assert (status, out) == (BAD_INPUT, "")
+    assert complaint in err
+    assert err.count("\n") == 1
+
+
+def test_scenes_are_listed_beside_homotopies(run):
+    status, out, err = run("plugins")
+    assert (status, err) == (SUCCESS, "")
+    assert "a scene: continuation solve scene american-put" in out
+    assert "bratu-1d" in out
+    status, out, _ = run("plugins", "block")
+    assert "options: mass=1.0, friction=0.5, speed=1.0" in out
+
+
+def test_names_of_scenes_are_completed(run):
+    _, out, _ = run("completion", "bash")
+    (line,) = (line for line in out.splitlines() if line.strip().startswith("solve)"))
+    assert "american-put" in line
+
+
+def test_the_scene_of_the_tutorial_is_short_and_runs_by_its_name(run, tmp_path, monkeypatch):
+    page = (Path(__file__).parents[3] / "docs" / "own_scene.md").read_text(encoding="utf-8")
+    code = re.search(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1]
+    assert len(code.splitlines()) <= 40
+    (tmp_path / "reservoirs.py").write_text(code)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    status, out, err = run("solve", "scene", "reservoirs:Reservoirs", "seepage=0.4", "--plot", "levels.png")
+    assert (status, err) == (SUCCESS, "")
+    assert "levels  3.75, 4, 4, 4 m" in out
+    assert (tmp_path / "levels.png").exists()
