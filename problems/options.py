@@ -49,6 +49,8 @@ def check_budget(value: Any) -> None:
 def real_array(name: str, value: Any) -> Array:
     """A copy of `value` as an array of floats, if it is made of real numbers that a float can hold.
 
+    What nobody can change, a read-only array that owns its floats by rows, is taken as it is.
+
     Parameters
     ----------
     name : str
@@ -61,6 +63,10 @@ def real_array(name: str, value: Any) -> Array:
     ValueError
         For anything else: complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
     """
+    own = type(value) is np.ndarray and value.base is None and value.flags.c_contiguous and not value.flags.writeable
+    if own and value.dtype == float:
+        kept: Array = value
+        return kept
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:

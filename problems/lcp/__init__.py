@@ -25,17 +25,18 @@ from problems.lcp.proof.certificate import Certificate, ExactCertificate, certif
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, empty_interior, farkas
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.reference.enumeration import Exhaustion, solve_by_enumeration
+from problems.lcp.search.many import Answers, solve_many
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.sequence import Solver
 from problems.lcp.search.solver import solve
 
 __all__ = [
-    "LCP", "Certificate", "ExactCertificate", "ExactPath", "Exhaustion", "Farkas", "FloatFarkas", "Gradient",
+    "LCP", "Answers", "Certificate", "ExactCertificate", "ExactPath", "Exhaustion", "Farkas", "FloatFarkas", "Gradient",
     "KKTHomotopy", "KojimaMegiddoMizunoHomotopy", "MixedLCP", "NoStrictlyFeasiblePoint", "NotDifferentiableError",
     "Outcome", "Program", "Sensitivity", "Solution", "Solutions", "Solver", "Start", "Structure", "TwoVectorHomotopy",
     "UnprovenError", "WangHomotopy", "XuHomotopy", "YuHomotopy", "ZhaoHomotopy", "along", "certify", "certify_exactly",
     "classify", "default_start", "empty_interior", "farkas", "from_lp", "from_qp", "prove_path", "random_start",
-    "solutions", "solve", "solve_by_enumeration", "strictly_feasible_start",
+    "solutions", "solve", "solve_by_enumeration", "solve_many", "strictly_feasible_start",
 ]  # fmt: skip
 
 register()

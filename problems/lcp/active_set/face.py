@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon
 from scipy.sparse.csgraph import structural_rank
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, finite
 from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
 from continuation.linear.refine import Factored
@@ -86,7 +86,7 @@ class Face:
             for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
                 x = self._corrected(x, self.q if self.exact and standard else self.w(x))
             w = self.w(x)
-        if not (np.isfinite(x).all() and np.isfinite(w).all()):
+        if not (finite(x) and finite(w)):
             return None
         if self.exact:
             w[self.active] = 0.0
@@ -131,7 +131,7 @@ class Faces:
         """The problem."""
         return self.structure.problem if self.current is None else self.current
 
-    def face(self, state: State, shift: float = 0.0, centre: Array | None = None) -> Face | None:
+    def face(self, state: State, shift: float = 0.0, centre: Array | None = None, regular: bool = False) -> Face | None:
         """The face of a state, factored; None where that is impossible.
 
         Parameters
@@ -141,11 +141,13 @@ class Faces:
             Added to the diagonal of A.
         centre : Array, optional
             Of a proximal problem, whose q is ``q - shift centre``.
+        regular : bool
+            Whether it is impossible where its equations are singular.
         """
         if self.kept is None or shift or centre is not None:
-            return self._made(state, shift, centre)
+            return self._made(state, shift, centre, regular)
         key = state.tobytes()
-        face = self.kept.pop(key, None) or self._made(state, shift, centre)
+        face = self.kept.pop(key, None) or self._made(state, shift, centre, regular)
         if face is None:
             return None
         self.kept[key] = face
@@ -153,10 +155,10 @@ class Faces:
             self.kept.pop(next(iter(self.kept)))
         return evolve(face, problem=self.problem, q=self.problem.q)
 
-    def _made(self, state: State, shift: float, centre: Array | None) -> Face | None:
+    def _made(self, state: State, shift: float, centre: Array | None, regular: bool) -> Face | None:
         problem = self.problem
         active, ranges = state == BETWEEN, self.structure.ranges
-        inside = np.flatnonzero(active) if ranges is None else ranges.inside(active)
+        inside = active.nonzero()[0] if ranges is None else ranges.inside(active)
         shifts = ranges.shifts(shift) if ranges is not None and shift else shift
         q = problem.q if centre is None else problem.q - shifts * centre
         inverse: Callable[[Array], Array] | None
@@ -165,8 +167,8 @@ class Faces:
         elif self.structure.band is not None and ranges is None:
             inverse, exact = self._banded(active, shift), True
         else:
-            block = problem.A[inside][:, inside]
-            factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift)
+            block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
+            factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift, regular)
             inverse = None if factor is None else factor.solve
         if inverse is None:
             return None
@@ -174,16 +176,20 @@ class Faces:
             inverse = ranges.completed(active, inside, inverse, shift)
         return Face(problem, state, active, inverse, exact or centre is not None, shifts, q)
 
-    def _dense(self, block: Array, shift: float) -> tuple[Factored | None, bool]:
+    def _dense(self, block: Array, shift: float, regular: bool) -> tuple[Factored | None, bool]:
         # Rows were taken, then columns: the quickest of numpy's ways, and so the block is in LAPACK's order.
-        block = np.asfortranarray(block)
-        block[np.diag_indices(len(block))] += shift
-        if self.structure.symmetric and (factor := _cholesky(block)) is not None:
+        block = np.array(block, order="F") if block is self.problem.A else np.asfortranarray(block)
+        if shift:
+            block[np.diag_indices(len(block))] += shift
+        # Of order 1 LU is a division, rounded once, where Cholesky's takes a root.
+        if len(block) > 1 and self.structure.symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
         # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
-        definite = self.structure.symmetric and self.structure.semidefinite
+        definite = self.structure.symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
+        if regular:
+            return None, False
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * max(_norm(block), 1e-300)
         return (_cholesky if definite else _lu)(block), False
 

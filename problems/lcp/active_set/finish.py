@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sp
 from attrs import define, field
@@ -14,9 +12,7 @@ from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.data.problem import LOWER, UPPER, MixedLCP, State
-from problems.lcp.homotopies.kkt import KKTHomotopy
-from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certified, certify
 from problems.lcp.proof.verdict import confirmed
 
 SIGN_CORRECTIONS = 2
@@ -25,27 +21,14 @@ SIGN_CORRECTIONS = 2
 Each gains the digits that the condition of the face leaves (Higham, section 12.1): two are enough up to 1e8.
 """
 
-# How the next four do on 80 planted problems of five kinds (n = 20, 40), all with a path; 79 are solved whatever they
-# are. Factorisations: 5,567; LATEST_START = 0.2, 1: 5,407, 5,697; LARGEST_PRODUCT = 0.1, 10, infinity: 5,251, 5,701,
-# 6,038; SPACING = 0.2, 0.6, 0.8: 6,099, 5,844, 6,138; ON_PATH of 0, 2, 8 steps: 5,366, 5,418, 6,085.
-
-LATEST_START = 0.5
-"""The finish is first tried on a path when its parameter has fallen to this,"""
-
-LARGEST_PRODUCT = 1.0
-"""nor before the products x z1 (or x y) have fallen to this, in the problem's natural units,"""
-
-SPACING = 0.4
-"""and then each time the parameter has fallen by this factor since."""
-
-ON_PATH = Policy(steps=4)
-"""At each try on a path."""
+WORTH_MORE = 0.1
+"""A correction that gains less than a digit is not followed by another: what it leaves is no rounding."""
 
 PATIENCE = 3
 """So many corrections in a row that do not bring the number of changed indices to a new low are cycling.
 
-On the same problems 2, 5, 10, infinity: 5,210, 5,338, 5,529, 5,989 factorisations where this takes 5,259; on 24
-monotone ones (n = 100, 200) 303, 278, 273, 273 where it takes 291.
+On 80 planted problems of five kinds (n = 20, 40) 2, 5, 10, infinity: 5,210, 5,338, 5,529, 5,989 factorisations where
+this takes 5,259; on 24 monotone ones (n = 100, 200) 303, 278, 273, 273 where it takes 291.
 """
 
 PROXIMAL_SHIFTS = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
@@ -94,6 +77,8 @@ class Finish:
         Of the last solution found.
     nearest : Certificate or None
         Of the point of least normwise residual that the augmented Lagrangian led to.
+    stopped : State or None
+        Where an iteration over regular faces alone would go on.
     """
 
     faces: Faces
@@ -102,6 +87,7 @@ class Finish:
     tried: Tried = field(factory=Tried)
     certificate: Certificate | None = field(default=None, init=False)
     nearest: Certificate | None = field(default=None, init=False)
+    stopped: State | None = field(default=None, init=False)
 
     @property
     def problem(self) -> MixedLCP:
@@ -120,7 +106,9 @@ class Finish:
         near : Array, optional
             Where a face holds many points, the one nearest to this is taken; zero by default.
         """
-        found = iterate(self.faces, state, policy, near=near, judge=self._judged, tried=self.tried, counts=self.counts)
+        found = iterate(self.faces, state, policy, near=near, judge=self.judged, tried=self.tried, counts=self.counts)
+        if found.ended is Ended.IRREGULAR:
+            self.stopped = found.state
         return found.x if found.ended is Ended.SOLVED else None
 
     def proximal_active_set(self, state: State | None = None) -> Array | None:
@@ -232,22 +220,29 @@ class Finish:
             self.nearest = found
         return False
 
-    def _judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The point, clipped to the bounds and certified; corrected in twice the precision until that is round-off."""
+    def judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
+        """The point, clipped to the bounds and certified; corrected in twice the precision until that is round-off.
+
+        Parameters
+        ----------
+        face : Face
+        x, w : Array of shape (n,)
+            Its point.
+        """
         # A certificate is worth its cost where the signs are right to about the tolerance.
         if not self._plausible(face.state, x, w):
             return x, w, False
-        best = certify(self.problem, self.problem.clipped(x))
+        best = certified(self.problem, self.problem.clipped(x))
         for _ in range(SIGN_CORRECTIONS):
             if best.relative_residual <= ROUND_OFF:
                 break
             better = face.refined(x)
             if not np.isfinite(better).all():
                 break
-            x = better
-            certificate = certify(self.problem, self.problem.clipped(x))
-            if certificate.relative_residual < best.relative_residual:
-                best = certificate
+            x, before = better, best.relative_residual
+            best = min(best, certified(self.problem, self.problem.clipped(x)), key=lambda one: one.relative_residual)
+            if best.relative_residual > WORTH_MORE * before:
+                break
         if not best.solves(self.tolerance):
             # What is zero in truth, as where nothing touches, may be most of the terms of a row.
             if self.problem.standard:
@@ -255,7 +250,7 @@ class Finish:
             else:
                 zeros = self.problem.settled(best.x, best.w)
             if (zeros != best.x).any():
-                best = certify(self.problem, zeros)
+                best = certified(self.problem, zeros)
         if confirmed(self.problem, best, self.tolerance):
             self.certificate = best
             return best.x, best.w, True
@@ -296,51 +291,3 @@ def below_zero(A: Matrix) -> float:
     if sp.issparse(A):
         return float((abs(A).sum(axis=1) - A.diagonal()).max())
     return float(max(-np.linalg.eigvalsh(A)[0], np.finfo(float).tiny))
-
-
-@define(eq=False)
-class AlongPath:
-    """The finish as the `finish=` of a trace: tried at times, more often the nearer the end.
-
-    Attributes
-    ----------
-    finish : Finish
-    homotopy : KKTHomotopy or TwoVectorHomotopy
-        Of the path.
-    next_lam : float
-        It is tried when the parameter has fallen to this.
-    """
-
-    finish: Finish
-    homotopy: Any
-    next_lam: float
-
-    @classmethod
-    def of(cls, finish: Finish, homotopy: Any) -> AlongPath:
-        """For one path of a homotopy of this package, whose first n unknowns are x."""
-        return cls(finish, homotopy, min(LATEST_START, smallest_parameter(homotopy, LARGEST_PRODUCT)))
-
-    def __call__(self, y: Array, lam: float) -> Array | None:
-        """The end of the path at the certified solution; None to go on."""
-        if lam > self.next_lam:
-            return None
-        self.next_lam = SPACING * lam
-        problem = self.finish.problem
-        x = y[: problem.n]
-        solved = self.finish.settle(problem.states(x, problem.w(x)), ON_PATH, x)
-        end: Array | None = None if solved is None else self.homotopy.at_solution(solved)
-        return end
-
-
-def smallest_parameter(homotopy: Any, product: float) -> float:
-    """The parameter at which the products x z1 (or x y) have fallen to a size, in the median.
-
-    Parameters
-    ----------
-    homotopy : KKTHomotopy or TwoVectorHomotopy
-    product : float
-        The size, in natural units of x times those of w.
-    """
-    products = homotopy.c1 if isinstance(homotopy, KKTHomotopy) else homotopy.c
-    x, w = natural_units(homotopy.problem)
-    return float(homotopy.start()[1] * product * x * w / np.median(products)) if products.size else LATEST_START

@@ -32,6 +32,7 @@ class Ended(Enum):
     SETTLED = "the signs ask for the same set again"
     TRIED = "the set was tried before"
     SINGULAR = "the equations of the face have no finite solution"
+    IRREGULAR = "the equations of the face are singular, and regular ones were asked for"
     CYCLING = "the number of changes does not fall"
     STEPS = "all steps are used up"
 
@@ -46,10 +47,13 @@ class Policy:
         Corrections of the guess, so that steps + 1 faces are solved at most.
     patience : int or None
         Corrections in a row without a new low of the number of changed indices, after which it is given up.
+    regular : bool
+        Whether it ends before the first face whose equations are singular.
     """
 
     steps: int
     patience: int | None = None
+    regular: bool = False
 
 
 @define(eq=False)
@@ -67,14 +71,21 @@ class Tried:
 
     def add(self, state: State) -> bool:
         """Take a set in; whether it is new."""
-        key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
-        if above.any():
-            key += np.packbits(above).tobytes()
+        key = _key(state)
         if key in self._known:
             return False
         self._known.add(key)
         self.last = state
         return True
+
+    def forget(self, state: State) -> None:
+        """Let a set be tried again."""
+        self._known.discard(_key(state))
+
+
+def _key(state: State) -> bytes:
+    key, above = np.packbits(state == BETWEEN).tobytes(), state == UPPER
+    return key + np.packbits(above).tobytes() if above.any() else key
 
 
 @frozen(eq=False)
@@ -125,7 +136,11 @@ def iterate(
             return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
-        face = faces.face(state, shift or 0.0, centre)
+        face = faces.face(state, shift or 0.0, centre, policy.regular)
+        if policy.regular and (face is None or not face.exact):
+            if tried is not None:
+                tried.forget(state)
+            return Iterated(Ended.IRREGULAR, state, x)
         point = None if face is None else face.point(x)
         if face is None or point is None:
             return Iterated(Ended.SINGULAR, state, x)

@@ -59,8 +59,8 @@ def entry_facts(structure: Structure) -> MatrixFacts:
         symmetric=structure.symmetric,
         semidefinite=None,
         z_matrix=largest <= 0.0,
-        negative_diagonal=bool((diagonal < 0.0).any()),
-        nonnegative=least >= 0.0 and bool((diagonal >= 0.0).all()),
+        negative_diagonal=bool(diagonal.min() < 0.0),
+        nonnegative=least >= 0.0 and bool(diagonal.min() >= 0.0),
     )
 
 

@@ -48,14 +48,11 @@ def semidefinite(symmetric: Array) -> bool:
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
-    # The transposes are in LAPACK's order.
-    if (diagonal > 0.0).all() and dpotrf(symmetric.T, lower=1)[1] == 0:
-        return True
-    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
-    scaled = symmetric * scale
-    scaled *= scale[:, None]
-    scaled[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n
-    return bool(dpotrf(scaled.T, lower=1, overwrite_a=1)[1] == 0)
+    # Scaling by D adds to its diagonal what is added here to that of the matrix: a factorisation does not feel D.
+    shifted = symmetric.copy()
+    shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * np.where(diagonal > 0.0, diagonal, 1.0)
+    # The transpose is in LAPACK's order.
+    return bool(dpotrf(shifted.T, lower=1, overwrite_a=1, clean=0)[1] == 0)
 
 
 @frozen(eq=False)
@@ -160,6 +157,8 @@ class Structure:
     @cached_property
     def symmetric(self) -> bool:
         """Whether A = A' exactly."""
+        if "symmetric" in self.problem.known:
+            return True
         if self.problem.sparse:
             return float(abs(self.problem.A - self.transpose).max()) == 0.0
         # A row and a column tell most matrices apart, at a thousandth of the cost of all of them.
@@ -241,7 +240,9 @@ class Structure:
         square[np.diag_indices(self.n)] += diagonal
         return square
 
-    def augmented(self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array) -> Matrix:
+    def augmented(
+        self, factor: float, shift: float, columns: Array, diagonal: Array, z2: Array, w: Array, turn: Array | None
+    ) -> Matrix:
         """``[[factor (A + A') + shift I, -factor A'], [diag(z2) A, diag(w)]]`` times ``diag(columns)`` plus a diagonal.
 
         Of order 2n, for a column scaling and a diagonal of length n on the first half; dense, or sparse as A is.
@@ -250,6 +251,8 @@ class Structure:
         ----------
         factor, shift : float
         columns, diagonal, z2, w : ndarray, shape (n,)
+        turn : ndarray, shape (n,), or None
+            A scaling of the columns of ``-factor A'``.
 
         Returns
         -------
@@ -260,10 +263,11 @@ class Structure:
             scaling = sp.diags_array(columns)
             top = (factor * self.symmetrized + shift * sp.eye_array(n)) @ scaling + sp.diags_array(diagonal)
             bottom = sp.diags_array(z2) @ self.problem.A @ scaling
-            return sp.block_array([[top, -factor * self.transpose], [bottom, sp.diags_array(w)]], format="csc")
+            turned = self.transpose if turn is None else self.transpose @ sp.diags_array(turn)
+            return sp.block_array([[top, -factor * turned], [bottom, sp.diags_array(w)]], format="csc")
         whole = np.empty((2 * n, 2 * n), order="F")
         whole[:n, :n] = factor * self.symmetrized * columns
-        whole[:n, n:] = -factor * self.transpose
+        whole[:n, n:] = -factor * (self.transpose if turn is None else self.transpose * turn)
         whole[n:, :n] = z2[:, None] * self.problem.A * columns
         whole[n:, n:] = np.diag(w)
         first = np.arange(n)

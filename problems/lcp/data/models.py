@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -33,7 +36,13 @@ def read_model(file: str) -> Program:
         raise ImportError("expected highspy for this format, found none; pip install pseudoarclength[mps]") from None
     solver = highspy.Highs()
     solver.setOptionValue("output_flag", False)
-    if solver.readModel(file) == highspy.HighsStatus.kError:
+    with TemporaryDirectory() as folder:
+        # HiGHS goes by the end of the name, and knows the quadratic part of MPS files but not their other name.
+        known = file
+        if file.lower().endswith(".qps"):
+            known = str(shutil.copy(file, Path(folder) / "model.mps"))
+        read = solver.readModel(known)
+    if read == highspy.HighsStatus.kError:
         raise ValueError("expected a model that HiGHS reads, found another")
     model = solver.getModel()
     lp = model.lp_

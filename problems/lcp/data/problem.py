@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from functools import cached_property
 from typing import Any
 
@@ -80,7 +81,7 @@ class MixedLCP:
     upper: Array = field(default=None)
     primal: int = field(default=0, kw_only=True, repr=False, validator=integer(0))
     known: dict[str, Any] = field(factory=dict, init=False, repr=False)
-    """What was found out about A and is asked for again, by name (`data.scaling.units`)."""
+    """What was found out and is asked for again, by name (`data.scaling.units`, `proof.verdict.exact_nearby`)."""
 
     @q.validator
     def _same_order(self, attribute: Attribute[Any], q: Array) -> None:
@@ -167,6 +168,8 @@ class MixedLCP:
         ----------
         x, w : ndarray, shape (n,)
         """
+        if self.standard:
+            return active_state(x > w)
         moved = x - w
         return _stated(moved <= self.lower, moved >= self.upper)
 
@@ -269,6 +272,9 @@ def _stated(low: NDArray[np.bool_], high: NDArray[np.bool_]) -> State:
     return state
 
 
+_ZERO, _INFINITY = struct.pack("d", 0.0), struct.pack("d", math.inf)
+
+
 @frozen(eq=False)
 class LCP(MixedLCP):
     """LCP(q, A): find x with x >= 0, w = A x + q >= 0 and x_i w_i = 0 for all i; a `MixedLCP` without upper bounds.
@@ -291,8 +297,8 @@ class LCP(MixedLCP):
     """
 
     # Views of one number each: an LCP carries no bounds.
-    lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(0.0, self.q), takes_self=True))
-    upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(math.inf, self.q), takes_self=True))
+    lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_ZERO, self.q), takes_self=True))
+    upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_INFINITY, self.q), takes_self=True))
 
     def __attrs_post_init__(self) -> None:
         """Nothing to check."""
@@ -312,12 +318,13 @@ class LCP(MixedLCP):
         q : array_like, shape (n,)
         """
         other = LCP(self.A, q)
-        other.known.update(self.known)
+        if "units" in self.known:
+            other.known["units"] = self.known["units"]
         return other
 
 
-def _all(value: float, q: Array) -> Array:
-    return np.broadcast_to(np.array(value), q.shape)
+def _all(value: bytes, q: Array) -> Array:
+    return np.ndarray(q.shape, buffer=value, strides=(0,))
 
 
 def require_lcp(problem: Any) -> None:

@@ -155,6 +155,8 @@ def from_qp(
     if P.shape[0] != n:
         raise ValueError(f"P: expected shape {(n, n)}, one row a number of c, found {P.shape}")
     _check_symmetric(P)
+    if not sp.issparse(P):
+        P.flags.writeable = False  # so that the problem need not copy it again
     if (G is None) != (h is None and rows_lower is None):
         raise ValueError("G: expected rows and one side of them, h or rows_lower, or none of these")
     if (A_eq is None) != (b_eq is None):
@@ -184,6 +186,8 @@ def from_qp(
         A, q, np.concatenate([x_low, np.full(free, -np.inf), np.zeros(signed), -none, low[both]]),
         np.concatenate([x_high, np.full(free + signed, np.inf), none, high[both]]), primal=n,
     )  # fmt: skip
+    if problem.n == n:
+        problem.known["symmetric"] = True
     return Program(P, c, problem, (n, n + B.shape[0]), equal, above, below, both, m)
 
 

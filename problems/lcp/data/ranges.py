@@ -109,9 +109,11 @@ def ranges(problem: MixedLCP) -> Ranges | None:
     ----------
     problem : MixedLCP
     """
+    if problem.standard:
+        return None
     free = np.isinf(problem.lower) & np.isinf(problem.upper)
     boxed = np.flatnonzero(np.isfinite(problem.lower) & np.isfinite(problem.upper))
-    if problem.standard or not boxed.size or not free.any():
+    if not boxed.size or not free.any():
         return None
     A = problem.A
     mu, up = _only(A[boxed])

@@ -45,10 +45,13 @@ NEGLIGIBLE = -27.0
 the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
 
 LEVELLED = 16.0
-"""Where the largest entries of all rows and columns are within this factor of another, active sets of an LCP are tried
-before it is put into units of its own, and a problem with bounds stays as it is if they are within it of 1 as well.
-Finding units and changing to them takes longer than solving it then (with bounds, n = 1000: 0.25 of 0.45 s; monotone
-LCPs, n = 60: 0.5 of 1.3 ms)."""
+"""Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
+stays as it is. Finding units and changing to them takes longer than solving it then (n = 1000: 0.25 of 0.45 s)."""
+
+ALIKE = 256.0
+"""Where they are within this factor of another, active sets and pivots are tried on an LCP as it is. Finding units
+takes longer than that (monotone LCPs, n = 60: 0.5 of 1.3 ms), and two digits more or fewer decide nothing there; arches
+of five stones have 50."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
@@ -92,20 +95,6 @@ class Scaled:
         return not self.columns.any() and not np.ptp(self.rows).any()
 
 
-def without_factor(problem: MixedLCP) -> Scaled | None:
-    """LCP(s q, s A) with the s at which the largest entry of A is from 1 to 2; None where s = 1.
-
-    Whatever common factor a problem is given with, the same one is solved, as far as the factor rounds nothing.
-    """
-    largest = np.abs(problem.A.data if problem.sparse else problem.A).max(initial=0.0)
-    power = 1 - int(np.frexp(largest)[1])
-    if power == 0 or largest == 0.0:
-        return None
-    rows, columns = np.full(problem.n, power), np.zeros(problem.n, dtype=np.int64)
-    scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows), primal=problem.primal)
-    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
-
-
 def balanced(problem: MixedLCP) -> Scaled | None:
     """The problem in units of its own, or None where these are the units in which it is given.
 
@@ -114,7 +103,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     Curtis and Reid, "On the Automatic Scaling of Matrices for Gaussian Elimination", J. Inst. Maths Applics 10, 1972;
     Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices", RAL-TR-2001-034.
     """
-    if not problem.standard and level(problem, LEVELLED):
+    if not problem.standard and level(problem):
         return None
     rows, columns = units(problem)
     if not rows.any() and not columns.any():
@@ -134,23 +123,51 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
-def level(problem: MixedLCP, near_one: float = np.inf) -> bool:
-    """Whether the largest entries of rows and columns are so alike that other units would change next to nothing.
+def level(problem: MixedLCP) -> bool:
+    """Whether the largest entries of rows and columns are so alike that other units would change next to nothing."""
+    least, most = _range(problem)
+    return most <= LEVELLED * least and 1.0 / LEVELLED <= most <= LEVELLED
+
+
+def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
+    """LCP(s q, s A) with s = 1, or a power of two where entries are extreme; and whether active sets can begin with it.
+
+    They can where the largest entries of rows and columns are alike, but for that factor, and it rounds nothing. Within
+    the range of products a factor that is a power of two changes nothing of what active sets and pivots do.
 
     Parameters
     ----------
     problem : MixedLCP
-    near_one : float
-        The largest of all is to be within this factor of 1.
+        Without bounds.
+
+    Returns
+    -------
+    Scaled or None
+        None where s = 1.
+    bool
     """
+    least, most = _range(problem)
+    if not 0.0 < most <= ALIKE * least:
+        return None, False
+    if 1.0 / EXTREME <= most <= EXTREME:
+        return None, True
+    rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
+    scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows), primal=problem.primal)
+    exact = _smallest(problem, rows, columns) > SMALLEST
+    return (Scaled(scaled, rows, columns, exact), True) if exact else (None, False)
+
+
+def _range(problem: MixedLCP) -> tuple[float, float]:
+    """The least and the largest of the largest entries of rows and columns."""
     if problem.sparse:
         entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
         np.maximum.at(both, problem.n + problem.A.indices, entries)
     else:
-        size = np.abs(problem.A)
-        both = np.concatenate([size.max(axis=axis) for axis in (0, 1)])
-    return bool(0.0 < both.max() <= LEVELLED * both.min() and 1.0 / near_one <= both.max() <= near_one)
+        # No array of the absolute values: at n = 300 that is most of the time.
+        A = problem.A
+        both = np.concatenate([np.maximum(A.max(axis=k), -A.min(axis=k)) for k in (0, 1)])
+    return float(both.min()), float(both.max())
 
 
 def extreme(problem: MixedLCP) -> bool:
@@ -277,8 +294,12 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     n = pattern.shape[0]
     if not sp.issparse(pattern) and pattern.all():
         return np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.intp)
-    entries = sp.coo_array(pattern)
-    graph = sp.coo_array((entries.data, (entries.row, n + entries.col)), shape=(2 * n, 2 * n))
+    if sp.issparse(pattern):
+        counts, columns = np.diff(pattern.indptr), pattern.indices
+    else:
+        counts, columns = np.count_nonzero(pattern, axis=1), pattern.nonzero()[1]
+    starts = np.concatenate([[0], np.cumsum(counts), np.full(n, columns.size)])
+    graph = sp.csr_array((np.ones(columns.size), n + columns, starts), shape=(2 * n, 2 * n))
     labels = connected_components(graph, directed=False)[1]
     return labels[:n], labels[n:]
 

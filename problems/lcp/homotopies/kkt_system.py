@@ -1,4 +1,4 @@
-"""The linearisation of the KKT homotopy: 3n + 1 equations, reduced to n + 1, or to 2n + 1 where that loses digits."""
+"""The linearisation of the KKT homotopy: reduced to n + 1 equations, or to 2n + 1 where that loses digits."""
 
 from __future__ import annotations
 
@@ -8,7 +8,16 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.homotopies.cores import Full, Pairs, core_system, larger_eliminated, second_eliminated
+from problems.lcp.homotopies.cores import Full, Pairs, core_system, second_eliminated
+from problems.lcp.homotopies.rows import RowPairs, Rows, row_pairs
+from problems.lcp.homotopies.sides import BoundPairs
+
+LEAST_GIVE = 1e-9
+"""How far a row with bounds gives way at least to its multiplier in the core of order n + 1, in natural units.
+
+At lambda = 0 a row that is active does not, and could not be eliminated. What this adds, and what is lost to rounding,
+1e-7, the corrections in the full system take away.
+"""
 
 
 @frozen(eq=False)
@@ -19,35 +28,58 @@ class KKTSystem:
     ----------
     structure : Structure
         Of A.
+    rows : Rows
     lam : float
-    x, z1, z2, w : Array
-        The point, w = A x + q + lam rho; each of shape (n,), as all that follow.
-    c1, c2, rho : Array
-        The products z1 x and z2 w at the start, and the part of w that fades.
+    gap, z1, c1 : Array
+        The distances of x from its bounds, the multipliers of these, and their products at the start.
+    factor, rest, c2 : Array
+        Of the rows ``factor (dw + dt) + rest dz2 - c2 l`` with w = A x + q + lam rho; for an LCP z2, w and the products
+        at the start. Of shape (n,), as all that follow but the next.
+    z2 : Array
+        The multipliers of the rows.
+    t, c3 : Array
+        In boxes what w is below its positive part, and the products at the start.
+    rho : Array
+        The part of w that fades.
     column : Array
         dH1/dlam.
+    sizes : tuple of Array
+        In what changes of x and z2 are large or small.
+    give : float
+        A unit of w for one of x.
     """
 
     structure: Structure
+    rows: Rows
     lam: float
-    x: Array
+    gap: Array
     z1: Array
-    z2: Array
-    w: Array
     c1: Array
+    factor: Array
+    rest: Array
     c2: Array
+    z2: Array
+    t: Array
+    c3: Array
     rho: Array
     column: Array
+    sizes: tuple[Array, Array]
+    give: float
 
     def apply(self, v: Array) -> Array:
-        """H' v, shape (3n,), for v of shape (3n + 1,): two products with A."""
-        n, mu, l = self.x.size, 1.0 - self.lam, v[-1]
-        dx, d1, d2 = v[:n], v[n : 2 * n], v[2 * n : -1]
+        """H' v, one shorter than v: two products with A."""
+        rows, sides, mu, l = self.rows, self.rows.sides, 1.0 - self.lam, v[-1]
+        dx, d1, d2, d3 = rows.split(v[:-1])
         slope = self.structure.problem.A @ dx
-        image = np.empty(3 * n)
-        image[:n] = mu * (slope + self.structure.transpose @ (dx - d2) - d1) + self.lam * dx + self.column * l
-        image[n : 2 * n] = self.z1 * dx + self.x * d1 - self.c1 * l
-        image[2 * n :] = self.z2 * (slope + self.rho * l) + self.w * d2 - self.c2 * l
+        image = np.empty(v.size - 1)
+        first, forces, second, third = rows.split(image)
+        pull = slope + self.structure.transpose @ (dx - d2) - sides.force(d1)
+        first[:] = mu * pull + self.lam * dx + self.column * l
+        forces[:] = self.z1 * sides.pull(dx) + self.gap * d1 - self.c1 * l
+        second[:] = self.factor * rows.raised(slope + self.rho * l, d3) + self.rest * d2 - self.c2 * l
+        if third.size:
+            boxed = rows.boxed
+            third[:] = (rows.width - self.z2[boxed]) * d3 - self.t * d2[boxed] - self.c3 * l
         return image
 
     def hessian(self, v: Array) -> Array:
@@ -55,16 +87,22 @@ class KKTSystem:
         product: Array = (1.0 - self.lam) * (self.structure.symmetrized @ v) + self.lam * v
         return product
 
+    def pairs(self) -> RowPairs:
+        """The rows, once those of boxes are solved."""
+        return row_pairs(self.rows, self.factor, self.rest, self.c2, self.z2, self.t, self.c3)
+
 
 @frozen(eq=False)
 class Reduced:
-    """Order n + 1: both multipliers eliminated, which leaves a symmetric matrix for dx.
+    """Order n + 1: all multipliers eliminated, which leaves a symmetric matrix for dx.
 
-    ``G = (1 - lam) [A + A' + diag(z1/x) + A' diag(z2/w) A] + lam I``; det H' = det(core) prod(x) prod(w).
+    ``G = (1 - lam) [A + A' + diag(z1/gap) + A' diag(D) A] + lam I``, where D = z2/w for a row with one bound,
+    1/(s/z2 + t/(u - l - z2)) in a box, and the inverse of what gives way where there is no bound.
     """
 
     system: KKTSystem
-    first: Pairs
+    first: Pairs | BoundPairs
+    pairs: RowPairs
     second: Pairs
     border: Array
     core: BorderedSystem
@@ -72,59 +110,73 @@ class Reduced:
     @property
     def sign(self) -> int:
         """Sign of the determinant of the full bordered matrix."""
-        return self.first.sign * self.second.sign * self.core.sign
+        return self.first.sign * self.pairs.sign * self.second.sign * self.core.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The full solution, shape (3n + 1,)."""
-        s, first, second = self.system, self.first, self.second
-        n, mu = s.x.size, 1.0 - s.lam
-        r2, r3 = r[n : 2 * n], r[2 * n :]
-        t2, t3 = first.f * r2, second.f * r3
-        top = r[:n] + mu * (t2 + s.structure.transpose @ t3)
-        k = self.core.solve(top, rho - float(self.border[n : 2 * n] @ t2) - float(self.border[2 * n : -1] @ t3))
-        z = np.empty(3 * n + 1)
-        z[:n], z[-1] = k[:n], k[n]
-        z[n : 2 * n] = first.of(k[:n], r2, k[n])[1]
-        z[2 * n : -1] = second.of(s.structure.problem.A @ k[:n] + s.rho * k[n], r3, k[n])[1]
+        """The full solution."""
+        s, pairs, rows = self.system, self.pairs, self.system.rows
+        mu, n = 1.0 - s.lam, s.column.size
+        r1, r2, r3, r4 = rows.split(r)
+        _, b1, b2, b3 = rows.split(self.border[:-1])
+        known = pairs.right(r3, r4)
+        _, force, d1 = self.first.known(r2)
+        d2, d3 = pairs.of(self.second.f * known, r4, 0.0)
+        top = r1 + mu * (force + s.structure.transpose @ d2)
+        k = self.core.solve(top, rho - float(b1 @ d1) - float(b2 @ d2) - float(b3 @ d3))
+        z = np.empty(r.size + 1)
+        dx, forces, second, third = rows.split(z[:-1])
+        dx[:], z[-1] = k[:n], k[n]
+        forces[:] = self.first.of(k[:n], r2, k[n])[1]
+        inner = self.second.of(s.structure.problem.A @ k[:n] + s.rho * k[n], known, k[n])[1]
+        second[:], third[:] = pairs.of(inner, r4, k[n])
         return z
 
 
 @frozen(eq=False)
 class Augmented:
-    """Order 2n + 1: of each pair (x_i, z1_i) the better pivot eliminated, z2 kept; nothing is squared."""
+    """Order 2n + 1: of each distance and its force the better pivot eliminated, z2 kept; nothing is squared."""
 
     system: KKTSystem
-    pairs: Pairs
+    first: Pairs | BoundPairs
+    pairs: RowPairs
     border: Array
     core: BorderedSystem
 
     @property
     def sign(self) -> int:
         """Sign of the determinant of the full bordered matrix."""
-        return self.pairs.sign * self.core.sign
+        return self.first.sign * self.pairs.sign * self.core.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The full solution, shape (3n + 1,)."""
-        s, pairs, n = self.system, self.pairs, self.system.x.size
-        r2 = r[n : 2 * n]
-        v, p = pairs.e * r2, pairs.f * r2
-        top = r[:n] - s.hessian(v) + (1.0 - s.lam) * p
-        bottom = r[2 * n :] - s.z2 * (s.structure.problem.A @ v)
-        known = float(self.border[:n] @ v) + float(self.border[n : 2 * n] @ p)
+        """The full solution."""
+        s, pairs, rows, n = self.system, self.pairs, self.system.rows, self.system.column.size
+        mu = 1.0 - s.lam
+        r1, r2, r3, r4 = rows.split(r)
+        bx, b1, b2, b3 = rows.split(self.border[:-1])
+        v, force, d1 = self.first.known(r2)
+        top = r1 - s.hessian(v) + mu * force
+        bottom = pairs.right(r3, r4) - s.factor * (s.structure.problem.A @ v)
+        known = float(bx @ v) + float(b1 @ d1)
+        if r4.size:
+            d2, d3 = pairs.of(np.zeros(n), r4, 0.0)
+            top = top + mu * (s.structure.transpose @ d2)
+            known += float(b2 @ d2) + float(b3 @ d3)
         k = self.core.solve(np.concatenate([top, bottom]), rho - known)
-        z = np.empty(3 * n + 1)
-        z[:n], z[n : 2 * n] = pairs.of(k[:n], r2, k[-1])
-        z[2 * n :] = k[n:]
+        z = np.empty(r.size + 1)
+        dx, forces, second, third = rows.split(z[:-1])
+        dx[:], forces[:] = self.first.of(k[:n], r2, k[-1])
+        second[:], third[:] = pairs.of(k[n:-1], r4, k[-1])
+        z[-1] = k[-1]
         return z
 
 
 def factor_kkt(system: KKTSystem, border: Array, refine: bool = True) -> BorderedSystem:
-    """The bordered system of order 3n + 1 at a point, from a factorisation of order n + 1 (or 2n + 1).
+    """The bordered system at a point, of order 3n + 1 for an LCP, from a factorisation of order n + 1 (or 2n + 1).
 
     Parameters
     ----------
     system : KKTSystem
-    border : Array of shape (3n + 1,)
+    border : Array
     refine : bool
         Whether solutions are corrected in full. Without it they are those of the core of order n + 1, where there is
         one.
@@ -134,41 +186,54 @@ def factor_kkt(system: KKTSystem, border: Array, refine: bool = True) -> Bordere
     SingularError
         If no core has a factorisation.
     """
-    full = Full(system.apply, border, (system.x, system.z1, system.z2), (system.w,))
+    x, z2 = system.sizes
+    full = Full(system.apply, border, (x, system.z1, z2, system.t), (system.rest,))
     quick = _reduced(system, border) if system.structure.squarable else None
     return core_system(full, quick, lambda: _augmented(system, border), refine)
 
 
 def _reduced(system: KKTSystem, border: Array) -> Reduced | None:
     """The reduced form; None where a pair is so near zero that it does not exist, or is singular."""
-    s, n, mu = system, system.x.size, 1.0 - system.lam
+    s, n, mu = system, system.column.size, 1.0 - system.lam
     transpose = s.structure.transpose
     with np.errstate(all="ignore"):
-        first, second = second_eliminated(s.z1, s.x, s.c1), second_eliminated(s.z2, s.w, s.c2)
-        fade = second.b * s.rho + second.f * s.c2
-        b1, b2 = border[n : 2 * n], border[2 * n : -1]
-        column = s.column - mu * (first.f * s.c1 + transpose @ fade)
+        first, pairs = s.rows.sides.eliminated(s.z1, s.gap, s.c1, larger=False), s.pairs()
+        rest = pairs.rest
+        if not s.structure.problem.standard:
+            least = LEAST_GIVE * s.give * pairs.factor
+            rest = np.where(np.abs(rest) < np.abs(least), least, rest)
+        second = second_eliminated(pairs.factor, rest, pairs.c)
+        d2, d3 = pairs.of(second.b * s.rho + second.f * pairs.c, np.zeros_like(s.c3), 1.0)
+        _, force, d1 = first.known(s.c1)
+        bx, b1, b2, b3 = s.rows.split(border[:-1])
+        column = s.column - mu * (force + transpose @ d2)
         row = np.empty(n + 1)
-        row[:n] = border[:n] + first.b * b1 + transpose @ (second.b * b2)
-        row[n] = border[-1] + float(b1 @ (first.f * s.c1)) + float(b2 @ fade)
+        row[:n] = bx + first.row(b1) + transpose @ (second.b * pairs.row(b2, b3))
+        row[n] = border[-1] + float(b1 @ d1) + float(b2 @ d2) + float(b3 @ d3)
+        weights = -second.b if pairs.turn is None else -pairs.turn * second.b
         try:
-            matrix = s.structure.normal(mu, -second.b, s.lam - mu * first.b)
+            matrix = s.structure.normal(mu, weights, s.lam - mu * first.b)
             if s.structure.semidefinite and not s.structure.problem.sparse:
                 matrix = Symmetric(matrix, definite=True)
-            return Reduced(s, first, second, border, factor_bordered(matrix, column, row))
+            return Reduced(s, first, pairs, second, border, factor_bordered(matrix, column, row))
         except SingularError:
             return None
 
 
 def _augmented(system: KKTSystem, border: Array) -> Augmented:
-    s, n, mu = system, system.x.size, 1.0 - system.lam
+    s, n, mu = system, system.column.size, 1.0 - system.lam
     with np.errstate(all="ignore"):
-        pairs = larger_eliminated(s.z1, s.x, s.c1)
-        v, p = pairs.e * s.c1, pairs.f * s.c1
-        top = s.column + s.hessian(v) - mu * p
-        bottom = s.z2 * (s.rho + s.structure.problem.A @ v) - s.c2
-        bx, b1 = border[:n], border[n : 2 * n]
-        corner = border[-1] + float(bx @ v) + float(b1 @ p)
-        row = np.concatenate([bx * pairs.a + b1 * pairs.b, border[2 * n : -1], [corner]])
-        matrix = s.structure.augmented(mu, s.lam, pairs.a, -mu * pairs.b, s.z2, s.w)
-        return Augmented(s, pairs, border, factor_bordered(matrix, np.concatenate([top, bottom]), row))
+        first, pairs = s.rows.sides.eliminated(s.z1, s.gap, s.c1, larger=True), s.pairs()
+        v, force, d1 = first.known(s.c1)
+        top = s.column + s.hessian(v) - mu * force
+        bottom = s.factor * (s.rho + s.structure.problem.A @ v) - pairs.c
+        bx, b1, b2, b3 = s.rows.split(border[:-1])
+        corner = border[-1] + float(bx @ v) + float(b1 @ d1)
+        if s.t.size:
+            d2, d3 = pairs.of(np.zeros(n), np.zeros_like(s.c3), 1.0)
+            top -= mu * (s.structure.transpose @ d2)
+            corner += float(b2 @ d2) + float(b3 @ d3)
+        row = np.concatenate([bx * first.a + first.row(b1), pairs.row(b2, b3), [corner]])
+        matrix = s.structure.augmented(mu, s.lam, first.a, -mu * first.b, s.factor, pairs.rest, pairs.turn)
+        core = factor_bordered(matrix, np.concatenate([top, bottom]), row)
+        return Augmented(s, first, pairs, border, core)

@@ -11,7 +11,7 @@ from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.ranges import Ranges
-from problems.lcp.homotopies.cores import Full, Pairs, core_system, larger_eliminated, second_eliminated
+from problems.lcp.homotopies.cores import Full, Pairs, core_system
 from problems.lcp.homotopies.sides import BoundPairs, Sides
 
 
@@ -125,7 +125,7 @@ def factor_pairs(system: PairSystem, border: Array, refine: bool = True) -> Bord
     full = Full(system.apply, border, (system.sizes, system.y))
 
     def robust() -> BorderedSystem:
-        return _reduced(system, border, _pairs(system, larger=True))
+        return _reduced(system, border, system.sides.eliminated(system.y, system.gap, system.c, larger=True))
 
     return core_system(full, _definite(system, border), robust, refine)
 
@@ -141,15 +141,10 @@ def _definite(system: PairSystem, border: Array) -> ReducedPairs | None:
         return None
     with np.errstate(all="ignore"):
         try:
-            return _reduced(system, border, _pairs(system, larger=False), definite=True)
+            pairs = system.sides.eliminated(system.y, system.gap, system.c, larger=False)
+            return _reduced(system, border, pairs, definite=True)
         except SingularError:
             return None
-
-
-def _pairs(system: PairSystem, larger: bool) -> Pairs | BoundPairs:
-    if system.structure.problem.standard:
-        return (larger_eliminated if larger else second_eliminated)(system.y, system.gap, system.c)
-    return system.sides.eliminated(system.y, system.gap, system.c, larger)
 
 
 @frozen(eq=False)

@@ -37,37 +37,48 @@ def exact_end(problem: MixedLCP, x: Array) -> str:
 def kkt_form(homotopy: Any) -> Quadratic:
     """``F + lam (x - x0 - F)``, ``z1 x - lam c1``, ``z2 (A x + q + lam rho) - lam c2``, F the stationarity.
 
+    With bounds x stands for the distances from them, and ``(width - z2) t - lam c3`` is added for boxes; the row of an
+    index without bounds is ``A x + q + lam (rho - give z0) + (lam) (give z2)``.
+
     Parameters
     ----------
     homotopy : KKTHomotopy
     """
-    n, q = homotopy.n, homotopy.problem.q
-    A = _dense(homotopy.problem.A)
-    eye, none = np.eye(n), np.zeros((n, n))
-    one = np.ones((n, 1))
-
-    def rows(x: Array, z1: Array, z2: Array, lam: Array) -> Array:
-        return np.hstack([x, z1, z2, lam])
-
-    def stacked(*blocks: Array) -> Array:
-        return np.vstack(blocks)
-
-    nothing = 0.0 * one
-    only_x, only_z1 = rows(eye, none, none, nothing), rows(none, eye, none, nothing)
-    only_z2 = rows(none, none, eye, nothing)
-    c1, c2 = (rows(none, none, none, -c[:, None]) for c in (homotopy.c1, homotopy.c2))
-    F = rows(A + A.T, -eye, -A.T, nothing)
-    sizes = rows(np.abs(A) + np.abs(A.T), eye, np.abs(A.T), nothing)
-    w = rows(A, none, none, homotopy.rho[:, None])
-    zeros, x0 = np.zeros(n), homotopy.origin.x0
+    problem, rows, n, N = homotopy.problem, homotopy.rows, homotopy.n, homotopy.rows.size
+    A, q, sides = _dense(problem.A), problem.q, rows.sides
+    # Each unknown as a row of coefficients of (y, lam), and lam itself.
+    whole = np.eye(N + 1)
+    x, z1, z2, t = (whole[place] for place in homotopy.places)
+    lam, pull = whole[-1:], sides.sign[:, None] * np.eye(n)[sides.index]
+    end = np.broadcast_to(rows.end, n)
+    F = A @ x + A.T @ (x - z2) - pull.T @ z1
+    sizes = np.abs(A) @ x + np.abs(A.T) @ (x + z2) + np.abs(pull.T) @ z1
+    constant = q - A.T @ end
+    # The sum of A'end has n terms, the error that goes with `sizes` is that of eight.
+    terms = np.abs(q) + (np.abs(A.T) @ np.abs(end)) * (1.0 + n / 4.0)
+    raised = A @ x + homotopy.rho[:, None] * lam
+    raised[rows.boxed] += t
+    free, width = rows.free[:, None], rows.width
+    row = np.where(free, raised - (homotopy.give * homotopy.origin.z2)[:, None] * lam, -homotopy.c2[:, None] * lam)
+    none = np.zeros(sides.index.size)
+    bounds = none if problem.standard else np.concatenate([-problem.lower[sides.low], problem.upper[sides.high]])
+    x0, c1, c3 = homotopy.origin.x0, homotopy.c1[:, None] * lam, homotopy.c3[:, None] * lam
     return Quadratic(
-        plain=Affine(np.concatenate([q, zeros, zeros]), stacked(F, c1, c2), stacked(sizes, np.abs(c1), np.abs(c2))),
-        first=Affine(np.zeros(3 * n), stacked(rows(none, none, none, one), only_z1, only_z2)),
+        plain=Affine(
+            np.concatenate([constant, none, np.where(rows.free, q, 0.0), 0.0 * width]),
+            np.vstack([F, -c1, row, -c3]),
+            np.vstack([sizes, np.abs(c1), np.abs(row), np.abs(c3)]),
+            np.concatenate([terms, none, np.where(rows.free, np.abs(q), 0.0), 0.0 * width]),
+        ),
+        first=Affine(
+            np.concatenate([np.zeros(n), none, np.zeros(n), width]),
+            np.vstack([np.repeat(lam, n, axis=0), z1, np.where(free, lam, z2), -z2[rows.boxed]]),
+        ),
         second=Affine(
-            np.concatenate([-x0 - q, zeros, q]),
-            stacked(only_x - F, only_x, w),
-            stacked(only_x + sizes, only_x, np.abs(w)),
-            np.concatenate([np.abs(x0) + np.abs(q), zeros, np.abs(q)]),
+            np.concatenate([-x0 - constant, bounds, np.where(rows.free, 0.0, q), 0.0 * width]),
+            np.vstack([x - F, pull @ x, np.where(free, homotopy.give * z2, raised), t]),
+            np.vstack([x + sizes, np.abs(pull) @ x, np.abs(np.where(free, homotopy.give * z2, raised)), t]),
+            np.concatenate([np.abs(x0) + terms, np.abs(bounds), np.where(rows.free, 0.0, np.abs(q)), 0.0 * width]),
         ),
     )
 

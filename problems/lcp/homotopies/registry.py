@@ -8,10 +8,9 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.kkt import KKTHomotopy
 from problems.lcp.homotopies.starts import Start
-from problems.lcp.homotopies.stationarity import stationary_homotopy
 from problems.lcp.homotopies.two_vector import (
     KojimaMegiddoMizunoHomotopy,
     TwoVectorHomotopy,
@@ -55,7 +54,7 @@ class Registered:
     bounds: bool = False
 
     def from_x0(self, problem: MixedLCP, x0: Array | None, structure: Structure) -> LCPHomotopy:
-        """The homotopy from x0, or its own start; that of "kkt" with bounds is one in (x, z).
+        """The homotopy from x0, or its own start.
 
         Parameters
         ----------
@@ -64,8 +63,6 @@ class Registered:
         structure : Structure
             Of the problem.
         """
-        if self.make is KKTHomotopy and not problem.standard:
-            return stationary_homotopy(problem, x0)
         return self.make(problem, x0, structure=structure)
 
     def at(self, problem: MixedLCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:
@@ -81,9 +78,7 @@ class Registered:
         refine : bool
             Whether its bordered solves are corrected to round-off.
         """
-        if self.make is KKTHomotopy and not isinstance(problem, LCP):
-            return stationary_homotopy(problem, start.x0)
-        if self.make is KKTHomotopy and isinstance(problem, LCP):
+        if self.make is KKTHomotopy:
             return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=structure, refine=refine)
         return evolve(self.make(problem, start.x0, start.w0, structure=structure), refine=refine)
 

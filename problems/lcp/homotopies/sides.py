@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP, MixedLCP
-from problems.lcp.homotopies.cores import parity
+from problems.lcp.homotopies.cores import Pairs, larger_eliminated, parity, second_eliminated
 
 
 @frozen(eq=False, slots=False)
@@ -81,8 +81,10 @@ class Sides:
         distance = np.minimum(x - self.problem.lower, self.problem.upper - x)
         return np.where(np.isfinite(distance), distance, np.maximum(np.abs(x), unit))
 
-    def eliminated(self, y: Array, gap: Array, c: Array, larger: bool) -> BoundPairs:
+    def eliminated(self, y: Array, gap: Array, c: Array, larger: bool) -> Pairs | BoundPairs:
         """Keep dx of each index, or, where `larger`, the change of a force that is larger than its distance."""
+        if self.problem.standard:
+            return (larger_eliminated if larger else second_eliminated)(y, gap, c)
         n = self.problem.n
         with np.errstate(all="ignore"):
             ratio = np.abs(y / gap)

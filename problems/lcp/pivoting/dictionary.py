@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 from scipy.linalg.blas import dger
 from scipy.linalg.lapack import dgesv
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 
 Indices = NDArray[np.intp]
 
 ZERO = 1e-10
 """An entry below this, relative to its column's largest, counts as rounding: a pivot on it loses the path."""
+
+AT_FIRST = 8
+"""Columns by which tied rows are compared first; twice as many next."""
 
 TIE = 1e-11
 """What a basic variable may be above zero, relative to the largest constant, where it counts as zero."""
@@ -50,8 +53,8 @@ class Dictionary:
 
     def column(self, variable: int) -> int | None:
         """Where a variable is among the nonbasic ones; None if it is not."""
-        found = np.flatnonzero(self.nonbasic == variable)
-        return int(found[0]) if found.size else None
+        place = int((self.nonbasic == variable).argmax())
+        return place if self.nonbasic[place] == variable else None
 
     def pivot(self, row: int, column: int) -> int:
         """Exchange a basic variable for a nonbasic one; the variable that has left the basis.
@@ -110,18 +113,20 @@ class Dictionary:
         int or None
             None if no row falls: the variable grows along a ray.
         """
-        slopes, constants = -self.table[:, column], self.table[:, -1]
-        falling = np.flatnonzero(slopes > ZERO * np.abs(slopes).max(initial=0.0))
+        slopes = self.table[:, column]
+        falling = (slopes < -ZERO * largest(slopes)).nonzero()[0]
         if falling.size == 0:
             return None
-        values, rates = np.maximum(constants[falling], 0.0), slopes[falling]
-        zero = values - (values / rates).min() * rates <= self._tie()
+        values, rates = np.maximum(self.table[:, -1][falling], 0.0), -slopes[falling]
+        ratios = values / rates
+        zero = (values - ratios.min() * rates <= self._tie()).nonzero()[0]
         tied = falling[zero]
-        if tied.size > 1:
-            for row in tied:
-                if int(self.basic[row]) in preferred:
-                    return int(row)
-        return self._least(tied, slopes[tied])
+        if tied.size == 1:
+            return int(tied[0])
+        for row in tied:
+            if int(self.basic[row]) in preferred:
+                return int(row)
+        return self._least(tied, rates[zero])
 
     def rebuilt(self) -> float:
         """Compute the table afresh from the first one; the least constant, relative to the largest; NaN if singular.
@@ -148,7 +153,7 @@ class Dictionary:
         return least
 
     def _size(self) -> float:
-        return float(np.abs(self.table[:, -1]).max(initial=0.0))
+        return largest(self.table[:, -1])
 
     def _tie(self) -> float:
         return TIE * self._size()
@@ -161,16 +166,31 @@ class Dictionary:
         place = np.full(int(max(self.rows.max(), self.columns.max())) + 1, -1)
         place[self.nonbasic] = np.arange(self.nonbasic.size)
         places = place[self.rows]
-        shares = np.where(
-            places < 0, self.basic[tied][:, None] == self.rows, -self.table[tied][:, np.maximum(places, 0)]
-        )
-        ratios = shares / scale[:, None]
-        while tied.size > 1:
-            least = ratios.min(axis=0)
-            limit = least + TIE * np.maximum(1.0, np.abs(ratios).max(axis=0))
-            told = np.flatnonzero((ratios > limit).any(axis=0))
-            if told.size == 0:
+        columns = np.append((places >= 0).nonzero()[0], places.size)
+        place[self.rows] = np.arange(places.size)
+        place[self.columns] = -1
+        power = place[self.basic[tied]]
+        at, width = 0, AT_FIRST
+        while at < columns.size:
+            # Some columns at a time: the first few tell most rows apart.
+            now = columns[at : at + width]
+            now = now[now < places.size]
+            ratios = -self.table[tied[:, None], places[now]] / scale[:, None]
+            limit = ratios.min(axis=0) + TIE * np.maximum(1.0, np.abs(ratios).max(axis=0))
+            told = (ratios > limit).any(axis=0)
+            first = int(told.argmax()) if told.any() else now.size
+            # A row whose basic variable is of the first basis has the coefficient 1 at its power, where others have 0.
+            until = columns[min(at + first, columns.size - 1)]
+            kept = (power < 0) | (power >= until)
+            if not kept.any():
+                return int(tied[power.argmax()])
+            if kept.all():
+                if first < now.size:
+                    kept = ratios[:, first] <= limit[first]
+                    first += 1
+                else:
+                    first, width = max(first, 1), 2 * width
+            tied, scale, power, at = tied[kept], scale[kept], power[kept], at + first
+            if tied.size == 1:
                 break
-            kept = ratios[:, told[0]] <= limit[told[0]]
-            tied, ratios = tied[kept], ratios[kept]
         return int(tied[0])

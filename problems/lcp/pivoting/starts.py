@@ -36,8 +36,10 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
     """
     n = problem.n
     t = 2 * n
-    dense = problem.A.toarray() if problem.sparse else problem.A
-    first = np.column_stack([dense, d, problem.q])
+    # By columns, as it is pivoted: no other copy is made.
+    first = np.empty((n, n + 2), order="F")
+    first[:, :n] = problem.A.toarray() if problem.sparse else problem.A
+    first[:, n], first[:, n + 1] = d, problem.q
     dictionary = Dictionary(first, np.arange(n), np.arange(n, 2 * n + 1))
     if active is not None and active.any():
         dictionary.basic = np.where(active, np.arange(n, 2 * n), np.arange(n))

@@ -6,16 +6,15 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
-from problems.lcp.data.scaling import units
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
 from problems.lcp.proof.farkas import Farkas, farkas
+from problems.lcp.proof.off import DROWNED, drowned_part, shares_in_rows
 from problems.lcp.proof.rational import IntegerRow, Integers, fractions, integer_rows, integers, solve_exactly
 from problems.options import finite_vector
 
@@ -33,9 +32,6 @@ SMALL = 1e-6
 UNDERFLOW = float(np.finfo(float).smallest_normal) / float(np.finfo(float).eps)
 """A row whose terms are all below this, where others are of order 1, is satisfied as well as floats can: its products
 are no normal numbers. So is the far end of a solution that falls off by powers, away from the one q_i that is not 0."""
-
-DROWNED = 1e-6
-"""The most that a row may be off, relative to the largest |q_i| in balanced units, however large its terms are."""
 
 
 @frozen(eq=False)
@@ -131,7 +127,20 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
         x = np.where(np.abs(x - problem.upper) <= near, problem.upper, x)
         unbounded = np.isinf(problem.lower) & np.isinf(problem.upper)
         x = np.where(unbounded & (np.abs(x) <= near), 0.0, x)
+    return certified(problem, x)
+
+
+def certified(problem: MixedLCP, x: Array) -> Certificate:
+    """The certificate of a finite vector of n > 0 numbers, which nobody else changes.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    x : Array of shape (n,)
+    """
     terms = row_terms(problem, x)
+    if problem.standard and not terms.exponents.any():
+        return _of_lcp(problem, terms, x)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         w = np.ldexp(terms.w, terms.exponents)
         size = np.ldexp(terms.size, terms.exponents)
@@ -141,10 +150,10 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
         distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
         products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))
         forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
-    shares = _shares(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
+    shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
         # A mid of three, in which what was not asked for is infinite.
-        relative = np.maximum(relative, -_shares(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
+        relative = np.maximum(relative, -shares_in_rows(terms, x, below, (below < 0.0) | (relative < -ROUND_OFF)))
     off = np.abs(np.minimum(shares, relative))
     return Certificate(
         x=x,
@@ -154,52 +163,32 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
         negative_x=float(np.maximum(np.maximum(-above, -below), 0.0).max()),
         negative_w=float(np.maximum(forbidden, 0.0).max()),
         complementarity=float(products.max()),
-        drowned=_drowned(problem, terms, off),
+        drowned=drowned_part(problem, terms, off),
     )
 
 
-def _shares(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
-    """Each distance of an x_i from a bound with its sign, as its largest share in the terms of a row; else infinite.
-
-    It is infinite where it is not asked for. An x_i in no row at all can be anything but is at its bound where w_i is
-    not zero: any other is off by all of itself.
-    """
-    shares = np.where(distance == 0.0, 0.0, np.inf)
-    indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
-    if indices.size:
-        inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
-        sizes = np.abs(terms.x[indices])
-        moved = distance[indices] != x[indices]
-        if moved.any():
-            # Over powers of two the rows hold shares of x_i, from which those of the distance follow.
-            with np.errstate(all="ignore"):
-                scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
-            known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
-            sizes = np.where(moved, known, sizes)
-        with np.errstate(under="ignore"):
-            if sp.issparse(terms.A):
-                columns = abs(sp.csr_array(terms.A)[:, indices])
-                present = (columns != 0.0).sum(axis=0) > 0
-                largest = (sp.diags_array(inverse) @ (columns @ sp.diags_array(sizes))).max(axis=0).toarray().ravel()
-            else:
-                columns = np.abs(terms.A[:, indices])
-                present = (columns > 0.0).any(axis=0)
-                largest = (columns * sizes * inverse[:, None]).max(axis=0)
-        shares[indices] = np.sign(distance[indices]) * np.where(present, largest, 1.0)
-    return shares
-
-
-def _drowned(problem: MixedLCP, terms: Terms, off: Array) -> float:
-    """See `Certificate.drowned`; the balanced units are asked for only where a row is off by more than its own q_i."""
+def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
+    """The same where there are no upper bounds, and no row is over a power of two: in a third of the time."""
+    w, low = terms.w, float(x.min())
     with np.errstate(over="ignore", under="ignore"):
-        asked = (off > 0.0) & (off * terms.size > DROWNED * np.abs(np.ldexp(problem.q, -terms.exponents)))
-    if not asked.any():
-        return 0.0
-    rows, _ = units(problem)
-    with np.errstate(over="ignore", under="ignore"):
-        largest = float(np.ldexp(np.abs(problem.q), rows).max())
-        worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())
-    return worst / largest if largest > 0.0 else 0.0
+        relative = w / (terms.size if terms.size.min() > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
+        complementarity = largest(x * w)
+    asked = relative > ROUND_OFF
+    asked &= x != 0.0
+    if low < 0.0:
+        asked |= x < 0.0
+    shares = shares_in_rows(terms, x, x, asked) if asked.any() else np.where(x > 0.0, np.inf, 0.0)
+    off = np.minimum(shares, relative)
+    return Certificate(
+        x=x,
+        w=w,
+        residual=largest(np.minimum(x, w)),
+        relative_residual=largest(off),
+        negative_x=max(-low, 0.0),
+        negative_w=max(-float(w.min()), 0.0),
+        complementarity=complementarity,
+        drowned=drowned_part(problem, terms, np.abs(off)),
+    )
 
 
 @frozen(eq=False)
@@ -274,8 +263,8 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
     with np.errstate(invalid="ignore", divide="ignore"):
         w = np.where(terms.size > 0.0, terms.w / terms.size, 0.0)
     every = np.ones(problem.n, dtype=bool)
-    above = _shares(terms, x, x - problem.lower, every)
-    below = _shares(terms, x, problem.upper - x, every)
+    above = shares_in_rows(terms, x, x - problem.lower, every)
+    below = shares_in_rows(terms, x, problem.upper - x, every)
     nearest = np.where(above <= below, LOWER, UPPER)
     state = np.where(above <= w, LOWER, np.where(below <= -w, UPPER, BETWEEN))
     state = np.where(problem.fixed, LOWER, state)

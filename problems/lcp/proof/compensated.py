@@ -12,15 +12,19 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.inequalities import Inequalities
+from problems.lcp.proof.slices import sliced_terms
 
 _UNIT = float(np.finfo(float).eps) / 2
 _HIGH_BITS = np.int64(~0x7FFFFFF)
 """Keeps the leading 26 bits of a double: the product of two such numbers is exact."""
 
-_BLOCK = 2**15
-"""Entries of A in a block of rows."""
+_AT_ONCE = 2**13
+"""Entries of A, 64 KiB, up to which all products are taken at once; of more slices are quicker."""
 
-_LARGE = 1e240
+_BLOCK = 2**15
+"""Entries of A in a block of rows: 256 KiB, of which two at a time stay in the cache."""
+
+LARGE = 1e240
 """Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
 of products below 1e-260 are no longer exact."""
 
@@ -46,10 +50,22 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
     """
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, terms = _rows(problem, x)
-        gamma = 4.0 * (terms + 2) * _UNIT
-        bound = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
+        bound = error_bound(w, size, terms)
     overflowed = ~np.isfinite(w) | ~np.isfinite(bound)
     return np.where(overflowed, np.inf, w), np.where(overflowed, np.inf, bound)
+
+
+def error_bound(w: Array, size: Array, terms: int) -> Array:
+    """How far a sum in twice the working precision, of so many terms with magnitudes that add up to `size`, is off.
+
+    Parameters
+    ----------
+    w, size : Array
+    terms : int
+    """
+    gamma = 4.0 * (terms + 2) * _UNIT
+    bound: Array = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
+    return bound
 
 
 @frozen(eq=False)
@@ -86,7 +102,9 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
-    doubtful, small = ~np.isfinite(w) | ~(size <= _LARGE), size < 1.0 / _LARGE
+    if size.min() >= 1.0 / LARGE and size.max() <= LARGE:
+        return Terms(problem.A, x, w, size, none)  # w is finite where the size is
+    doubtful, small = ~np.isfinite(w) | ~(size <= LARGE), size < 1.0 / LARGE
     if small.any():
         doubtful |= small & _filled(problem, x)
     if not doubtful.any():
@@ -131,25 +149,44 @@ def _filled(problem: MixedLCP | Inequalities, x: Array) -> Any:
 
 def _dense_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, Array, int]:
     """(sum, what it lost, sum of magnitudes, number of terms) of each row, by blocks of rows that stay in the cache."""
-    support = np.flatnonzero(x)
-    factors, everywhere = x[support], support.size == x.size
-    total, lost, size = problem.q.copy(), np.zeros(problem.n), np.abs(problem.q)
-    step = max(_BLOCK // max(support.size, 1), 1)
-    for begin in range(0, problem.n if support.size else 0, step):
-        rows = slice(begin, begin + step)
-        entries = problem.A[rows] if everywhere else problem.A[rows][:, support]
-        product, error = _two_product(entries, factors)
-        lost[rows] += error.sum(axis=1)
-        size[rows] += np.abs(product).sum(axis=1)
-        # In halves: a row of k terms is summed in log2(k) passes over arrays, and every rounding error is kept.
-        while product.shape[1] > 1:
-            half = product.shape[1] // 2
-            summed, rounding = _two_sum(product[:, :half], product[:, half : 2 * half])
-            lost[rows] += rounding.sum(axis=1)
-            product = summed if 2 * half == product.shape[1] else np.hstack([summed, product[:, -1:]])
-        total[rows], rounding = _two_sum(total[rows], product[:, 0])
-        lost[rows] += rounding
-    return total, lost, size, support.size + 1
+    support = x.nonzero()[0]
+    m, n = support.size, problem.n
+    if m == 0:
+        return problem.q.copy(), np.zeros(n), np.abs(problem.q), 1
+    if m * n <= _AT_ONCE:
+        return *summed(_terms(problem.A, support, x.size), x[support][:, None], problem.q), m + 1
+    parts = np.empty((3, n))
+    # Columns that do not count cost less than to leave them out, where they are few.
+    entries, factors = (problem.A, x) if 2 * m > x.size else (problem.A[:, support], x[support])
+    for rows, terms, size in sliced_terms(entries, factors, max(_BLOCK // factors.size, 1)):
+        constants = problem.q[rows]
+        terms = np.concatenate([constants[None], terms])
+        partial = np.add.accumulate(terms, axis=0)
+        lost = _lost(partial[:-1], terms[1:], partial[1:])
+        parts[:, rows] = partial[-1], np.add.reduce(lost, axis=0), size + np.abs(constants)
+    return parts[0], parts[1], parts[2], m + 1
+
+
+def _terms(A: Array, support: NDArray[np.intp], n: int) -> Array:
+    """The columns of a matrix that count, as rows."""
+    return A.T if support.size == n else A.T[support]
+
+
+def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
+    """Sums of products along the first axis, and constants: the rounded sum, what it lost, the sum of magnitudes.
+
+    Parameters
+    ----------
+    entries : ndarray, shape (m, ...)
+    factors : ndarray
+        That broadcasts to the same shape.
+    constants : ndarray, shape (...)
+    """
+    product, lost = _two_product(entries, factors)
+    terms = np.concatenate([constants[None], product])
+    partial = np.add.accumulate(terms, axis=0)
+    lost += _lost(partial[:-1], product, partial[1:])
+    return partial[-1], np.add.reduce(lost, axis=0), np.add.reduce(np.abs(terms), axis=0)
 
 
 def _sparse_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array, Array, int]:
@@ -174,8 +211,12 @@ def _sparse_sums(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Arr
 def _two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     """The rounded sum and its rounding error, exactly (Knuth)."""
     total = a + b
+    return total, _lost(a, b, total)
+
+
+def _lost(a: Array, b: Array, total: Array) -> Array:
     virtual = total - a
-    return total, (a - (total - virtual)) + (b - virtual)
+    return (a - (total - virtual)) + (b - virtual)
 
 
 def _two_product(a: Array, b: Array) -> tuple[Array, Array]:

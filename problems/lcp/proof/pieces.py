@@ -43,26 +43,39 @@ def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
 
 def _doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
-    n, (low, high) = problem.n, (problem.lower, problem.upper)
+    return in_doubt(A, problem.q, problem.lower, problem.upper, states)
+
+
+def in_doubt(A: Array, q: Array, low: Array, high: Array, states: States) -> NDArray[np.bool_]:
+    """Which pieces are not proved to hold no solution, of one problem or each of its own; shape (number,).
+
+    Parameters
+    ----------
+    A : ndarray, shape (n, n) or (number, n, n)
+    q, low, high : ndarray, shape (n,) or (number, n)
+    states : ndarray of int, shape (number, n)
+    """
+    n = states.shape[1]
+    sizes = np.abs(A)
     unit = (n + 4) * ROUNDING
     between = states == BETWEEN
     ends = np.where(states == LOWER, low, np.where(states == UPPER, high, 0.0))
     B = np.where(between[:, :, None] & between[:, None, :], A, np.eye(n))
-    right = np.where(between, -(problem.q + ends @ A.T), 0.0)
-    lost = np.where(between, unit * (np.abs(problem.q) + np.abs(ends) @ np.abs(A).T), 0.0)
-    R = _inverses(B)
-    x = np.where(between, (R @ right[:, :, None])[:, :, 0], 0.0)
+    right = np.where(between, -(q + _times(A, ends)), 0.0)
+    lost = np.where(between, unit * (np.abs(q) + _times(sizes, np.abs(ends))), 0.0)
+    R = inverses(B)
+    x = np.where(between, _times(R, right), 0.0)
     size = np.abs(R)
     defect = np.abs(R @ B - np.eye(n)) + unit * (size @ np.abs(B))
     d = defect.sum(axis=2).max(axis=1) * (1.0 + unit)
-    r = np.abs(right - (B @ x[:, :, None])[:, :, 0])
-    lost += unit * (np.abs(right) + (np.abs(B) @ np.abs(x)[:, :, None])[:, :, 0]) + np.finfo(float).tiny
-    off = (size @ (r + lost)[:, :, None])[:, :, 0].max(axis=1) * (1.0 + unit) / (1.0 - d)
+    r = np.abs(right - _times(B, x))
+    lost += unit * (np.abs(right) + _times(np.abs(B), np.abs(x))) + np.finfo(float).tiny
+    off = _times(size, r + lost).max(axis=1) * (1.0 + unit) / (1.0 - d)
     wrong_x = between & ((x + off[:, None] < low) | (x - off[:, None] > high))
     whole = np.where(between, x, ends)
-    w = problem.q + whole @ A.T
-    terms = np.abs(problem.q) + np.abs(whole) @ np.abs(A).T
-    unsure = unit * terms + off[:, None] * (between @ np.abs(A).T) * (1.0 + unit) + np.finfo(float).tiny
+    w = q + _times(A, whole)
+    terms = np.abs(q) + _times(sizes, np.abs(whole))
+    unsure = unit * terms + off[:, None] * _times(sizes, between.astype(float)) * (1.0 + unit) + np.finfo(float).tiny
     free = low < high
     wrong_w = free & (((states == LOWER) & (w + unsure < 0.0)) | ((states == UPPER) & (w - unsure > 0.0)))
     # A comparison with NaN is false: what overflows is in doubt.
@@ -71,8 +84,19 @@ def _doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
     return asked
 
 
-def _inverses(B: Array) -> Array:
-    """Approximate inverses, NaN where there is none."""
+def _times(A: Array, v: Array) -> Array:
+    """The matrix, or each, times each vector."""
+    product: Array = v @ A.T if A.ndim == 2 else (A @ v[:, :, None])[:, :, 0]
+    return product
+
+
+def inverses(B: Array) -> Array:
+    """Approximate inverses, NaN where there is none.
+
+    Parameters
+    ----------
+    B : ndarray, shape (number, n, n)
+    """
     try:
         return np.asarray(np.linalg.inv(B))
     except np.linalg.LinAlgError:

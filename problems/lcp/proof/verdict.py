@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import scipy.sparse as sp
+from attrs import frozen
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgesv
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import natural_units
-from problems.lcp.homotopies.stationarity import is_stationary
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify_exactly
 from problems.lcp.proof.compensated import accurate_w
+from problems.lcp.proof.pieces import inverses
+
+EPS = float(np.finfo(float).eps)
+
+UNDERFLOW = float(np.finfo(float).tiny) / EPS
+"""Below this products may have lost digits to underflow."""
 
 LARGEST_DECIDED = 12
 """Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
@@ -52,7 +63,7 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
         return False
     if certificate.relative_residual <= ENTRIES or problem.n > LARGEST_DECIDED:
         return True
-    return certify_exactly(problem, certificate.x).solves
+    return exact_nearby(problem, certificate.x)
 
 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
@@ -90,57 +101,138 @@ def exact_nearby(problem: MixedLCP, x: Array) -> bool:
     ----------
     Rump, "Verification methods: rigorous results using floating-point arithmetic", Acta Numerica 19, 2010, section 10.
     """
-    return (problem.standard and _clearly_exact(problem, x)) or certify_exactly(problem, x).solves
+    # Asked by the finish, by the search and for the outcome, of the same point.
+    point, answer = problem.known.get("exact", (None, False))
+    if point is None or not np.array_equal(point, x):
+        answer = (problem.standard and _clearly_exact(problem, x)) or certify_exactly(problem, x).solves
+        problem.known["exact"] = x, answer
+    return bool(answer)
 
 
 def _clearly_exact(problem: MixedLCP, x: Array) -> bool:
-    """Whether floats prove it: the equations of the face, in units of x, have a solution near 1 with w > 0 elsewhere.
-
-    With an approximate inverse R of the block B and |I - R B| <= d < 1, B is not singular, and B u = r has
-    |u| <= |R| |r| / (1 - d) in the largest norm.
-    """
-    on = x > 0.0
-    if not on.any():
-        return bool((problem.q >= 0.0).all())
+    """Whether floats prove it; mostly plain arithmetic is enough."""
+    if not x.any():
+        return bool(problem.q.min() >= 0.0)
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
-    w, bound = accurate_w(problem, x)
-    terms = A[:, on] * x[on]
-    sizes = np.abs(terms)
-    largest = sizes[on].max(axis=1)
-    if not largest.min() > np.finfo(float).tiny / np.finfo(float).eps:
-        return False  # products may have lost digits to underflow
-    block = terms[on] / largest[:, None]
-    try:
-        inverse = np.linalg.inv(block)
-    except np.linalg.LinAlgError:
-        return False
-    k = len(block)
-    # What rounding of the block and of the product below may hide (Higham, section 3.5), twice.
-    rounding = 2.0 * (k + 4) * float(np.finfo(float).eps)
-    size = np.abs(inverse)
-    defect = float((np.abs(inverse @ block - np.eye(k)) + rounding * (size @ np.abs(block))).sum(axis=1).max())
-    if not defect < 0.5:
-        return False
-    off = float((size @ ((np.abs(w) + bound)[on] / largest)).max()) * (1.0 + rounding) / (1.0 - defect)
-    return bool(off < 0.5 and (w - bound > 2.0 * off * sizes.sum(axis=1))[~on].all())
+    found = Faced.of(A, problem.q, x)
+    return bool(found.exact(*found.plain) or found.exact(*accurate_w(problem, x)))
+
+
+@frozen(eq=False)
+class Faced:
+    """The equations of the faces of points of one LCP or of a stack, in units of x, with approximate inverses.
+
+    Where the others are off a face its block B has rows of the identity. With an approximate inverse R and
+    |I - R B| <= d < 1, B is not singular, and B u = r has |u| <= |R| |r| / (1 - d) in the largest norm.
+
+    Attributes
+    ----------
+    on : ndarray of bool, shape (..., n)
+        Where x > 0.
+    total, largest : Array of shape (..., n)
+        Sum and largest of the terms of each row of A x, the largest 1 off the face.
+    plain : tuple of Array
+        w, and how far it may be off by rounding.
+    size : Array of shape (..., n, n)
+        |R|.
+    defect : Array of shape (...)
+        d, NaN or infinite where nothing is proved.
+    """
+
+    on: NDArray[np.bool_]
+    total: Array
+    largest: Array
+    plain: tuple[Array, Array]
+    size: Array
+    defect: Array
+
+    @classmethod
+    def of(cls, A: Array, q: Array, x: Array) -> Faced:
+        """For points x >= 0.
+
+        Parameters
+        ----------
+        A : ndarray, shape (..., n, n)
+        q, x : ndarray, shape (..., n)
+        """
+        on, n = x > 0.0, x.shape[-1]
+        terms = A * np.where(on, x, 0.0)[..., None, :]
+        sizes = np.abs(terms)
+        total = sizes.sum(axis=-1)
+        largest = np.where(on, np.maximum(sizes.max(axis=-1), UNDERFLOW), 1.0)
+        fine = largest.min(axis=-1) > UNDERFLOW
+        one = identity(n)
+        block = np.where(on[..., None], terms, one)
+        block /= largest[..., None]
+        inverse = _inverse(block)
+        # What rounding of the block and of the product may hide (Higham, section 3.5), twice; no row of |B| sums to
+        # more than n.
+        size, rounding = np.abs(inverse), 2.0 * (n + 4) * EPS
+        off = np.abs(inverse @ block - one)
+        off += n * rounding * size
+        # The error of a sum of n + 1 products (Higham, section 3.1).
+        bound = 0.5 * rounding * (total + np.abs(q)) + n * np.finfo(float).tiny
+        plain = terms.sum(axis=-1) + q, bound
+        return cls(on, total, largest, plain, size, np.where(fine, off.sum(axis=-1).max(axis=-1), np.inf))
+
+    def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
+        """Whether the equations have a solution near x with w > 0 elsewhere.
+
+        Parameters
+        ----------
+        w, bound : ndarray, shape (..., n)
+            w, and how far it may be off.
+        """
+        right = np.where(self.on, (np.abs(w) + bound) / self.largest, 0.0)
+        moved = (self.size @ right[..., None])[..., 0].max(axis=-1) * (1.0 + ROUND_OFF) / (1.0 - self.defect)
+        clear = self.on | (w - bound > 2.0 * moved[..., None] * self.total)
+        exact: NDArray[np.bool_] = (self.defect < 0.5) & (moved < 0.5) & clear.all(axis=-1)
+        return exact
+
+
+@lru_cache(maxsize=32)
+def identity(n: int) -> Array:
+    """The matrix, read-only.
+
+    Parameters
+    ----------
+    n : int
+    """
+    one = np.eye(n)
+    one.flags.writeable = False
+    return one
+
+
+def _inverse(block: Array) -> Array:
+    """An approximate inverse, NaN where there is none; of a stack each."""
+    if block.ndim > 2:
+        return inverses(block)
+    found, singular = dgesv(block, identity(len(block)))[2:]
+    return np.full_like(block, np.nan) if singular else found
 
 
 def stationary(problem: MixedLCP, y: Array) -> bool:
     """Whether y = (x, z1, z2) satisfies the optimality conditions of min x'(A x + q) over x >= 0, A x + q >= 0.
 
     That is (A + A') x + q = z1 + A' z2, x, w, z1, z2 >= 0, x_i z1_i = 0 and w_i z2_i = 0: relative to the sizes of x,
-    w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference.
+    w, z1 and z2, so that a common factor of A and q, and one of q alone, makes no difference. With bounds those of the
+    gap, as `KKTHomotopy` has them.
     """
-    if not problem.standard:
-        return is_stationary(problem, y) <= STATIONARY
-    if y.size != 3 * problem.n:
+    rows = Rows(problem)
+    if y.size != rows.size:
         return False
-    x, z1, z2 = np.split(y, 3)
-    w = problem.w(x)
+    x, z1, z2, t = rows.split(y)
+    w, gaps, moved = problem.w(x), rows.sides.gaps(x), x - rows.end
+    raised = rows.raised(w, t)
     unit_x, unit_w = natural_units(problem)
-    size_x = unit_x + max(float(np.abs(x).max()), float(np.abs(z2).max()))
-    size_w = unit_w + max(float(np.abs(w).max()), float(np.abs(z1).max()), unit_w / unit_x * size_x)
-    gradient = w + problem.A.T @ x - z1 - problem.A.T @ z2
-    lowest = min(float(min(x.min(), z2.min())) / size_x, float(min(w.min(), z1.min())) / size_w)
-    products = max(float(np.abs(x * z1).max()), float(np.abs(w * z2).max())) / (size_x * size_w)
-    return max(float(np.abs(gradient).max()) / size_w, products, -lowest) <= STATIONARY
+    size_x = unit_x + max(float(np.abs(moved).max()), float(np.abs(z2).max()))
+    largest_w = max(float(np.abs(part).max(initial=0.0)) for part in (w, z1, t))
+    size_w = unit_w + max(largest_w, unit_w / unit_x * size_x)
+    gradient = w + problem.A.T @ moved - rows.sides.force(z1) - problem.A.T @ z2
+    bounded, room = ~rows.free, rows.width - z2[rows.boxed]
+    of_x = np.concatenate([gaps, (rows.signs * z2)[bounded], room])
+    of_w = np.concatenate([(rows.signs * raised)[bounded], z1, t])
+    lowest = min(float(of_x.min(initial=0.0)) / size_x, float(of_w.min(initial=0.0)) / size_w)
+    products = np.abs(np.concatenate([gaps * z1, (raised * z2)[bounded], room * t])).max(initial=0.0)
+    off = max(float(np.abs(gradient).max()), float(np.abs(w[rows.free]).max(initial=0.0))) / size_w
+    return max(off, float(products) / (size_x * size_w), -lowest) <= STATIONARY

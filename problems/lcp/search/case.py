@@ -7,8 +7,9 @@ from concurrent.futures import Executor
 from attrs import define, field
 
 from continuation.arrays import Array
+from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
-from problems.lcp.data.problem import MixedLCP, State
+from problems.lcp.data.problem import MixedLCP, State, active_state
 from problems.lcp.search.pivots import Nearby
 from problems.lcp.search.search import Search
 
@@ -31,6 +32,8 @@ class Case:
         The solution of a problem nearby, in the units of the search.
     facts : MatrixFacts or None
         What has been found out about the matrix by now.
+    pivoted : bool
+        Whether Lemke's method was tried.
     proof_sought : bool
         Whether a proof was looked for.
     followed : str
@@ -49,6 +52,7 @@ class Case:
     executor: Executor | None
     guess: Nearby | None = None
     facts: MatrixFacts | None = field(default=None, init=False)
+    pivoted: bool = field(default=False, init=False)
     proof_sought: bool = field(default=False, init=False)
     followed: str = field(default="", init=False)
     tried: int = field(default=0, init=False)
@@ -68,9 +72,20 @@ class Case:
 
     @property
     def first_state(self) -> State:
-        """The state that the point nearest to zero asks for."""
+        """The state that the point nearest to zero asks for; after a few gradients where A may be definite."""
+        if self.problem.standard:
+            # Of a sparse Z-matrix, a grid, zeros of q too, which else join one by one (Chandrasekaran's method).
+            grid = self.problem.sparse and self.known.z_matrix and float(self.problem.A.diagonal().min()) > 0.0
+            return active_state(self.problem.q <= 0.0 if grid else self.problem.q < 0.0)
+        if self.definite_perhaps:
+            return projected_state(self.problem)
         x = self.problem.near_zero
         return self.problem.states(x, self.problem.w(x))
+
+    @property
+    def definite_perhaps(self) -> bool:
+        """Whether A is symmetric, nothing that is known excludes that it is definite, and it is no Z-matrix."""
+        return self.known.symmetric and not self.known.z_matrix and not self.known.negative_diagonal
 
     @property
     def semidefinite(self) -> bool:

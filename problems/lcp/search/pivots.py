@@ -139,10 +139,13 @@ def constraints(problem: LCP) -> Mask:
     ----------
     Eaves, "On quadratic programming", Management Science 17, 1971.
     """
+    rows: Mask = (problem.q >= 0.0) & (problem.A.diagonal() == 0.0)
+    none = np.zeros_like(rows)
+    if not rows.any():
+        return none
     dense = problem.A.toarray() if problem.sparse else problem.A
-    signs = np.sign(dense)
-    rows = (problem.q >= 0.0) & (signs == -signs.T).all(axis=1) & signs.any(axis=1)
-    none: Mask = np.zeros(problem.n, dtype=bool)
+    signs = np.sign(dense[rows])
+    rows[rows] = (signs == -np.sign(dense[:, rows].T)).all(axis=1) & signs.any(axis=1)
     return rows if not dense[np.ix_(rows, rows)].any() else none
 
 

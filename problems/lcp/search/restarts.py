@@ -24,7 +24,8 @@ from continuation.status import Kind
 from continuation.step.tracer import Observer
 from continuation.tolerance import Tolerance
 from problems.lcp.active_set.face import Faces
-from problems.lcp.active_set.finish import Finish, smallest_parameter
+from problems.lcp.active_set.finish import Finish
+from problems.lcp.active_set.on_path import smallest_parameter
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy

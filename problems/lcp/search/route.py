@@ -8,7 +8,8 @@ from typing import Any
 from continuation.budget import Budget
 from continuation.path import Path, Step
 from continuation.step.tracer import Observer, Tracer
-from problems.lcp.active_set.finish import AlongPath, Finish
+from problems.lcp.active_set.finish import Finish
+from problems.lcp.active_set.on_path import AlongPath
 from problems.lcp.homotopies.registry import LCPHomotopy
 
 Patience = Callable[[Step], str]

@@ -315,8 +315,8 @@ class Search:
 
     def best(self) -> Candidate | None:
         """The solution, else one to working precision, the best stationary point, the end of least residual."""
-        if not self.ends:
-            return None
+        if len(self.ends) < 2:
+            return self.ends[0] if self.ends else None
 
         def rank(end: Candidate) -> tuple[bool, bool, bool, float]:
             certificate = end.certificate

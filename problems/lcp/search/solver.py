@@ -24,18 +24,19 @@ from continuation.counts import Counts
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
-from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme, level, without_factor
-from problems.lcp.homotopies import KKTHomotopy, Structure, WangHomotopy
+from problems.lcp.data.scaling import balanced, extreme, without_far_factor
+from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
+from problems.lcp.search import at_once
 from problems.lcp.search.case import Case
 from problems.lcp.search.judging import answer, beyond_floats, of_program, unscaled, with_fixed
 from problems.lcp.search.outcome import Outcome, Solution
@@ -159,11 +160,23 @@ def solve(
         )  # fmt: skip
         return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
-    postponed = automatic and finish and not path and problem.standard
-    postponed = postponed and problem.n > LARGEST_DECIDED and level(problem)
-    if postponed:
-        scaled = without_factor(problem)
-    else:
+    candidate = automatic and finish and not path and problem.standard
+    # A factor of all entries that is far from 1 is taken off first: what is done does not depend on it.
+    scaled, postponed = without_far_factor(problem) if candidate else (None, False)
+    plain = problem if scaled is None else scaled.problem
+    # What scaling to floats would round is decided by exact arithmetic where that is cheap.
+    postponed = postponed and (problem.n > LARGEST_DECIDED or not extreme(plain))
+    quick = postponed and problem.n <= at_once.LARGEST and not problem.sparse
+    kept: dict[bytes, Face] | None = {} if quick else None
+    immediate = None
+    if quick and start is None and near is None and problem.q.min() < 0.0:
+        with np.errstate(all="ignore"):
+            immediate = at_once.at_once(Finish(Faces(Structure(plain), kept=kept), tolerance))
+            if immediate is not None and scaled is not None:
+                immediate = unscaled(problem, scaled, immediate, tolerance)
+        if immediate is not None and archive is None:
+            return immediate
+    if not postponed:
         scaled = balanced(problem) if automatic or extreme(problem) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
@@ -175,7 +188,7 @@ def solve(
     structure = Structure(problem if scaled is None else scaled.problem)
     search = Search(
         structure,
-        Finish(Faces(structure), tolerance) if finish else None,
+        Finish(Faces(structure, kept=kept), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
         None if archive is None else PathLog(as_file("archive", archive), title=_title(problem)),
@@ -189,7 +202,9 @@ def solve(
     strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
     with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
-        if beyond:
+        if immediate is not None:
+            found = immediate
+        elif beyond:
             found = beyond_floats(problem, tolerance)
         else:
             settled = settled_by(case, strategy)
@@ -227,9 +242,10 @@ def _check_arguments(
     for name, flag in flags.items():
         check_flag(name, flag)
     check_budget(budget)
-    known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
-    check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
-    checked(options)
+    if options:
+        known = (*PART_OPTIONS, *(solve.__kwdefaults__ or ()))
+        check_names(options, known, dict.fromkeys(OWNED, "solve says where its paths go"))
+        checked(options)
 
 
 def _start(x0: Any, problem: MixedLCP, automatic: bool) -> Array:
@@ -282,12 +298,11 @@ def _account(case: Case, settled: Attempt | None) -> str:
 
 
 def _archive_without_path(search: Search, found: Solution) -> None:
-    """Where no path was needed the archive holds the message, and the solution as the end of the KKT or Wang's path.
+    """Where no path was needed the archive holds the message, and the solution as the end of the KKT path.
 
     A solution satisfies the equations of that homotopy at lambda = 0: see `at_solution`.
     """
-    problem = found.problem
-    homotopy = KKTHomotopy(problem) if isinstance(problem, LCP) else WangHomotopy(problem)
+    homotopy = KKTHomotopy(found.problem)
     path = Path(status=Status.ABANDONED, message=f"No path was traced. {found.message}")
     end = found.certificate
     if end is not None:

@@ -14,7 +14,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.presets import FAST
-from problems.lcp.active_set.finish import PATIENCE, below_zero
+from problems.lcp.active_set.finish import below_zero
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.problem import LCP
@@ -25,51 +25,25 @@ from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable, exhaust
+from problems.lcp.search import said
 from problems.lcp.search.case import Case
+from problems.lcp.search.limits import (
+    AT_GUESS,
+    FEW_PIECES,
+    FIRST,
+    FROM_ZERO,
+    LARGEST_EARLY_FACES,
+    LARGEST_EARLY_PROOF,
+    LARGEST_MADE_DENSE,
+    LARGEST_PROOF,
+    LEAST_START,
+    MOST_AUGMENTED,
+    MOST_Z_STEPS,
+    PROOF_SHARE,
+    WHILE_REGULAR,
+)
 from problems.lcp.search.pivots import LARGEST, by_guess, by_lemke, by_lemke_howson
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
-
-FIRST = Policy(steps=30)
-"""Corrections of an active set before any path, from a guess that is good; each costs less than a step of a path."""
-
-AT_GUESS = Policy(steps=2)
-"""Of the active set of a problem nearby: where it has hardly changed that is all; else pivots are quicker."""
-
-FROM_ZERO = Policy(steps=30, patience=PATIENCE)
-"""From x = 0, which is no guess at all."""
-
-MOST_Z_STEPS = 1000
-"""The same for a Z-matrix, where n corrections are enough: each makes the active set larger until it is right."""
-
-LARGEST_PROOF = 30_000_000
-"""Order times number of entries up to which a proof is looked for where the budget has no limit of seconds.
-
-Two seconds then: 2.0 for a dense matrix of order 300, 1.5 for a sparse one of order 1000 with seven entries a row, 2.3
-for a tridiagonal one of order 3000; a dense one of order 500, four times the limit, takes 10.
-"""
-
-PROOF_SHARE = 0.2
-"""Of the time left, where that is limited, the most that a proof takes: it is mostly far quicker than a path."""
-
-FEW_PIECES = 10
-"""With bounds, so many pieces as an LCP of this order has faces are tried before any path."""
-
-LARGEST_MADE_DENSE = 500
-"""A sparse matrix of at most this order is made dense for pivots and paths, whose matrices of order n or 2n fill: with
-5 % entries and n = 200 a path takes a tenth of the time then."""
-
-LARGEST_EARLY_FACES = 10
-"""Up to this order trying all faces takes less than two paths: 0.6 ms (n = 6), 3 to 50 ms (9), where the paths of
-feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 45 to 600 ms (12, where many are singular)."""
-
-LEAST_START = 1e-3
-"""In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
-
-MOST_AUGMENTED = 2000
-"""Factorisations of order n for the augmented Lagrangian: 1,500 are needed for QCAPRI, some 100 for most others."""
-
-LARGEST_EARLY_PROOF = 40
-"""Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
 
 
 @frozen
@@ -122,8 +96,19 @@ def _proximally_from_zero(case: Case) -> bool:
 
 
 def _from_zero(case: Case) -> bool:
-    policy = Policy(steps=min(case.problem.n, MOST_Z_STEPS)) if case.known.z_matrix else FROM_ZERO
+    policy = FROM_ZERO
+    if case.known.z_matrix:
+        policy = Policy(steps=min(case.problem.n, MOST_Z_STEPS))
+    elif _as_given(_pivotable)(case) and case.problem.n <= LARGEST_MADE_DENSE and not case.known.negative_diagonal:
+        policy = WHILE_REGULAR
     return case.search.settle(case.first_state, policy)
+
+
+def _further(case: Case) -> bool:
+    finish = case.search.finish
+    assert finish is not None
+    assert finish.stopped is not None
+    return case.search.settle(finish.stopped, FROM_ZERO)
 
 
 def _from_x0(case: Case) -> bool:
@@ -149,6 +134,15 @@ def _augmented(case: Case) -> bool:
     n = case.problem.primal
     below = 0.0 if case.semidefinite else below_zero(case.problem.A[:n][:, :n])
     return case.search.augment(below, MOST_AUGMENTED)
+
+
+def _by_lemke_howson(case: Case) -> bool:
+    return by_lemke_howson(case.search)
+
+
+def _by_lemke(case: Case) -> bool:
+    case.pivoted = True
+    return by_lemke(case.search, case.seed)
 
 
 def _proof(case: Case) -> bool:
@@ -213,10 +207,6 @@ def _has_coarser_problems(case: Case) -> bool:
     return suitable(case.search.structure)
 
 
-def _definite_perhaps(case: Case) -> bool:
-    return case.known.symmetric and not case.known.z_matrix and not case.known.negative_diagonal
-
-
 def _monotone(case: Case) -> bool:
     return case.semidefinite and not case.known.symmetric
 
@@ -224,6 +214,10 @@ def _monotone(case: Case) -> bool:
 def _wang_may_do(case: Case) -> bool:
     """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges; in a box it cannot."""
     return not case.problem.standard or not case.known.negative_diagonal
+
+
+def _stopped(case: Case) -> bool:
+    return case.search.finish is not None and case.search.finish.stopped is not None
 
 
 def _pivotable(case: Case) -> bool:
@@ -234,6 +228,16 @@ def _pivotable(case: Case) -> bool:
 
 def _game_perhaps(case: Case) -> bool:
     return _pivotable(case) and case.known.nonnegative
+
+
+def _as_given(when: Callable[[Case], bool]) -> Callable[[Case], bool]:
+    """Where entries are alike pivots are tried in the units given, which take less time than others to be found."""
+    return lambda case: case.search.postponed and when(case)
+
+
+def _scaled(when: Callable[[Case], bool]) -> Callable[[Case], bool]:
+    """Else in units of the problem's own."""
+    return lambda case: not case.pivoted and when(case)
 
 
 def _near(case: Case) -> bool:
@@ -247,6 +251,8 @@ def _provable(case: Case) -> bool:
 
 
 def _zero_solves(case: Case) -> bool:
+    if case.problem.standard:
+        return bool(case.problem.q.min() >= 0.0)
     return case.problem.natural_residual(case.problem.near_zero) == 0.0
 
 
@@ -271,17 +277,6 @@ def _lacks_feasible_start(case: Case) -> bool:
     return case.x0 is None and HOMOTOPIES[case.asked].feasible
 
 
-_PROVED = "A linear program gave the proof."
-_TRIED = "All complementary faces were tried: excluded by floats with error bounds, or decided in exact arithmetic."
-_FOLLOWED = "Solved by the path of the {case.followed} homotopy."
-_SETTLED = "Solved by active sets alone, before any path."
-_LEMKE_HOWSON = "By the method of Lemke and Howson, before any path."
-_LEMKE = "By Lemke's method, before any path."
-_SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
-_DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
-_AUGMENTED = "By the augmented Lagrangian of the program, before any path."
-_RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
-
 WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
     Attempt(
@@ -291,30 +286,35 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
         "The point nearest to zero is a solution.",
     ),
     Attempt("a problem nearby", _near, _from_guess, "Solved from the solution of a problem nearby, before any path."),
-    Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, _SETTLED),
-    Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, _SETTLED),
-    Attempt("active sets of A + shift I, from x = 0", _definite_perhaps, _proximally_from_zero, _SETTLED),
-    Attempt("active sets, from x = 0", _always, _from_zero, _SETTLED),
-    Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, _SETTLED_SHIFTED),
+    Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, said.SETTLED),
+    Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, said.SETTLED),
+    Attempt(
+        "active sets of A + shift I, from x = 0", lambda c: c.definite_perhaps, _proximally_from_zero, said.SETTLED
+    ),
+    Attempt("active sets, from x = 0", _always, _from_zero, said.SETTLED),
+    Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, said.SETTLED_SHIFTED),
+    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
+    Attempt("Lemke, as given", _as_given(_pivotable), _by_lemke, said.LEMKE),
+    Attempt("active sets, further", _stopped, _further, said.SETTLED),
     Attempt("units of its own", lambda c: c.search.postponed, _rescaled, ""),
-    Attempt("descent in a box", _in_a_box, _descent, _DESCENDED),
+    Attempt("descent in a box", _in_a_box, _descent, said.DESCENDED),
     Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
-    Attempt("Lemke and Howson", _game_perhaps, lambda c: by_lemke_howson(c.search), _LEMKE_HOWSON),
-    Attempt("Lemke", _pivotable, lambda c: by_lemke(c.search, c.seed), _LEMKE),
-    Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, _PROVED),
-    Attempt("few faces", _has_few_faces, _all_faces, _TRIED),
-    Attempt("augmented Lagrangian", _with_rows, _augmented, _AUGMENTED),
+    Attempt("Lemke and Howson", _scaled(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
+    Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
+    Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, said.PROVED),
+    Attempt("few faces", _has_few_faces, _all_faces, said.TRIED),
+    Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
 )
 """What is cheap and cannot mislead."""
 
 # The end of Wang's path solves the problem, where it has one; the KKT path has an end, which need not solve it.
 PATHS: tuple[Attempt, ...] = (
-    Attempt("Wang's path", _wang_may_do, _path("wang", preset=FAST), _FOLLOWED),
-    Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
-    Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, _PROVED),
-    Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), _FOLLOWED),
-    Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, _TRIED),
-    Attempt("restarts", lambda c: c.restarts > 0, _restarts, _RESTARTED),
+    Attempt("Wang's path", _wang_may_do, _path("wang", preset=FAST), said.FOLLOWED),
+    Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
+    Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, said.PROVED),
+    Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
+    Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, said.TRIED),
+    Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),
 )
 """Any of these may cost the whole budget."""
 
@@ -323,9 +323,9 @@ AUTOMATIC = (*WITHOUT_PATH, *PATHS)
 
 NAMED: tuple[Attempt, ...] = (
     Attempt("feasible start", _lacks_feasible_start, _feasible_start, "{case.reason}"),
-    Attempt("path", _always, _path(), _FOLLOWED),
-    Attempt("proof", _provable, _proof, _PROVED),
-    Attempt("restarts", lambda c: c.restarts > 0, _restarts, _RESTARTED),
+    Attempt("path", _always, _path(), said.FOLLOWED),
+    Attempt("proof", _provable, _proof, said.PROVED),
+    Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),
 )
 """For a homotopy that was asked for."""
 

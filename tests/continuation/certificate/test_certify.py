@@ -207,6 +207,10 @@ FORMS = {
     **{f"{name}-boxed": getattr(homotopies, name)(BOXED) for name in ("YuHomotopy", "WangHomotopy")},
     "kmm": homotopies.KojimaMegiddoMizunoHomotopy(PROBLEM),
     "kmm-boxed": homotopies.KojimaMegiddoMizunoHomotopy(BOXED),
+    "kkt-boxed": homotopies.KKTHomotopy(BOXED),
+    "kkt-free": homotopies.KKTHomotopy(
+        MixedLCP(MATRIX, PROBLEM.q, lower=[0.0, -np.inf, -np.inf], upper=[1.0, np.inf, 2.0])
+    ),
 }
 
 

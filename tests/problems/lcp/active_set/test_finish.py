@@ -10,9 +10,10 @@ import continuation
 from continuation.archive import open_archive, resume
 from problems.lcp import LCP, KKTHomotopy, Structure, WangHomotopy, certify
 from problems.lcp.active_set.face import Faces
-from problems.lcp.active_set.finish import AlongPath, Finish
+from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.active_set.multigrid_guess import guess, suitable
+from problems.lcp.active_set.on_path import AlongPath
 from problems.lcp.data.problem import BETWEEN, LOWER
 from problems.paper import EXAMPLES
 

@@ -116,13 +116,18 @@ def test_bad_bounds_in_a_file_are_one_line(tmp_path):
 
 def test_models_are_read_by_highs_where_it_is_installed(tmp_path):
     pytest.importorskip("highspy")
-    (tmp_path / "t.mps").write_text(
+    model = (
         "NAME T\nROWS\n N COST\n L LIM1\n G LIM2\nCOLUMNS\n X COST 1.0 LIM1 1.0\n X LIM2 1.0\n Y COST 2.0 LIM1 1.0\n"
-        "RHS\n RHS LIM1 4.0 LIM2 1.0\nBOUNDS\n UP BND X 4.0\n LO BND Y -1.0\nENDATA\n"
+        "RHS\n RHS LIM1 4.0 LIM2 1.0\nBOUNDS\n UP BND X 4.0\n LO BND Y -1.0\n"
     )
+    (tmp_path / "t.mps").write_text(model + "ENDATA\n")
     solution = lcp.solve(read_program(tmp_path / "t.mps"))
     np.testing.assert_array_equal(solution.named["x"], [1.0, -1.0])
     assert solution.objective == -1.0
+    (tmp_path / "t.QPS").write_text(model + "QUADOBJ\n X X 2.0\n Y Y 8.0\nENDATA\n")
+    solution = lcp.solve(read_program(tmp_path / "t.QPS"))
+    np.testing.assert_array_equal(solution.named["x"], [1.0, -0.25])
+    assert solution.objective == 1.75
 
 
 @given(st.from_type(lcp.MixedLCP), st.from_type(lcp.Program))

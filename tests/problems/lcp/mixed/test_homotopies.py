@@ -11,13 +11,16 @@ from hypothesis import strategies as st
 import continuation
 from continuation.testing import check_homotopy
 from problems import lcp
+from problems.lcp.homotopies import kkt_system
 from problems.lcp.homotopies.registry import HOMOTOPIES
-from problems.lcp.homotopies.stationarity import stationarity, stationary_homotopy
 from problems.lcp.mixed_strategies import mixed_lcps, planted_mixed_lcps
+from problems.lcp.proof.verdict import stationary
 from problems.lcp.reference.enumeration import exhaust
 from problems.nonlinear import InteriorHomotopy, MixedComplementarity, solve_complementarity
 
-BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds and name != "kkt"]
+from .util import orders, stationarity
+
+BOUNDED = [name for name, one in HOMOTOPIES.items() if one.bounds]
 INF = np.inf
 MONOTONE = np.array([[2.0, 1.0, 0.0, 0.0], [-1.0, 1.0, 0.5, 0.0], [0.0, -0.5, 3.0, 1.0], [0.0, 0.0, -1.0, 0.0]])
 EVERY_KIND = lcp.MixedLCP(MONOTONE, [-1.0, 2.0, -6.0, 0.5], [0.0, -INF, -1.0, -INF], [INF, 1.0, 1.0, INF])
@@ -56,7 +59,11 @@ def test_starts_are_inside_and_finite_for_any_bounds():
     lower = [-1e308, 0.0, -INF, 5.0, 0.0, -INF, -7.0]
     upper = [1e308, 1e-8, -5.0, INF, INF, INF, -6.5]
     problem = lcp.MixedLCP(np.eye(7), np.ones(7), lower, upper)
-    for start in (lcp.WangHomotopy(problem).start()[0], lcp.random_start(problem, np.random.default_rng(0)).x0):
+    for start in (
+        lcp.WangHomotopy(problem).start()[0], lcp.KKTHomotopy(problem).start()[0],
+        lcp.random_start(problem, np.random.default_rng(0)).x0,
+    ):  # fmt: skip
+        assert np.isfinite(start).all()
         x = start[:7]
         assert ((x > problem.lower) & (x < problem.upper)).all()
     np.testing.assert_array_equal(lcp.WangHomotopy(problem).x0, [0.0, 5e-9, -6.0, 6.0, 1.0, 0.0, -6.75])
@@ -67,8 +74,125 @@ def test_a_fixed_unknown_has_no_inside():
         lcp.WangHomotopy(lcp.MixedLCP(np.eye(2), [1.0, 1.0], [0, 1], [1, 1]))
 
 
-def test_the_checks_of_a_plug_in_pass_for_the_path_to_a_stationary_point():
-    check_homotopy(stationary_homotopy(EVERY_KIND))
+def drawn(rng, n, kinds=4):
+    """A monotone problem with lower, upper, both and no bounds mixed."""
+    M, kind = rng.standard_normal((n, n)), rng.integers(0, kinds, n)
+    lower = np.where(kind % 2 == 0, rng.standard_normal(n), -INF)
+    upper = np.where(kind == 1, rng.standard_normal(n), np.where(kind == 2, lower + 0.1 + rng.random(n), INF))
+    return lcp.MixedLCP(M @ M.T / n + np.triu(M, 1) - np.triu(M, 1).T, rng.standard_normal(n), lower, upper)
+
+
+def test_the_kkt_homotopy_has_three_five_or_two_unknowns_an_index():
+    lower, upper = [0.0, -INF, -INF, 0.0], [INF, 1.0, INF, 1.0]
+    for i, unknowns in enumerate((3, 3, 2, 5)):
+        problem = lcp.MixedLCP([[1.0]], [-1.0], lower[i], upper[i])
+        assert lcp.KKTHomotopy(problem).start()[0].size == unknowns
+    assert lcp.KKTHomotopy(EVERY_KIND).start()[0].size == 13
+
+
+@pytest.mark.parametrize("banded", [False, True])
+def test_the_order_of_what_the_kkt_path_factors_is_n(monkeypatch, banded):
+    found = orders(monkeypatch)
+    for seed, n in ((1, 10), (2, 30)):
+        problem = drawn(np.random.default_rng(seed), n)
+        if banded:
+            band = sp.diags_array([np.ones(n - 1), 3 * np.ones(n), -np.ones(n - 1)], offsets=[-1, 0, 1])
+            problem = lcp.MixedLCP(band, problem.q, problem.lower, problem.upper)
+        found.clear()
+        assert lcp.solve(problem, "kkt").success
+        assert len(found) >= 10
+        assert max(found) <= n
+
+
+def test_without_the_finish_the_robust_core_of_order_2n_is_for_the_end_alone(monkeypatch):
+    real, found = kkt_system._augmented, []
+
+    def spy(system, border):
+        found.append(system.lam)
+        return real(system, border)
+
+    monkeypatch.setattr(kkt_system, "_augmented", spy)
+    for seed in range(8):
+        assert lcp.solve(drawn(np.random.default_rng(seed), 12), "kkt", finish=False).success
+    assert len(found) <= 20
+    assert not any(found), "what is zero at lambda = 0 is small before"
+
+
+def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
+    rng = np.random.default_rng(0)
+    given_ = {
+        "x0": [1.0, 0.0, 0.0, 2.0],
+        "z1": rng.random(4) + 0.1,
+        "z2": [1.0, -2.0, 0.5, -9.0],
+        "w0": [1.0, 2.0, 3.0, 4.0],
+    }
+    homotopy = lcp.KKTHomotopy(EVERY_KIND, **given_)
+    y, lam = homotopy.start()
+    # Of four bounds, the lower ones of 0 and 2, the upper ones of 1 and 2, the last is that of the box above: t0.
+    np.testing.assert_array_equal(y, [*given_["x0"], *given_["z1"], *given_["z2"], 4.0])
+    np.testing.assert_array_equal(homotopy.residual(y, lam), 0.0)
+    for name, value, message in (
+        ("x0", [1.0, 1.0, 0.0, 2.0], r"x0: expected a number between -inf and 1\.0 at index 1, found 1\.0"),
+        ("z1", [1.0, 1.0], "z1: expected 4 positive numbers"),
+        ("z2", [1.0, 2.0, 0.5, 0.0], r"z2: expected a number between -inf and 0\.0 at index 1, found 2\.0"),
+        ("z2", [1.0, -2.0, 2.0, 0.0], r"z2: expected a number between 0\.0 and 2\.0 at index 2, found 2\.0"),
+        ("w0", [1.0, 1.0, -1.0, 1.0], "w0: expected positive finite numbers"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            lcp.KKTHomotopy(EVERY_KIND, **{name: value})
+
+
+def test_the_kkt_equations_of_a_box_by_hand():
+    """A = 2, q = -3 on [1, 4], x0 = 2, z1 = (5, 6), z2 = 1, (s0, t0) = (7, 8); rho = 7 - 8 - 1."""
+    homotopy = lcp.KKTHomotopy(lcp.MixedLCP([[2.0]], [-3.0], 1, 4), [2.0], [5.0, 6.0], [1.0], [7.0, 8.0])
+    # At x = 3, z1 = (1, 2), z2 = 2, t = 5, lambda = 1/4: w = 3, and 3 - 1/2 + 5 is what is complementary to z2.
+    expected = [
+        0.75 * (3 + 2 * (2 - 2) - 1 + 2) + 0.25 * (3 - 2), 1 * 2 - 0.25 * 5 * 1, 2 * 1 - 0.25 * 6 * 2,
+        2 * 7.5 - 0.25 * 1 * 7, (3 - 2) * 5 - 0.25 * 2 * 8,
+    ]  # fmt: skip
+    np.testing.assert_allclose(homotopy.residual(np.array([3.0, 1.0, 2.0, 2.0, 5.0]), 0.25), expected, rtol=1e-15)
+
+
+def positives(homotopy, u):
+    """Distances, forces, multipliers and what they are complementary to, in the order of the blocks."""
+    rows = homotopy.rows
+    x, z1, z2, t = homotopy.split(u[:-1])
+    w = homotopy.problem.w(x) + u[-1] * homotopy.rho
+    low, high = rows.bounds
+    z = np.minimum(z2 - low, high - z2)
+    return np.concatenate([rows.sides.gaps(x), z1, z[np.isfinite(z)], t, (rows.signs * rows.raised(w, t))[~rows.free]])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_derivatives_series_and_longest_steps_of_the_kkt_homotopy(seed):
+    """For all kinds of bounds; H is quadratic, so that central differences of any width are exact."""
+    rng = np.random.default_rng(seed)
+    homotopy = lcp.KKTHomotopy(drawn(rng, 5))
+    y, lam = homotopy.start()
+    u, v = np.append(y, lam), rng.standard_normal(y.size + 1)
+    ahead, behind = (homotopy.residual(y + s * v[:-1], lam + s * v[-1]) for s in (1.0, -1.0))
+    H_y, H_lam = homotopy.jacobian(y, lam)
+    scale = np.abs(ahead).max() + np.abs(behind).max()
+    np.testing.assert_allclose(H_y @ v[:-1] + H_lam * v[-1], (ahead - behind) / 2, atol=1e-13 * scale)
+    np.testing.assert_allclose(homotopy.differential(y, lam, v), (ahead - behind) / 2, atol=1e-13 * scale)
+    h = homotopy.max_step(u, v)
+    assert 0.0 < h < np.inf
+    assert (positives(homotopy, u + h * (1 - 1e-9) * v) > 0.0).all()
+    assert not (positives(homotopy, u + h * (1 + 1e-9) * v) > 0.0).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_an_end_of_the_kkt_path_is_stationary(seed):
+    """Where A is not monotone the end may be no solution: it satisfies the conditions of order 2n all the same."""
+    rng = np.random.default_rng(seed)
+    homotopy = lcp.KKTHomotopy(lcp.MixedLCP(rng.standard_normal((6, 6)), rng.standard_normal(6), -1.0, 2.0))
+    path = continuation.trace(homotopy)
+    assert path.success
+    assert stationary(homotopy.problem, path.endpoint.y)
+    x, _, z, _ = homotopy.split(path.endpoint.y)
+    both = stationarity(homotopy.problem)
+    assert both.relative_residual(np.append(x, z)) <= 1e-8
+    assert not stationary(homotopy.problem, path.endpoint.y + 0.1)
 
 
 @settings(max_examples=60)
@@ -93,7 +217,7 @@ def test_row_sufficiency_makes_stationary_points_solutions(problem):
 def test_a_solution_is_a_stationary_point(planted):
     problem, x = planted
     low, high = problem.lower, problem.upper
-    d = np.where(np.isfinite(low), x - low, np.where(np.isfinite(high), x - high, 0.0))
+    d = np.where(np.isfinite(low), x - low, np.where(np.isfinite(high), x - high, x))
     assert stationarity(problem).natural_residual(np.concatenate([x, d])) == 0.0
 
 

@@ -65,7 +65,7 @@ def test_the_example_of_pathsolver():
     assert lcp.certify_exactly(solution.problem, solution.x).solves
 
 
-@pytest.mark.parametrize("homotopy", ["wang", "kmm", "yu"])
+@pytest.mark.parametrize("homotopy", ["wang", "kmm", "yu", "kkt"])
 def test_a_path_alone_solves_every_mixture_of_bounds(homotopy):
     rng = np.random.default_rng(3)
     n = 20

@@ -1,7 +1,10 @@
 """What the tests of problems with bounds have in common."""
 
+import numpy as np
+
+from problems.lcp import MixedLCP
 from problems.lcp.active_set import face
-from problems.lcp.homotopies import pair_system
+from problems.lcp.homotopies import kkt_system, pair_system
 
 
 def orders(monkeypatch):
@@ -19,5 +22,18 @@ def orders(monkeypatch):
 
     for name in ("factor_lu", "factor_cholesky", "factor_superlu", "factor_band"):
         spy(face, name)
-    spy(pair_system, "factor_bordered")
+    for module in (pair_system, kkt_system):
+        spy(module, "factor_bordered")
     return found
+
+
+def stationarity(problem):
+    """The problem in (x, z), of order 2n, whose solutions are the stationary points of the gap: see docs/bounds.md."""
+    low, high, A = np.isfinite(problem.lower), np.isfinite(problem.upper), problem.A
+    end = np.where(low, problem.lower, np.where(high, problem.upper, 0.0))
+    width = np.where(low & high, problem.upper - problem.lower, np.inf)
+    return MixedLCP(
+        np.block([[A + A.T, -A.T], [A, np.zeros_like(A)]]), np.concatenate([problem.q - A.T @ end, problem.q]),
+        np.concatenate([problem.lower, np.where(low, 0.0, -np.inf)]),
+        np.concatenate([problem.upper, np.where(low, width, np.where(high, 0.0, np.inf))]),
+    )  # fmt: skip

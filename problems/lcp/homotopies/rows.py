@@ -1,0 +1,217 @@
+"""The rows w = A x + q of the KKT homotopy: a multiplier z of each, and in a box one unknown more.
+
+What a row asks for depends on the bounds of its index: w >= 0 where there is a lower one alone, w <= 0 where there is
+an upper one alone, w = 0 where there is neither. In a box w = s - t with s, t >= 0, of which t is the unknown.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.homotopies.cores import Pairs, larger_eliminated
+from problems.lcp.homotopies.sides import Sides
+
+_NONE = np.zeros(0)
+
+
+@frozen(eq=False, slots=False)
+class Rows:
+    """What the rows of a problem ask for.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    """
+
+    problem: MixedLCP | LCP
+
+    @cached_property
+    def sides(self) -> Sides:
+        """The finite bounds."""
+        return Sides(self.problem)
+
+    @cached_property
+    def boxed(self) -> NDArray[np.intp]:
+        """The indices with two bounds."""
+        return np.intersect1d(self.sides.low, self.sides.high)
+
+    @cached_property
+    def width(self) -> Array:
+        """The distances of two bounds, one a box."""
+        with np.errstate(over="ignore"):
+            width = self.problem.upper[self.boxed] - self.problem.lower[self.boxed]
+        return np.minimum(width, float(np.finfo(float).max))
+
+    @cached_property
+    def free(self) -> NDArray[np.bool_]:
+        """Where there is no bound, shape (n,)."""
+        return np.zeros(self.problem.n, bool) if self.sides.free is None else self.sides.free > 0.0
+
+    @cached_property
+    def end(self) -> Array | float:
+        """The bound from which the gap measures x: the lower one, else the upper one; zero where there is none."""
+        if self.problem.standard:
+            return 0.0
+        low, high = self.problem.lower, self.problem.upper
+        return np.where(np.isfinite(low), low, np.where(np.isfinite(high), high, 0.0))
+
+    @cached_property
+    def signs(self) -> Array:
+        """Of w and its multiplier: -1 where there is an upper bound alone, shape (n,)."""
+        return np.where(np.isfinite(self.problem.lower) | self.free, 1.0, -1.0)
+
+    @cached_property
+    def bounds(self) -> tuple[Array, Array]:
+        """Of the multipliers: [0, inf) with a lower bound alone, (-inf, 0] with an upper one, [0, u - l] in a box."""
+        lower = np.where((self.signs < 0.0) | self.free, -np.inf, 0.0)
+        upper = np.where(self.signs < 0.0, 0.0, np.inf)
+        upper[self.boxed] = self.width
+        return lower, upper
+
+    def split(self, y: Array) -> tuple[Array, Array, Array, Array]:
+        """The blocks x, z1, z2 and t of y, or of increments of it, as views.
+
+        Parameters
+        ----------
+        y : ndarray
+        """
+        n, m = self.problem.n, self.problem.n + self.sides.index.size
+        return y[:n], y[n:m], y[m : m + n], y[m + n :]
+
+    @property
+    def size(self) -> int:
+        """How many unknowns there are: 3 an index with one bound, 5 one with two, 2 one with none."""
+        return 2 * self.problem.n + self.sides.index.size + self.boxed.size
+
+    def raised(self, w: Array, t: Array) -> Array:
+        """What z is complementary to: w, and s = w + t in a box.
+
+        Parameters
+        ----------
+        w : ndarray, shape (n,)
+        t : ndarray, one a box
+        """
+        if not self.boxed.size:
+            return w
+        raised = w.copy()
+        raised[self.boxed] += t
+        return raised
+
+    def inside(self, z: Array, s: Array, t: Array) -> Array:
+        """What has to be positive: s, z and, in boxes, t and u - l - z.
+
+        Parameters
+        ----------
+        z, s : ndarray, shape (n,)
+        t : ndarray, one a box
+        """
+        inside = self.moved(z, s, t)
+        if self.boxed.size:
+            inside[-self.boxed.size :] += self.width
+        return inside
+
+    def moved(self, z: Array, s: Array, t: Array) -> Array:
+        """How `inside` changes with increments of z, s and t.
+
+        Parameters
+        ----------
+        z, s : ndarray, shape (n,)
+        t : ndarray, one a box
+        """
+        if self.problem.standard:
+            return np.concatenate([s, z])
+        bounded = ~self.free
+        return np.concatenate([(self.signs * s)[bounded], (self.signs * z)[bounded], t, -z[self.boxed]])
+
+
+@frozen(eq=False, slots=False)
+class RowPairs:
+    """The linearised rows, ``factor dw + rest k - c l = r``, for an unknown k of each, once those of boxes are solved.
+
+    In a box ``(u - l - z) dt - t dz - c3 l = r3`` gives dz = a k + e (r3 + c3 l) and dt = b k + f (r3 + c3 l); where
+    there is none, k = dz.
+
+    Attributes
+    ----------
+    rows : Rows
+    factor, rest, c : ndarray, shape (n,)
+    inner : Pairs or None
+        The a, b, e, f of boxes; None where there are none.
+    taken : ndarray
+        What r3 takes from r in a box.
+    """
+
+    rows: Rows
+    factor: Array
+    rest: Array
+    c: Array
+    inner: Pairs | None = None
+    taken: Array = _NONE
+
+    @property
+    def sign(self) -> int:
+        """Sign of the determinant of what is eliminated for boxes."""
+        return 1 if self.inner is None else self.inner.sign
+
+    @cached_property
+    def turn(self) -> Array | None:
+        """The factor a of k in dz, shape (n,); None for ones."""
+        if self.inner is None:
+            return None
+        turn = np.ones(self.rest.size)
+        turn[self.rows.boxed] = self.inner.a
+        return turn
+
+    def right(self, r2: Array, r3: Array) -> Array:
+        """The right-hand side r of the rows."""
+        if self.inner is None:
+            return r2
+        right = r2.copy()
+        right[self.rows.boxed] -= self.taken * r3
+        return right
+
+    def of(self, k: Array, r3: Array, l: float) -> tuple[Array, Array]:
+        """(dz, dt)."""
+        if self.inner is None:
+            return k, _NONE
+        dz = k.copy()
+        dz[self.rows.boxed], dt = self.inner.of(k[self.rows.boxed], r3, l)
+        return dz, dt
+
+    def row(self, b2: Array, b3: Array) -> Array:
+        """The coefficients of k in ``b2 . dz + b3 . dt``."""
+        if self.inner is None:
+            return b2
+        assert self.turn is not None
+        row = b2 * self.turn
+        row[self.rows.boxed] += self.inner.row(b3)
+        return row
+
+
+def row_pairs(rows: Rows, factor: Array, rest: Array, c: Array, z: Array, t: Array, c3: Array) -> RowPairs:
+    """Solve the equations of boxes for the unknown with the larger coefficient.
+
+    Parameters
+    ----------
+    rows : Rows
+    factor, rest, c : ndarray, shape (n,)
+        Of ``factor (dw + dt) + rest dz - c l``, with dt in boxes.
+    z : ndarray, shape (n,)
+        The multipliers.
+    t, c3 : ndarray, one a box
+    """
+    boxed = rows.boxed
+    if not boxed.size:
+        return RowPairs(rows, factor, rest, c)
+    inner = larger_eliminated(-t, rows.width - z[boxed], c3)
+    taken = rest[boxed] * inner.e + factor[boxed] * inner.f
+    rest, c = rest.copy(), c.copy()
+    rest[boxed] = rest[boxed] * inner.a + factor[boxed] * inner.b
+    c[boxed] -= taken * c3
+    return RowPairs(rows, factor, rest, c, inner, taken)

@@ -1,0 +1,76 @@
+"""How far a point is off in each row: shares of x in the terms of the rows, and q that drowns in their rounding."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.data.problem import MixedLCP
+from problems.lcp.data.scaling import units
+from problems.lcp.proof.compensated import Terms
+
+DROWNED = 1e-6
+"""The most that a row may be off, relative to the largest |q_i| in balanced units, however large its terms are."""
+
+
+def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bool_]) -> Array:
+    """Each distance of an x_i from a bound with its sign, as its largest share in the terms of a row; else infinite.
+
+    It is infinite where it is not asked for. An x_i in no row at all can be anything but is at its bound where w_i is
+    not zero: any other is off by all of itself.
+
+    Parameters
+    ----------
+    terms : Terms
+        Of the rows at x.
+    x, distance : Array of shape (n,)
+    asked : ndarray of bool, shape (n,)
+    """
+    shares = np.where(distance == 0.0, 0.0, np.inf)
+    indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
+    if indices.size:
+        inverse = 1.0 / np.where(terms.size > 0.0, terms.size, 1.0)
+        sizes = np.abs(terms.x[indices])
+        moved = distance[indices] != x[indices]
+        if moved.any():
+            # Over powers of two the rows hold shares of x_i, from which those of the distance follow.
+            with np.errstate(all="ignore"):
+                scaled = np.abs(distance[indices] / x[indices]) * sizes if terms.exponents.any() else np.inf
+            known = np.where(np.isfinite(scaled), scaled, np.abs(distance[indices]))
+            sizes = np.where(moved, known, sizes)
+        with np.errstate(under="ignore"):
+            if sp.issparse(terms.A):
+                columns = abs(sp.csr_array(terms.A)[:, indices])
+                present = (columns != 0.0).sum(axis=0) > 0
+                most = (sp.diags_array(inverse) @ (columns @ sp.diags_array(sizes))).max(axis=0).toarray().ravel()
+            else:
+                columns = np.abs(terms.A[:, indices])
+                present = (columns > 0.0).any(axis=0)
+                most = (columns * sizes * inverse[:, None]).max(axis=0)
+        shares[indices] = np.sign(distance[indices]) * np.where(present, most, 1.0)
+    return shares
+
+
+def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
+    """See `Certificate.drowned`; the balanced units are asked for only where a row is off by more than its own q_i.
+
+    Parameters
+    ----------
+    problem : MixedLCP
+    terms : Terms
+        Of the rows at x.
+    off : Array of shape (n,)
+        How far each row is off, relative to its terms.
+    """
+    with np.errstate(over="ignore", under="ignore"):
+        q = np.ldexp(problem.q, -terms.exponents) if terms.exponents.any() else problem.q
+        asked = off * terms.size > DROWNED * np.abs(q)  # nowhere where off is zero
+    if not asked.any():
+        return 0.0
+    rows, _ = units(problem)
+    with np.errstate(over="ignore", under="ignore"):
+        size = float(np.ldexp(np.abs(problem.q), rows).max())
+        worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())
+    return worst / size if size > 0.0 else 0.0

@@ -1,0 +1,97 @@
+"""Points of many small dense LCPs judged together: what this accepts `certify` and `confirmed` accept one by one."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.proof.certificate import ROUND_OFF
+from problems.lcp.proof.compensated import LARGE, error_bound, summed
+from problems.lcp.proof.off import DROWNED
+from problems.lcp.proof.pieces import in_doubt, inverses
+from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced, identity
+
+CORRECTIONS = 2
+"""Of a point with w in twice the working precision, as in `active_set.finish`."""
+
+
+@frozen(eq=False)
+class Judged:
+    """Points of a stack of LCPs, and which of them are solutions.
+
+    Attributes
+    ----------
+    x : Array of shape (k, n)
+    solves : ndarray of bool, shape (k,)
+        Whether x is certified: round-off in each row relative to its own terms, no row off by what q is, and up to
+        order 12 an exact solution nearby. Where not, nothing is said.
+    residual, relative_residual : Array of shape (k,)
+        As in `Certificate`.
+    """
+
+    x: Array
+    solves: NDArray[np.bool_]
+    residual: Array
+    relative_residual: Array
+
+
+def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> Judged:
+    """The points of faces, corrected in twice the working precision.
+
+    Parameters
+    ----------
+    A : ndarray, shape (k, n, n)
+    q : ndarray, shape (k, n)
+    active : ndarray of bool, shape (k, n)
+        The faces.
+    tolerance : float
+        Of the relative residual.
+    """
+    n = q.shape[1]
+    inverse = inverses(np.where(active[:, :, None] & active[:, None, :], A, identity(n)))
+    by_columns, x, w = np.ascontiguousarray(A.transpose(2, 0, 1)), np.zeros_like(q), q
+    for _ in range(1 + CORRECTIONS):
+        moved = x - np.where(active, (inverse @ np.where(active, w, 0.0)[..., None])[..., 0], 0.0)
+        x = np.where(np.isfinite(moved).all(axis=1, keepdims=True), np.maximum(moved, 0.0), x)
+        # In twice the working precision.
+        total, lost, size = summed(by_columns, x.T[:, :, None], q)
+        w = total + lost
+        relative = w / np.where(size > 0.0, size, 1.0)
+        off = np.abs(np.where(x > 0.0, relative, np.minimum(relative, 0.0)))
+        worst = off.max(axis=1)
+        if (worst <= ROUND_OFF).all():
+            break
+    solves: NDArray[np.bool_] = (worst <= min(ROUND_OFF, tolerance)) & ~(off * size > DROWNED * np.abs(q)).any(axis=1)
+    # Beyond this rows are summed over powers of two, one by one.
+    solves &= (size.max(axis=1) <= LARGE) & ((size >= 1.0 / LARGE).all(axis=1))
+    if n <= LARGEST_DECIDED:
+        exact: NDArray[np.bool_] = Faced.of(A, q, x).exact(w, error_bound(w, size, n + 1))
+        solves &= exact | (~x.any(axis=1) & (q.min(axis=1) >= 0.0))
+    return Judged(x, solves, np.abs(np.minimum(x, w)).max(axis=1), worst)
+
+
+def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
+    """Which complementary faces are not proved to hold no solution, shape (k, 2^n); a row of False is a proof.
+
+    Parameters
+    ----------
+    A : ndarray, shape (k, n, n)
+    q : ndarray, shape (k, n)
+    """
+    k, n = q.shape
+    states = np.broadcast_to(-1 + all_faces(n).astype(np.int8), (k, 2**n, n)).reshape(-1, n)
+    repeated, zero = np.repeat(A, 2**n, axis=0), np.zeros(n)
+    return in_doubt(repeated, np.repeat(q, 2**n, axis=0), zero, zero + np.inf, states).reshape(k, 2**n)
+
+
+def all_faces(n: int) -> NDArray[np.bool_]:
+    """All active sets, shape (2^n, n).
+
+    Parameters
+    ----------
+    n : int
+    """
+    faces: NDArray[np.bool_] = (np.arange(2**n)[:, None] >> np.arange(n) & 1).astype(bool)
+    return faces

@@ -1,0 +1,54 @@
+"""How long each attempt of a strategy goes on, and up to which order it is one; the reasons are beside the numbers."""
+
+from __future__ import annotations
+
+from attrs import evolve
+
+from problems.lcp.active_set.finish import PATIENCE
+from problems.lcp.active_set.iteration import Policy
+
+FIRST = Policy(steps=30)
+"""Corrections of an active set before any path, from a guess that is good; each costs less than a step of a path."""
+
+AT_GUESS = Policy(steps=2)
+"""Of the active set of a problem nearby: where it has hardly changed that is all; else pivots are quicker."""
+
+FROM_ZERO = Policy(steps=30, patience=PATIENCE)
+"""From x = 0, which is no guess at all."""
+
+WHILE_REGULAR = evolve(FROM_ZERO, regular=True)
+"""The same where pivots come next: contacts in excess make faces singular, of which 10 to 20 take 1 to 30 ms, and
+Lemke's method half of that (arches and piles, n = 40 to 320; prices, n = 225 and 400)."""
+
+MOST_Z_STEPS = 1000
+"""The same for a Z-matrix, where n corrections are enough: each makes the active set larger until it is right."""
+
+LARGEST_PROOF = 30_000_000
+"""Order times number of entries up to which a proof is looked for where the budget has no limit of seconds.
+
+Two seconds then: 2.0 for a dense matrix of order 300, 1.5 for a sparse one of order 1000 with seven entries a row, 2.3
+for a tridiagonal one of order 3000; a dense one of order 500, four times the limit, takes 10.
+"""
+
+PROOF_SHARE = 0.2
+"""Of the time left, where that is limited, the most that a proof takes: it is mostly far quicker than a path."""
+
+FEW_PIECES = 10
+"""With bounds, so many pieces as an LCP of this order has faces are tried before any path."""
+
+LARGEST_MADE_DENSE = 500
+"""A sparse matrix of at most this order is made dense for pivots and paths, whose matrices of order n or 2n fill: with
+5 % entries and n = 200 a path takes a tenth of the time then."""
+
+LARGEST_EARLY_FACES = 10
+"""Up to this order trying all faces takes less than two paths: 0.6 ms (n = 6), 3 to 50 ms (9), where the paths of
+feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 45 to 600 ms (12, where many are singular)."""
+
+LEAST_START = 1e-3
+"""In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
+
+MOST_AUGMENTED = 2000
+"""Factorisations of order n for the augmented Lagrangian: 1,500 are needed for QCAPRI, some 100 for most others."""
+
+LARGEST_EARLY_PROOF = 40
+"""Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""

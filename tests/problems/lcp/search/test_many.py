@@ -1,0 +1,166 @@
+"""`solve_many`: the answers of `solve`, of many problems at once; nothing is accepted that `solve` would not accept."""
+
+import runpy
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from problems import lcp
+from problems.lcp import LCP, Outcome
+from problems.lcp.pivoting.lockstep import lemke_bases
+from problems.lcp.proof.certificate import ROUND_OFF
+from problems.lcp.proof.stacked import faces_in_doubt, judged
+from problems.lcp.reference.enumeration import solve_by_enumeration
+from problems.lcp.search import many
+
+BENCHMARK = runpy.run_path(str(Path(__file__).parents[4] / "examples" / "benchmarks" / "size" / "run.py"))
+KINDS = {kind.__name__: kind for kind in BENCHMARK["KINDS"]}
+
+
+@pytest.fixture
+def one_by_one(monkeypatch):
+    """The orders of the problems that `solve` is asked for, one by one."""
+    asked = []
+
+    def counted(problem, **options):
+        asked.append(problem.n)
+        return lcp.solve(problem, **options)
+
+    monkeypatch.setattr(many, "solve", counted)
+    return asked
+
+
+@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("n", [1, 2, 3, 5, 9])
+def test_the_outcomes_are_those_of_solve(name, n):
+    k = 6
+    A, q = KINDS[name](k, n, np.random.default_rng([n, 7]))
+    found = lcp.solve_many(A, q)
+    for i in range(k):
+        problem = LCP(A[i], q[i])
+        one = lcp.solve(problem)
+        assert found.outcome[i] == one.outcome, i
+        assert found.solved[i] == one.solved
+        if one.solved:
+            certificate = lcp.certify(problem, found.x[i])
+            assert certificate.solves()
+            assert found.residual[i] == pytest.approx(certificate.residual, rel=1e-6, abs=1e-300)
+            assert found.relative_residual[i] == pytest.approx(certificate.relative_residual, rel=1e-6, abs=1e-300)
+        else:
+            assert np.isnan(found.x[i]).all()
+
+
+@pytest.mark.parametrize("n", [5, 10, 20])
+def test_problems_with_p_matrices_are_all_solved_together(one_by_one, n):
+    A, q = KINDS["p_matrices"](200, n, np.random.default_rng(n))
+    found = lcp.solve_many(A, q)
+    # The arguments are checked by one problem of order 1.
+    assert one_by_one == [1]
+    assert found.singly.size == 0
+    assert len(found) == found.solved.sum() == 200
+    assert found.relative_residual.max() <= ROUND_OFF
+    assert repr(found) == f"<Answers: 200 of 200 solved, n = {n}, 0 one by one>"
+
+
+def test_what_has_no_solution_is_proved_together_up_to_order_8(one_by_one):
+    A, q = KINDS["unsolvable"](20, 8, np.random.default_rng(1))
+    assert (lcp.solve_many(A, q).outcome == Outcome.UNSOLVABLE).all()
+    assert one_by_one == [1]
+    A, q = KINDS["unsolvable"](2, 9, np.random.default_rng(1))
+    assert (lcp.solve_many(A, q).outcome == Outcome.UNSOLVABLE).all()
+    assert one_by_one == [1, 1, 9, 9]
+
+
+def test_integers_with_ties_against_enumeration_in_exact_arithmetic():
+    A, q = KINDS["degenerate"](60, 3, np.random.default_rng(5))
+    found = lcp.solve_many(A, q)
+    truth = [solve_by_enumeration(LCP(*one)).solvable for one in zip(A, q)]
+    assert found.solved.tolist() == truth
+    assert ((found.outcome == Outcome.UNSOLVABLE) == ~np.array(truth)).all()
+    # A face that holds a solution is never excluded.
+    doubt = faces_in_doubt(A, q)
+    assert all(doubt[i].any() for i in range(60) if truth[i])
+
+
+def test_one_matrix_and_many_q():
+    A, q = KINDS["p_matrices"](50, 4, np.random.default_rng(3))
+    whole, stack = lcp.solve_many(A[0], q), lcp.solve_many(np.repeat(A[:1], 50, axis=0), q)
+    np.testing.assert_array_equal(whole.x, stack.x)
+    np.testing.assert_array_equal(whole.outcome, stack.outcome)
+
+
+def test_an_executor_and_other_parts_change_nothing(monkeypatch):
+    A, q = KINDS["indefinite"](30, 9, np.random.default_rng(4))
+    alone = lcp.solve_many(A, q)
+    monkeypatch.setattr(many, "AT_A_TIME", 7)
+    monkeypatch.setattr(many, "ENTRIES", 300)
+    with ThreadPoolExecutor(2) as executor:
+        spread = lcp.solve_many(A, q, executor=executor)
+    for name in ("x", "outcome", "residual", "relative_residual", "singly"):
+        np.testing.assert_array_equal(getattr(alone, name), getattr(spread, name))
+
+
+def test_larger_problems_are_solved_one_by_one(one_by_one):
+    A, q = KINDS["p_matrices"](2, 25, np.random.default_rng(6))
+    found = lcp.solve_many(A, q)
+    assert found.solved.all()
+    assert one_by_one == [1, 25, 25]
+    assert found.singly.tolist() == [0, 1]
+
+
+def test_a_wrong_face_is_not_accepted():
+    A, q = KINDS["p_matrices"](40, 5, np.random.default_rng(8))
+    active, ended = lemke_bases(A, q)
+    assert ended.all()
+    assert judged(A, q, active, 1e-10).solves.all()
+    active[:, 0] = ~active[:, 0]
+    found = judged(A, q, active, 1e-10)
+    # But for a point that corrections bring to the solution, since one more x_i may be zero.
+    assert found.solves.sum() <= 2
+    assert all(lcp.certify(LCP(A[i], q[i]), found.x[i]).solves() for i in np.flatnonzero(found.solves))
+
+
+def test_what_the_last_digit_decides_is_left_to_solve():
+    """Floats prove nothing of a face whose equations are inconsistent by one digit."""
+    A = np.array([[[1.0, -1.0], [-1.0, 1.0]]] * 2)
+    q = np.array([[-1.0, 1.0], [-1.0, 1.0 - np.finfo(float).eps]])
+    assert lcp.solve_many(A, q).outcome.tolist() == [Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION]
+
+
+def test_nothing_and_no_unknowns():
+    assert len(lcp.solve_many(np.zeros((0, 3, 3)), np.zeros((0, 3)))) == 0
+    none = lcp.solve_many(np.zeros((2, 0, 0)), np.zeros((2, 0)))
+    assert none.solved.all()
+    assert none.x.shape == (2, 0)
+
+
+@pytest.mark.parametrize(
+    ("A", "q", "options", "message"),
+    [
+        (np.eye(2), [1.0, 2.0], {}, r"q: expected an array of shape \(k, n\), found shape \(2,\)"),
+        (
+            np.eye(3),
+            np.ones((4, 2)),
+            {},
+            r"A: expected an array of shape \(4, 2, 2\) or \(2, 2\), found shape",
+        ),
+        (np.eye(2), [[1.0, np.nan]], {}, "q: expected finite numbers, found nan"),
+        ([[np.inf]], [[1.0]], {}, "A: expected finite numbers, found inf"),
+        ([["a"]], [[1.0]], {}, "A: expected real numbers"),
+        (np.eye(1), [[1.0]], {"tolerance": 2.0}, "tolerance: expected a number between 0 and 1, found 2.0"),
+        (np.eye(1), [[1.0]], {"budget": 3}, "budget: expected a Budget, found 3"),
+        (np.eye(1), [[1.0]], {"executor": 3}, "executor: expected a concurrent.futures.Executor"),
+    ],
+)
+def test_bad_input_is_refused_by_name(A, q, options, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        lcp.solve_many(A, q, **options)
+
+
+@pytest.mark.parametrize("name", ["together", "agreement"])
+def test_a_table_of_the_benchmark(name, capsys):
+    BENCHMARK[name]({"together": 100, "agreement": 1000}[name])
+    said = capsys.readouterr().out
+    assert {"together": "100 certified", "agreement": "p_matrices: 0 differ"}[name] in said
