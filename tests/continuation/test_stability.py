@@ -8,17 +8,7 @@ import pytest
 import scipy.sparse as sp
 from attrs import frozen
 
-from continuation import (
-    Budget,
-    HopfPoint,
-    Kind,
-    Stability,
-    Status,
-    from_functions,
-    switch_branch,
-    trace,
-    trace_both,
-)
+from continuation import Budget, HopfPoint, Kind, Stability, Status, from_functions, switch_branch, trace, trace_both
 from continuation.archive import open_archive, resume
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator

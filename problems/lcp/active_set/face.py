@@ -223,7 +223,7 @@ def _cholesky(block: Array) -> Factored | None:
     if factor is None:
         return None
     rounding = float(np.finfo(float).eps) * len(block) * block.diagonal().max()
-    return factor if factor.lower.diagonal().min() ** 2 >= rounding else None
+    return factor if factor.least_pivot >= rounding else None
 
 
 def _lu(block: Array) -> Factored | None:

@@ -152,9 +152,11 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     if 1.0 / EXTREME <= most <= EXTREME:
         return None, True
     rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
-    scaled = LCP(_scaled(problem.A, rows, columns), _times(problem.q, rows), primal=problem.primal)
-    exact = _smallest(problem, rows, columns) > SMALLEST
-    return (Scaled(scaled, rows, columns, exact), True) if exact else (None, False)
+    q = _times(problem.q, rows)
+    if not np.isfinite(q).all() or not _smallest(problem, rows, columns) > SMALLEST:
+        return None, False
+    scaled = LCP(_scaled(problem.A, rows, columns), q, primal=problem.primal)
+    return Scaled(scaled, rows, columns, exact=True), True
 
 
 def _range(problem: MixedLCP) -> tuple[float, float]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
@@ -10,6 +12,18 @@ from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.almost import LOST, AlmostComplementary, Ended
 from problems.lcp.pivoting.dictionary import Dictionary
+
+
+def unit_of(problem: LCP) -> float:
+    """The power of two next to the largest entry of A: in it tables are kept, so that no common factor counts.
+
+    Parameters
+    ----------
+    problem : LCP
+    """
+    A = problem.A.data if problem.sparse else problem.A
+    largest = max(float(A.max(initial=0.0)), -float(A.min(initial=0.0)))
+    return math.ldexp(1.0, math.frexp(largest)[1]) if largest > 0.0 else 1.0
 
 
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
@@ -40,6 +54,7 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
     first = np.empty((n, n + 2), order="F")
     first[:, :n] = problem.A.toarray() if problem.sparse else problem.A
     first[:, n], first[:, n + 1] = d, problem.q
+    first /= unit_of(problem)
     dictionary = Dictionary(first, np.arange(n), np.arange(n, 2 * n + 1))
     if active is not None and active.any():
         dictionary.basic = np.where(active, np.arange(n, 2 * n), np.arange(n))
@@ -103,7 +118,8 @@ class Game:
         ----------
         Lemke and Howson, "Equilibrium points of bimatrix games", SIAM J. Appl. Math. 12, 1964.
         """
-        A, q, n, m = self.problem.A, self.problem.q, self.problem.n, self.actions
+        unit, n, m = unit_of(self.problem), self.problem.n, self.actions
+        A, q = self.problem.A / unit, self.problem.q / unit
         players = np.arange(m), np.arange(m, n)
         if label >= m:
             players = players[::-1]

@@ -13,7 +13,7 @@ from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.start import from_solution
 from problems.lcp.parametric.trail import state_at
 from problems.lcp.pivoting.almost import AlmostComplementary, Ended
-from problems.lcp.pivoting.starts import Game, covering
+from problems.lcp.pivoting.starts import Game, covering, unit_of
 from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.search.search import Search
 
@@ -75,15 +75,15 @@ def by_lemke(search: Search, seed: int) -> bool:
     """
     problem = search.problem
     assert isinstance(problem, LCP)
-    most = most_pivots(problem.n)
+    most, unit = most_pivots(problem.n), unit_of(problem)
     bounds = constraints(problem)
     if bounds.any():
         random = np.random.default_rng(seed)
         for _ in range(COVERINGS):
-            path = covering(problem, np.where(bounds, 0.0, 10.0 ** random.uniform(*SPREAD, problem.n)))
+            path = covering(problem, np.where(bounds, 0.0, unit * 10.0 ** random.uniform(*SPREAD, problem.n)))
             if path is not None and _reached(search, path, path.run(2 * most, search.seconds_left)):
                 return True
-    path = covering(problem, np.ones(problem.n))
+    path = covering(problem, np.full(problem.n, unit))
     if path is None:
         return False
     ended = path.run(most, search.seconds_left)

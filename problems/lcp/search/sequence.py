@@ -17,7 +17,7 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
 from problems.lcp.data.scaling import SMALLEST, Scaled, balanced
 from problems.lcp.pivoting.almost import Ended
-from problems.lcp.pivoting.starts import covering
+from problems.lcp.pivoting.starts import covering, unit_of
 from problems.lcp.search.judging import answer, unscaled
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.pivots import AT_END, LARGEST, most_pivots
@@ -132,7 +132,7 @@ class Solver:
         assert isinstance(problem, LCP)
         if problem.n > LARGEST:
             return False
-        begins: list[tuple[Array, Mask | None]] = [(np.ones(problem.n), None)]
+        begins: list[tuple[Array, Mask | None]] = [(np.full(problem.n, unit_of(problem)), None)]
         if self._solved is not None:
             begins.insert(0, (self._solved - problem.q, self._basis))
         for d, basis in begins:
