@@ -148,7 +148,8 @@ class Crossings:
             return _rejected(attempt, Rejection.ORIENTATION, inside[0])
         if len(together) > 1:
             return self._together(arc, attempt, prediction, together, flipped)
-        doubtful = len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
+        changing = hasattr(prediction, "segment") or bool(looked.get(LOOKS[0]))
+        doubtful = changing and len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
         if not flipped:
             seen = any(found and found[0] < at for at, found in looked.items())
             # A series is so near to the path that its looks tell all.
@@ -228,7 +229,7 @@ class Crossings:
                 break
             ahead = max(BEYOND / at, 1.0 / least)
             found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, ahead, turned=k)]
-            if not found[LOOKS[0]] and not series:
+            if not found[LOOKS[0]] and not series and attempt.correction.contraction <= DOUBTFUL:
                 break
             if series and len(EIGHTHS) <= len(found) == len(looks) < MOST_LOOKS and (peak := _peak(found)) is not None:
                 looks.append(peak)
