@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 from attrs import define, field, frozen
-from attrs.validators import in_, optional
+from attrs.validators import optional
 from scipy.optimize import brentq
 
 from continuation.arrays import Array
-from continuation.checks import integer, sign
+from continuation.checks import integer, one_of, sign
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.linear.spectrum import Spectrum, spectrum
 from continuation.path import LocatedEvent, Step
@@ -67,7 +67,7 @@ class HopfPoint:
         +1 only where a pair becomes unstable, -1 only where one becomes stable.
     """
 
-    side: int = field(default=1, validator=in_((1, -1)))
+    side: int = field(default=1, validator=one_of(1, -1))
     k: int | None = field(default=None, validator=optional(integer(1)))
     terminal: int = field(default=0, validator=integer(0))
     direction: int = field(default=0, validator=sign)
@@ -104,7 +104,7 @@ class Stability:
         As for `HopfPoint`, which is watched for.
     """
 
-    side: int = field(default=1, validator=in_((1, -1)))
+    side: int = field(default=1, validator=one_of(1, -1))
     k: int | None = field(default=None, validator=optional(integer(1)))
     terminal: int = field(default=0, validator=integer(0))
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.checks import POSITIVE_FINITE, real_vector
+from continuation.checks import POSITIVE_FINITE, complain, real_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
@@ -26,7 +26,12 @@ APART = 1e-6
 
 
 def _vectors(known: Any) -> tuple[Array, ...]:
-    return tuple(np.atleast_1d(real_vector("known", y)) for y in known)
+    if not isinstance(known, Iterable) or isinstance(known, str):
+        raise complain(TypeError, "known", "several solutions, as in a list", known)
+    vectors = tuple(np.atleast_1d(real_vector("known", y)) for y in known)
+    if not all(np.isfinite(y).all() for y in vectors):
+        raise complain(ValueError, "known", "finite numbers", known)
+    return vectors
 
 
 @frozen(eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, Future
+from numbers import Integral
 from os import PathLike
 from typing import Any, Unpack
 
@@ -18,6 +19,7 @@ from continuation.counts import Counts
 from continuation.diagrams.branches import LABELS, Branch, Diagram, Special, from_point
 from continuation.diagrams.deflation import others, same_solution, solved
 from continuation.diagrams.junctions import SAME_POINT, Junction, directions_of, meetings
+from continuation.evaluation.evaluator import Evaluator
 from continuation.events.box import is_inside
 from continuation.labels import Labels
 from continuation.metric import Inherited, norm
@@ -121,11 +123,17 @@ def diagram(
         For bad input; if there is no box, and so no end; if the start is not inside of it.
     """
     check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})
-    if not isinstance(branches, int) or branches < 1:
-        raise complain(ValueError, "branches", "a positive integer", branches)
+    Evaluator(homotopy, Counts())
+    for name, count in (("branches", branches), ("generations", 1 if generations is None else generations)):
+        if not isinstance(count, Integral) or isinstance(count, bool) or count < (name == "branches"):
+            raise complain(ValueError, name, "a positive integer", count)
+    if not is_number(step) or isinstance(step, bool) or not 0.0 < step < np.inf:
+        raise complain(ValueError, "step", "a positive finite number", step)
+    if stability is not None and not isinstance(stability, Stability):
+        raise complain(TypeError, "stability", "a Stability or None", stability)
     if executor is not None:
         instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
-    if not all(is_number(lam) for lam in deflate):
+    if not isinstance(deflate, Sequence) or not all(is_number(lam) and np.isfinite(lam) for lam in deflate):
         raise complain(TypeError, "deflate", "values of the parameter", deflate)
     if not all(is_guess(start) for start in starts):
         raise complain(TypeError, "starts", "pairs (y, lam)", starts)

@@ -55,7 +55,7 @@ def world() -> World:
 
 OPTIONS = {
     "preset": "preset", "predictor": "predictor", "corrector": "corrector", "controller": "controller",
-    "metric": "metric", "events": "events", "check_jacobian": "truth", "examine": "truth",
+    "metric": "metric", "events": "events", "guards": "guards", "check_jacobian": "truth", "examine": "truth",
 }  # fmt: skip
 COURSE = {
     "tolerance": "tolerance", "budget": "budget", "target": "target", "direction": "sign", "start": "start",
@@ -152,6 +152,18 @@ def engine(w: World) -> Iterator[Call]:
     family = c.Family(w.homotopy, "splitting")
     yield Call(c.Family, {**right, "name": "splitting"}, {"name": "text"})
     yield Call(c.Curve, {"family": family, "event": w.event}, {"family": "family"})
+    watch = {"side": "sign, not 0", "k": "count from 1 or None", "terminal": "from 0"}
+    yield Call(c.Stability, {}, watch)
+    yield Call(c.HopfPoint, {}, {**watch, "direction": "sign"})
+    yield Call(
+        c.diagram, {"homotopy": w.pitchfork, "box": {"lam": (-1.0, 1.0)}},
+        {"homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
+         "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values"},
+    )  # fmt: skip
+    yield Call(
+        c.Deflated, {**right, "known": [np.zeros(1)]},
+        {"homotopy": "homotopy", "known": "known points", "power": "positive, finite", "shift": "not negative"},
+    )
     yield Call(check_homotopy, right, {"steps": "count or None"})
     yield Call(describe, {"archive": None}, {"archive": "archive"})
 
@@ -170,6 +182,11 @@ def solver(w: World) -> Iterator[Call]:
               "restarts": "count or None", "archive": "name of a new file", "progress": "truth",
               "executor": "executor", "x0": "start of an LCP"}  # fmt: skip
     yield Call(lcp.solve, right, {**kinds, **search, **limits, **OPTIONS})
+    yield Call(
+        lcp.solve_many, {"A": np.eye(2), "q": -np.ones((3, 2))},
+        {"A": "matrix", "q": "vectors", "tolerance": "tolerance of a solution", "budget": "budget",
+         "executor": "executor"},
+    )  # fmt: skip
     yield Call(lcp.Solver, {"A": np.eye(2)}, {"A": "matrix", "tolerance": "tolerance of a solution"})
     yield Call(lcp.Solver(np.eye(2)).solve, {"q": -np.ones(2)}, {"q": "vector"})
     yield Call(lcp.solutions, right, {**kinds, "enumerate_faces": "truth", **limits})

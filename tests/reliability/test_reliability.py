@@ -28,8 +28,9 @@ RESULTS = {
     "Certificate", "Counts", "Decision", "ExactCertificate", "ExactPath", "Exhaustion", "Farkas", "FloatFarkas",
     "Gradient", "Interrupted", "Kind", "Knot", "LocatedEvent", "Options", "Outcome", "Path", "Preset", "Program",
     "Proof", "Sensitivity", "Settings", "Solution", "Solutions", "Start", "Status", "Step", "StepMeasures",
-    "Correction", "ComplementaritySolution", "FixedPointHomotopy", "NewtonHomotopy", "BrownAlmostLinear",
-    "Differentiable", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite", "Secant", "Tangent",
+    "Answers", "Diagram", "Correction", "ComplementaritySolution", "FixedPointHomotopy", "NewtonHomotopy",
+    "BrownAlmostLinear", "Differentiable", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite",
+    "Secant", "Tangent",
 }  # fmt: skip
 """What is made by the package and handed over, made by a function that is in the table, or takes no argument."""
 

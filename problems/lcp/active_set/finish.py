@@ -267,7 +267,7 @@ class Finish:
         if low_x >= 0.0 and low_w >= 0.0:
             return True
         size = float(np.abs(x).max())
-        return low_x >= -self.tolerance * size and low_w >= -self.tolerance * (problem.scale(x) - 1.0)
+        return low_x >= -self.tolerance * size and low_w >= -self.tolerance * problem.size_of_terms(x)
 
 
 def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certificate:

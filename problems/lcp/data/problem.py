@@ -236,7 +236,16 @@ class MixedLCP:
         -------
         float
         """
-        return 1.0 + max(float(np.abs(self.q).max(initial=0.0)), self._norm * float(np.abs(x).max(initial=0.0)))
+        return 1.0 + self.size_of_terms(x)
+
+    def size_of_terms(self, x: Array) -> float:
+        """max(|q|_inf, |A|_inf |x|_inf): what rows are made of at most.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        return max(float(np.abs(self.q).max(initial=0.0)), self._norm * float(np.abs(x).max(initial=0.0)))
 
     @cached_property
     def _norm(self) -> float:

@@ -149,7 +149,7 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     least, most = _range(problem)
     if not 0.0 < most <= ALIKE * least:
         return None, False
-    if 1.0 / EXTREME <= most <= EXTREME:
+    if EXTREME**-0.5 <= most <= EXTREME**0.5:
         return None, True
     rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
     q = _times(problem.q, rows)
@@ -172,11 +172,21 @@ def _range(problem: MixedLCP) -> tuple[float, float]:
     return float(both.min()), float(both.max())
 
 
-def extreme(problem: MixedLCP) -> bool:
-    """Whether entries are so large, or so small, that products of three of them may overflow or vanish."""
+def far_apart(problem: MixedLCP) -> bool:
+    """Whether some entries are extreme beside others: `extreme`, whatever factor all of them have."""
+    size = _sizes(problem)
+    return bool(size.size and size.max() * (1.0 / EXTREME) > size.min())
+
+
+def _sizes(problem: MixedLCP) -> Array:
     values = problem.A.data if sp.issparse(problem.A) else problem.A
     size = np.append(np.abs(values).ravel(), np.abs(problem.q))
-    size = size[size > 0.0]
+    return size[size > 0.0]
+
+
+def extreme(problem: MixedLCP) -> bool:
+    """Whether entries are so large, or so small, that products of three of them may overflow or vanish."""
+    size = _sizes(problem)
     return bool(size.size and (size.max() > EXTREME or size.min() < 1.0 / EXTREME))
 
 

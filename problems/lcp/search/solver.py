@@ -29,7 +29,7 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme, without_far_factor
+from problems.lcp.data.scaling import balanced, extreme, far_apart, without_far_factor
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
@@ -165,7 +165,7 @@ def solve(
     scaled, postponed = without_far_factor(problem) if candidate else (None, False)
     plain = problem if scaled is None else scaled.problem
     # What scaling to floats would round is decided by exact arithmetic where that is cheap.
-    postponed = postponed and (problem.n > LARGEST_DECIDED or not extreme(plain))
+    postponed = postponed and (problem.n > LARGEST_DECIDED or not far_apart(plain))
     quick = postponed and problem.n <= at_once.LARGEST and not problem.sparse
     kept: dict[bytes, Face] | None = {} if quick else None
     immediate = None

@@ -142,10 +142,16 @@ class Observing:
         return {self.name: 3.0}
 
 
-@pytest.mark.parametrize("name", ["a/b", "a\0b", "", "x" * 300, "\udcff", "a\nb", " a", 3])
+@pytest.mark.parametrize("name", ["a/b", "a\0b", "", "x" * 300, "\udcff", "a\nb", " a"])
 def test_names_that_no_file_can_hold_are_refused_when_tracing_begins(tmp_path, name):
     with pytest.raises(ValueError, match="observe: expected names"):
         trace(Observing(name), archive=tmp_path / "run.h5")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_name_that_is_no_text_is_refused_at_the_first_point(tmp_path):
+    with pytest.raises(TypeError, match="observe: expected a mapping of names"):
+        trace(Observing(3), archive=tmp_path / "run.h5")
     assert not list(tmp_path.iterdir())
 
 
