@@ -22,8 +22,9 @@ KNOWN = {
     (36.0, 40.0, 0.06, 0.2, 1.0): 4.48668,
     (44.0, 40.0, 0.06, 0.4, 2.0): 5.64674,
 }
-"""Price by spot, strike, rate, volatility and maturity: binomial trees of 1000, 2000 and 4000 steps, extrapolated.
-Tables give 6.0905, 4.4867 and 5.6470, from trees of a finite number of steps."""
+"""Price by spot, strike, rate, volatility and maturity: binomial trees of 1000 to 8000 steps, extrapolated, by two
+rules (Broadie and Detemple; Leisen and Reimer) that agree to 1e-5. The published 6.0905, 4.4867 and 5.6470 are of
+trees that are not extrapolated: the mean of Cox, Ross and Rubinstein's with 3000 and 3001 steps has these digits."""
 
 
 @frozen(eq=False)
