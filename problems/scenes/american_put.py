@@ -153,7 +153,7 @@ class AmericanPut:
             if not well:
                 break
             values[1:-1] = payoff[1:-1] + found.x
-            # More time left is never a reason to exercise earlier; in the first steps the edge is within a mesh of the strike.
+            # With more time left it is exercised at no higher price; in the first steps the mesh is too coarse to tell.
             edges.append(min(self._edge(found.x, x), edges[-1]))
         return Exercise(values, times[: len(edges)], np.array(edges), well)
 
