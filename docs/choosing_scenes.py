@@ -43,7 +43,16 @@ def ours_beats_bfgs_on_fine_meshes(charts):
 
 @claim
 def brennan_schwartz_is_quicker(charts):
-    return ratio(charts["scenes-meshes"], "ours", "Brennan-Schwartz", "seconds") > 3.0
+    return ratio(charts["scenes-meshes"], "ours", "Brennan-Schwartz", "seconds") > 2.0
+
+
+@claim
+def arc_lengths_pay_for_one_unknown(charts):
+    name = "arc length (Crisfield)"
+    one = charts["scenes-exact"]
+    return ratio(charts["scenes-meshes"], name, "ours", "seconds") > 1.4 and (
+        _at(one, "snap-through", name).seconds < _at(one, "snap-through", "ours").seconds
+    )
 
 
 @claim
