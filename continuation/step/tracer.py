@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from functools import partial
 from typing import Any, Protocol, Unpack
 
@@ -307,8 +308,10 @@ class Tracer:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
         path.seconds, self._clock = self.seconds, None
         path.references = self.references
-        for observer in self.observers:
-            observer.end(self)
+        # Each of them, whatever another one raises: an archive closes.
+        with ExitStack() as telling:
+            for observer in reversed(self.observers):
+                telling.callback(observer.end, self)
 
     def _record(self, step: Step, state: State, events: Sequence[LocatedEvent] = ()) -> None:
         """Add a step, with the events before it, to the path, the state and the observers: all or, if cut off, none."""
