@@ -226,10 +226,18 @@ def hostile(k: int, r: np.random.Generator) -> Data:
 
 
 def exactly_off(A: Array, q: Array, x: Array) -> float:
-    """The relative residual of x >= 0 in rational arithmetic: see `lcp.Certificate`."""
+    """The relative residual of x >= 0 in rational arithmetic: see `lcp.Certificate`.
+
+    A row is satisfied where entries of x that no float holds can make up for what it is off.
+    """
     terms = [[Fraction(a) * Fraction(b) for a, b in zip(row, x.tolist())] for row in A.tolist()]
     sizes = [sum(map(abs, row), abs(Fraction(c))) for row, c in zip(terms, q.tolist())]
     w = [sum(row, Fraction(c)) / (size or 1) for row, c, size in zip(terms, q.tolist(), sizes)]
+    least = np.finfo(float).smallest_normal
+    held = [float(value) > FARTHEST if b == 0.0 else b >= least for b, value in zip(x.tolist(), w)]
+    spacing = Fraction(math.ulp(0.0))
+    made_up = [spacing * sum(abs(Fraction(a)) for a, there in zip(row, held) if not there) for row in A.tolist()]
+    w = [Fraction(0) if abs(value) * size <= most else value for value, size, most in zip(w, sizes, made_up)]
     shares = [max(abs(row[j]) / (size or 1) for row, size in zip(terms, sizes)) for j in range(len(q))]
     return max(float(abs(min(share, value))) if value > 0 else float(-value) for share, value in zip(shares, w))
 
