@@ -242,6 +242,13 @@ def exactly_off(A: Array, q: Array, x: Array) -> float:
     return max(float(abs(min(share, value))) if value > 0 else float(-value) for share, value in zip(shares, w))
 
 
+def proves(A: Array, q: Array, y: tuple[int, ...]) -> bool:
+    """Whether y >= 0, A'y <= 0 and q'y < 0 in rational arithmetic, so that there is no feasible point."""
+    columns = ([Fraction(a) for a in column] for column in A.T.tolist())
+    below = all(sum(a * b for a, b in zip(column, y)) <= 0 for column in columns)
+    return min(y) >= 0 and below and sum(Fraction(a) * b for a, b in zip(q.tolist(), y)) < 0
+
+
 def truth(number: int, seed: int) -> int:
     """SOLVED and UNSOLVABLE against enumeration; no exception, no warning, nothing slow."""
     seen: Counter[str] = Counter()
@@ -268,6 +275,8 @@ def truth(number: int, seed: int) -> int:
         if found.solved and exactly_off(A, q, found.x) > FARTHEST:
             seen["DIFFERS: x is no solution"] += 1
             print(f"OFF by {exactly_off(A, q, found.x):.1e} at {k}: {found.message}")
+        if found.outcome is Outcome.UNSOLVABLE and found.farkas is not None:
+            seen["Farkas vectors, exact" if proves(A, q, found.farkas.y) else "DIFFERS: no Farkas vector"] += 1
         if found.outcome not in (Outcome.SOLVED, Outcome.UNSOLVABLE):
             seen[f"undecided, solvable: {exists}: {found.outcome.name}"] += 1
     return report(f"{number} small problems against enumeration, seed {seed}, slowest {slowest:.1f} s", seen)
