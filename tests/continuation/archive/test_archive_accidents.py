@@ -277,7 +277,6 @@ def test_what_a_kill_left_beside_is_removed_by_the_next(tmp_path):
 def test_a_kill_at_the_moment_of_naming(tmp_path, work):
     file, target = killed(tmp_path / "run.h5"), tmp_path / "new.h5"
     for name in ("link", "replace"):
-
         real = getattr(os, name)
 
         def die(*arguments, real=real):
