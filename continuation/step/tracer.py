@@ -247,8 +247,6 @@ class Tracer:
             return self.state.origin.u
         return self._guess if self._guess is not None else self._evaluator.start()
 
-    # -- beginning and end ------------------------------------------------------------------------------------
-
     def _first(self) -> Linearization:
         settings = self.settings
         u0 = self._evaluator.start()
@@ -306,8 +304,7 @@ class Tracer:
         path.status, path.message, path.rejected = verdict.status, str(verdict), verdict.rejected
         if verdict.limit is not None:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
-        path.seconds, self._clock = self.seconds, None
-        path.references = self.references
+        path.seconds, self._clock, path.references = self.seconds, None, self.references
         # Each of them, whatever another one raises: an archive closes.
         with ExitStack() as telling:
             for observer in reversed(self.observers):
