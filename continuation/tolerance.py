@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+import sys
 
 from attrs import field, frozen
 
 from continuation.arrays import Array
 from continuation.checks import FRACTION, POSITIVE, complain, is_number
 from continuation.metric import norm
+
+LEAST = sys.float_info.epsilon**2
+"""Of a fraction of the path: after an increment of the size of round-off the error is about its square."""
 
 
 @frozen
@@ -52,15 +56,17 @@ def as_tolerance(value: float | Tolerance) -> Tolerance:
     TypeError
         If it is neither a Tolerance nor a real number.
     ValueError
-        If the number is not between 0 and 1: it is a fraction of the path.
+        If the number is not between the square of round-off and 1: it is a fraction of the path.
     """
-    if isinstance(value, Tolerance):
-        return value
     expected = "a positive finite number or a Tolerance"
-    if not is_number(value):
-        raise complain(TypeError, "tolerance", expected, value)
-    if not 0.0 < value < math.inf:
-        raise complain(ValueError, "tolerance", expected, value)
-    if value >= 1.0:
-        raise complain(ValueError, "tolerance", "less than 1, since it is a fraction of the path", value)
-    return Tolerance(relative=float(value))
+    if not isinstance(value, Tolerance):
+        if not is_number(value):
+            raise complain(TypeError, "tolerance", expected, value)
+        if not 0.0 < value < math.inf:
+            raise complain(ValueError, "tolerance", expected, value)
+        if value >= 1.0:
+            raise complain(ValueError, "tolerance", "less than 1, since it is a fraction of the path", value)
+    tolerance = value if isinstance(value, Tolerance) else Tolerance(relative=float(value))
+    if tolerance.relative < LEAST:
+        raise complain(ValueError, "tolerance", f"at least {LEAST:.1e}, the square of round-off", value)
+    return tolerance

@@ -24,6 +24,9 @@ the way to a pole is looked at."""
 RANK, REAL = 1e-14, 1e-8
 """Singular values, relative, that are round-off; and the imaginary part of a real root: half of the digits."""
 
+HUGE = 1e150
+"""The square of a larger number overflows."""
+
 
 @frozen(eq=False)
 class Pade:
@@ -102,7 +105,8 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
     the path's own stays, and ends the range of all of them.
     """
     order = len(series) - 1
-    if not np.isfinite(series_reach) or order < 4:
+    # Terms whose squares overflow have no sizes.
+    if order < 4 or not np.isfinite(series_reach) or np.abs(series).max() > HUGE:
         return None
     shapes = [approximant(series[: k + 1], weights) for k in range(order, max(order - DEGREES, 2), -1)]
     longest, reach = shapes[0], 0.0

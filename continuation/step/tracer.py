@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from functools import partial
 from typing import Any, Protocol, Unpack
 
@@ -246,8 +247,6 @@ class Tracer:
             return self.state.origin.u
         return self._guess if self._guess is not None else self._evaluator.start()
 
-    # -- beginning and end ------------------------------------------------------------------------------------
-
     def _first(self) -> Linearization:
         settings = self.settings
         u0 = self._evaluator.start()
@@ -305,10 +304,11 @@ class Tracer:
         path.status, path.message, path.rejected = verdict.status, str(verdict), verdict.rejected
         if verdict.limit is not None:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
-        path.seconds, self._clock = self.seconds, None
-        path.references = self.references
-        for observer in self.observers:
-            observer.end(self)
+        path.seconds, self._clock, path.references = self.seconds, None, self.references
+        # Each of them, whatever another one raises: an archive closes.
+        with ExitStack() as telling:
+            for observer in reversed(self.observers):
+                telling.callback(observer.end, self)
 
     def _record(self, step: Step, state: State, events: Sequence[LocatedEvent] = ()) -> None:
         """Add a step, with the events before it, to the path, the state and the observers: all or, if cut off, none."""

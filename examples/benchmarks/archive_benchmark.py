@@ -19,7 +19,6 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-import xarray
 from archive_damage import damage
 from archive_kills import kill
 from attrs import evolve
@@ -182,6 +181,8 @@ def _verdict(file: Path, path) -> str:
 
 def small(folder: Path, count: int = 10_000) -> None:
     """Ten thousand small paths in one file: how fast they are written, how large it is, how fast it is read."""
+    import xarray  # which takes longer than the smallest campaign
+
     file = folder / "small.h5"
     options = {"budget": Budget(steps=12)}
     begin = time.perf_counter()

@@ -81,7 +81,7 @@ KINDS: Mapping[str, tuple[Any, ...]] = {
     "vectors": (None, 3, "a", 1j, [[NAN, 0.0]], {}, len, np.ones(3), np.ones((2, 2, 2))),
     "observers": (None, 3, "log", len, [len], [3], [None], object()),
     "budget": (5, "5", NAN, {"steps": 3}, c.Budget, [], len),
-    "tolerance": (*POSITIVE, INF, 1e300, 1.0, c.Tolerance, "1e-8"),
+    "tolerance": (*POSITIVE, INF, 1e300, 1.0, 1e-40, c.Tolerance(relative=1e-40), c.Tolerance, "1e-8"),
     "tolerance of a solution": (*POSITIVE, INF, 1.0, 2, "1e-8", c.Tolerance()),
     "target": (*optional(NO_NUMBERS), NAN, INF, -INF, "x"),
     "start": (3, "a", (np.zeros(5), np.ones(5)), ("a", "b"), (np.full(2, NAN), np.ones(2)), (np.zeros(2), np.zeros(2)),

@@ -226,12 +226,27 @@ def hostile(k: int, r: np.random.Generator) -> Data:
 
 
 def exactly_off(A: Array, q: Array, x: Array) -> float:
-    """The relative residual of x >= 0 in rational arithmetic: see `lcp.Certificate`."""
+    """The relative residual of x >= 0 in rational arithmetic: see `lcp.Certificate`.
+
+    A row is satisfied where entries of x that no float holds can make up for what it is off.
+    """
     terms = [[Fraction(a) * Fraction(b) for a, b in zip(row, x.tolist())] for row in A.tolist()]
     sizes = [sum(map(abs, row), abs(Fraction(c))) for row, c in zip(terms, q.tolist())]
     w = [sum(row, Fraction(c)) / (size or 1) for row, c, size in zip(terms, q.tolist(), sizes)]
+    least = np.finfo(float).smallest_normal
+    held = [float(value) > FARTHEST if b == 0.0 else b >= least for b, value in zip(x.tolist(), w)]
+    spacing = Fraction(math.ulp(0.0))
+    made_up = [spacing * sum(abs(Fraction(a)) for a, there in zip(row, held) if not there) for row in A.tolist()]
+    w = [Fraction(0) if abs(value) * size <= most else value for value, size, most in zip(w, sizes, made_up)]
     shares = [max(abs(row[j]) / (size or 1) for row, size in zip(terms, sizes)) for j in range(len(q))]
     return max(float(abs(min(share, value))) if value > 0 else float(-value) for share, value in zip(shares, w))
+
+
+def proves(A: Array, q: Array, y: tuple[int, ...]) -> bool:
+    """Whether y >= 0, A'y <= 0 and q'y < 0 in rational arithmetic, so that there is no feasible point."""
+    columns = ([Fraction(a) for a in column] for column in A.T.tolist())
+    below = all(sum(a * b for a, b in zip(column, y)) <= 0 for column in columns)
+    return min(y) >= 0 and below and sum(Fraction(a) * b for a, b in zip(q.tolist(), y)) < 0
 
 
 def truth(number: int, seed: int) -> int:
@@ -260,6 +275,8 @@ def truth(number: int, seed: int) -> int:
         if found.solved and exactly_off(A, q, found.x) > FARTHEST:
             seen["DIFFERS: x is no solution"] += 1
             print(f"OFF by {exactly_off(A, q, found.x):.1e} at {k}: {found.message}")
+        if found.outcome is Outcome.UNSOLVABLE and found.farkas is not None:
+            seen["Farkas vectors, exact" if proves(A, q, found.farkas.y) else "DIFFERS: no Farkas vector"] += 1
         if found.outcome not in (Outcome.SOLVED, Outcome.UNSOLVABLE):
             seen[f"undecided, solvable: {exists}: {found.outcome.name}"] += 1
     return report(f"{number} small problems against enumeration, seed {seed}, slowest {slowest:.1f} s", seen)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import warnings
 import zipfile
 from collections.abc import Callable, Mapping
@@ -68,12 +69,19 @@ def _npy(file: str) -> Mapping[str, Any]:
 
 
 def _json(file: str) -> Mapping[str, Any]:
-    value = json.loads(Path(file).read_text(encoding="utf-8"))
+    value = json.loads(Path(file).read_text(encoding="utf-8"), object_pairs_hook=_named_once)
     if isinstance(value, dict):
         return value
     if isinstance(value, list):
         return {ALONE: value}
     raise ValueError(f"it holds {value!r}, not an object with A and q")
+
+
+def _named_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    named = dict(pairs)
+    if len(named) < len(pairs):
+        raise ValueError("it names something twice")
+    return named
 
 
 def _mat(file: str) -> Mapping[str, Any]:
@@ -99,7 +107,11 @@ def _matrix_market(file: str) -> Mapping[str, Any]:
 
 def _text(file: str) -> Mapping[str, Any]:
     text = Path(file).read_text(encoding="utf-8")
-    rows = [line.split("#")[0].replace(",", " ").split() for line in text.splitlines()]
+    lines = [line.split("#")[0] for line in text.splitlines()]
+    for k, line in enumerate(lines, 1):
+        if re.search(r"^\s*,|,\s*,", line):
+            raise ValueError(f"line {k} has an empty cell")
+    rows = [line.replace(",", " ").split() for line in lines]
     numbers = [[float(number) for number in row] for row in rows if row]
     if not numbers:
         raise ValueError("it is empty")

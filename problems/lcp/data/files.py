@@ -211,8 +211,10 @@ def _named(contents: Mapping[str, Any], name: str, argument: str, path: str | Pa
         array = np.asarray(value)
         return array.astype(float) if array.dtype == object else array
     except (ValueError, TypeError, OverflowError) as error:
-        complaint = f"{name}: expected real numbers in rows of one length, found others in {_shown(path)} ({error})"
-        raise InputError(argument, complaint) from None
+        said = str(error)
+        if not said.startswith(f"{name}: "):
+            said = f"{name}: expected real numbers in rows of one length, found others ({error})"
+        raise InputError(argument, f"{said} in {_shown(path)}") from None
 
 
 def _shown(path: str | PathLike[str] | None) -> str:

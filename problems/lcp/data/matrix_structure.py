@@ -49,8 +49,12 @@ def semidefinite(symmetric: Array) -> bool:
     if (diagonal < 0.0).any():
         return False
     # Scaling by D adds to its diagonal what is added here to that of the matrix: a factorisation does not feel D.
-    shifted = symmetric.copy()
-    shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * np.where(diagonal > 0.0, diagonal, 1.0)
+    shifted, sizes = symmetric.copy(), diagonal
+    if (diagonal == 0.0).any():
+        # The row's largest entry serves; of an empty row any number does.
+        rows = np.abs(symmetric).max(axis=1)
+        sizes = np.where(diagonal > 0.0, diagonal, np.where(rows > 0.0, rows, 1.0))
+    shifted[np.diag_indices(n)] += SEMIDEFINITE_SHIFT * n * sizes
     # The transpose is in LAPACK's order.
     return bool(dpotrf(shifted.T, lower=1, overwrite_a=1, clean=0)[1] == 0)
 

@@ -29,9 +29,11 @@ ROUND_OFF = 64 * float(np.finfo(float).eps)
 SMALL = 1e-6
 """Relative to the terms of the rows: an x_i and a w_i below this may both be zero in truth."""
 
-UNDERFLOW = float(np.finfo(float).smallest_normal) / float(np.finfo(float).eps)
-"""A row whose terms are all below this, where others are of order 1, is satisfied as well as floats can: its products
-are no normal numbers. So is the far end of a solution that falls off by powers, away from the one q_i that is not 0."""
+TINY = float(np.finfo(float).smallest_normal)
+"""An x_j below this in size is a multiple of 2^-1074, and may be off by half of that."""
+
+MOST_MADE_UP = 2.0**-50
+"""2^-1074 times the largest float: more of one x_j no row can have."""
 
 
 @frozen(eq=False)
@@ -143,9 +145,7 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
         return _of_lcp(problem, terms, x)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         w = np.ldexp(terms.w, terms.exponents)
-        size = np.ldexp(terms.size, terms.exponents)
-        lost = (terms.size == 0.0) | (size < UNDERFLOW * min(float(size.max()), 1.0))
-        relative = np.where(lost, 0.0, terms.w / np.where(lost, 1.0, terms.size))
+        relative = terms.w / np.where(terms.size > 0.0, terms.size, 1.0)
         above, below = x - problem.lower, problem.upper - x
         distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
         products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))
@@ -159,12 +159,30 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
         x=x,
         w=w,
         residual=float(np.abs(problem.natural_map(x, w)).max()),
-        relative_residual=float(off.max()),
+        relative_residual=largest(_counted(problem, terms, x, off)),
         negative_x=float(np.maximum(np.maximum(-above, -below), 0.0).max()),
         negative_w=float(np.maximum(forbidden, 0.0).max()),
         complementarity=float(products.max()),
         drowned=drowned_part(problem, terms, off),
     )
+
+
+def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
+    """How far each row is off, but for those that entries of x that no float holds can make up for.
+
+    So it is at the far end of a solution that falls off by powers, away from the one q_i that is not 0. An x_j at its
+    bound counts only where w_j is not pressed against it: another one is exactly there.
+    """
+    with np.errstate(over="ignore", under="ignore"):
+        asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
+        if not asked.any():
+            return off
+        inward = np.where(x == problem.upper, -terms.w, terms.w)
+        away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
+        reach = abs(problem.A) @ ((np.abs(x) < TINY) & away).astype(float)
+        most = np.ldexp(np.minimum(reach, np.finfo(float).max), -1074 - terms.exponents)
+    made_up = (np.abs(terms.w) <= most) & (x >= problem.lower) & (x <= problem.upper)
+    return np.where(made_up, 0.0, off)
 
 
 def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
@@ -178,16 +196,16 @@ def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
     if low < 0.0:
         asked |= x < 0.0
     shares = shares_in_rows(terms, x, x, asked) if asked.any() else np.where(x > 0.0, np.inf, 0.0)
-    off = np.minimum(shares, relative)
+    off = np.abs(np.minimum(shares, relative))
     return Certificate(
         x=x,
         w=w,
         residual=largest(np.minimum(x, w)),
-        relative_residual=largest(off),
+        relative_residual=largest(_counted(problem, terms, x, off)),
         negative_x=max(-low, 0.0),
         negative_w=max(-float(w.min()), 0.0),
         complementarity=complementarity,
-        drowned=drowned_part(problem, terms, np.abs(off)),
+        drowned=drowned_part(problem, terms, off),
     )
 
 

@@ -1,7 +1,9 @@
 """Accidents: disks and quotas that are full, names that no file can hold, two at work on one file, links and modes."""
 
+import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -44,12 +46,19 @@ def killed(file, steps=30):
 
 
 LIMITED = """
-import resource, signal, sys
+import json, os, resource, signal, sys
 from continuation import trace
 from continuation.archive import ArchiveError, Limits, PathLog, export, merge, recover, resume
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine
-work, file, limit = sys.argv[1], sys.argv[2], int(sys.argv[3])
+for work, file, limit, said in json.loads(sys.argv[1]):
+    process = os.fork()
+    if not process:
+        break
+    print(os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), flush=True)
+else:
+    sys.exit()
+os.dup2(os.open(said, os.O_CREAT | os.O_WRONLY), 2)
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 try:
@@ -69,15 +78,29 @@ try:
 except ArchiveError as error:
     sys.exit(str(error))
 """
+LEAST = {1_000: 0, 90_000: 0, 150_000: 0, 330_000: 900}
+"""Of bytes that a trace may write, and the rows that are there then."""
+COPIES = [(work, limit) for work in ("merge", "export", "text", "recover", "resume") for limit in (1_000, 3_000)]
 
 
-def limited(work, file, limit):
-    found = subprocess.run(
-        [sys.executable, "-c", LIMITED, work, str(file), str(limit)], capture_output=True, text=True, check=False
-    )
-    assert found.returncode in (0, 1), f"the process ended by {found.returncode}: {found.stderr}"
-    assert len(found.stderr.splitlines()) == found.returncode, found.stderr
-    return found.stderr.strip()
+@pytest.fixture(scope="module")
+def limited(tmp_path_factory):
+    """For each work and limit its file and what was said: processes that end as programs do, of one that imported."""
+    base, told, places = killed(tmp_path_factory.mktemp("killed") / "run.h5"), tmp_path_factory.mktemp("told"), {}
+    for work, limit in [*(("trace", limit) for limit in LEAST), *COPIES]:
+        places[work, limit] = tmp_path_factory.mktemp(work) / "run.h5"
+        if work != "trace":
+            shutil.copy(base, places[work, limit])
+    cases = [(*case, str(file), told / f"{k}") for k, (case, file) in enumerate(places.items())]
+    argument = json.dumps([(work, file, limit, str(said)) for work, limit, file, said in cases])
+    found = subprocess.run([sys.executable, "-c", LIMITED, argument], capture_output=True, text=True, check=True)
+    answers = {}
+    for (work, limit, _, said), status in zip(cases, map(int, found.stdout.split()), strict=True):
+        text = said.read_text()
+        assert status in (0, 1), f"the process ended by {status}: {text}"
+        assert len(text.splitlines()) == status, text
+        answers[work, limit] = places[work, limit], text.strip()
+    return answers, base.read_bytes()
 
 
 def rows(file):
@@ -85,29 +108,30 @@ def rows(file):
         return archive.path(0).u
 
 
-@pytest.mark.parametrize(("limit", "least"), [(1_000, 0), (90_000, 0), (150_000, 0), (330_000, 900)])
-def test_a_limit_while_tracing(tmp_path, limit, least):
-    file, path = tmp_path / "run.h5", trace(HOMOTOPY, controller=Fixed(bounds=Bounds(initial=0.002)))
-    complaint = limited("trace", file, limit)
+@pytest.fixture(scope="module")
+def fine():
+    return trace(HOMOTOPY, controller=Fixed(bounds=Bounds(initial=0.002)))
+
+
+@pytest.mark.parametrize("limit", LEAST)
+def test_a_limit_while_tracing(limited, fine, limit):
+    file, complaint = limited[0]["trace", limit]
     assert complaint.startswith(f"{file}: could not be written")
     if file.exists():
         recover(file)
         with open_archive(file) as archive:
-            found = archive.path(0).u if len(archive) else path.u[:0]
-        assert len(found) >= least
-        assert np.array_equal(found, path.u[: len(found)])
+            found = archive.path(0).u if len(archive) else fine.u[:0]
+        assert len(found) >= LEAST[limit]
+        assert np.array_equal(found, fine.u[: len(found)])
 
 
-@pytest.mark.parametrize("work", ["merge", "export", "text", "recover", "resume"])
-@pytest.mark.parametrize("limit", [1_000, 3_000])
-def test_a_limit_leaves_the_old_file_and_no_new_one(tmp_path, work, limit):
-    file = killed(tmp_path / "run.h5")
-    before = file.read_bytes()
-    complaint = limited(work, file, limit)
+@pytest.mark.parametrize(("work", "limit"), COPIES)
+def test_a_limit_leaves_the_old_file_and_no_new_one(limited, work, limit):
+    file, complaint = limited[0][work, limit]
     assert "could not be written" in complaint
     assert ".part" not in complaint
-    assert os.listdir(tmp_path) == ["run.h5"]
-    assert file.read_bytes() == before
+    assert os.listdir(file.parent) == ["run.h5"]
+    assert file.read_bytes() == limited[1]
     assert len(rows(file)) >= 30
 
 
@@ -253,7 +277,6 @@ def test_what_a_kill_left_beside_is_removed_by_the_next(tmp_path):
 def test_a_kill_at_the_moment_of_naming(tmp_path, work):
     file, target = killed(tmp_path / "run.h5"), tmp_path / "new.h5"
     for name in ("link", "replace"):
-
         real = getattr(os, name)
 
         def die(*arguments, real=real):

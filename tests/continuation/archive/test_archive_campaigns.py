@@ -11,7 +11,6 @@ BENCHMARK = Path(__file__).parents[3] / "examples" / "benchmarks" / "archive_ben
 
 @pytest.mark.parametrize("campaign", [("--kills", "28"), ("--damage", "60")])
 def test_a_small_campaign(campaign):
-    pytest.importorskip("xarray", reason="the benchmark needs the extra `xarray`")
     command = [sys.executable, str(BENCHMARK), *campaign, "--seed", "5"]
     found = subprocess.run(command, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stdout + found.stderr

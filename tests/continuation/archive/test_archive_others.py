@@ -67,7 +67,7 @@ def test_a_child_never_writes(tmp_path, path, act):
 
 
 class Raising:
-    """An observer that raises at the sixth step, or at the first event."""
+    """An observer that raises at the sixth step, at the first event, or at the end."""
 
     def __init__(self, where):
         self.where = where
@@ -81,16 +81,22 @@ class Raising:
             raise RuntimeError("of the observer")
 
     def end(self, tracer):
-        pass
+        if self.where == "end":
+            raise RuntimeError("of the observer")
 
 
-@pytest.mark.parametrize("where", ["step", "event"])
+@pytest.mark.parametrize("where", ["step", "event", "end"])
 @pytest.mark.parametrize("first", [False, True])
 def test_an_observer_that_raises_leaves_a_path_to_resume(tmp_path, path, where, first):
     file = tmp_path / "run.h5"
     observers = [PathLog(file, limits=Limits(rows=3)), Raising(where)]
     with pytest.raises(RuntimeError, match="of the observer"):
         trace(HOMOTOPY, observers=observers[::-1] if first else observers, **OPTIONS)
+    with open_archive(file) as archive:
+        assert archive.closed_by_writer
+        if where == "end":
+            assert np.array_equal(archive.path(0).u, path.u)
+            return
     assert np.array_equal(resume(file).u, path.u)
 
 

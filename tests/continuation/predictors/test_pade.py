@@ -52,6 +52,11 @@ def test_reaches_beyond_the_circle_of_convergence():
     np.testing.assert_allclose(rational(s), [1.0 / (1.0 + s * s), np.arctan(s)], atol=1e-5)
 
 
+def test_terms_whose_squares_overflow_are_no_reason_to_raise():
+    c = rational_curve(1e-12, 15)
+    assert best(c, np.ones(3), 1e-5, 1e-13, 0.95) is None
+
+
 @given(st.integers(4, 20), st.integers(0, 1000))
 @settings(max_examples=40, deadline=None)
 def test_derivative_and_agreement_with_the_series_near_zero(order, seed):

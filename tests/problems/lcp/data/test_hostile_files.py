@@ -97,6 +97,7 @@ HOSTILE = {
     "exponent.json": b'{"A": [[1e999]], "q": [1]}',
     "null.json": b'{"A": null, "q": null}',
     "text.json": b'{"A": [["1"]], "q": ["1"]}',
+    "twice.json": b'{"A": [[1, 0], [0, 1]], "A": [[2, 0], [0, 2]]}',
     "bytes.json": b"\xff\xfe{",
     "empty.json": b"",
     "dims.mtx": MTX.format("coordinate", "1000000000 1000000000 1\n1 1 1.0").encode(),
@@ -111,6 +112,8 @@ HOSTILE = {
     "ragged.csv": b"1 2\n3\n",
     "hex.csv": b"0x10 1\n1 1\n",
     "comma.csv": b"1,5 2,5\n3,5 4,5\n",
+    "cell.csv": b"1,,2\n3,,4\n",
+    "first.csv": b",1,2\n,3,4\n",
     "nul.csv": b"1 \x00\n1 1\n",
 }  # fmt: skip
 

@@ -181,6 +181,13 @@ def test_what_is_taken_for_semidefinite():
         assert lcp.Structure(lcp.LCP(sp.csr_array(np.array([top, [-1.0, 2.0]])), [0, 0])).semidefinite is expected
 
 
+@pytest.mark.parametrize("power", [-1000, -100, 0, 100, 1000])
+def test_a_common_factor_makes_no_game_semidefinite(power):
+    skew, game = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([[0.0, 0.7], [0.3, 0.0]])
+    assert lcp.Structure(lcp.LCP(2.0**power * skew, [0, 0])).semidefinite
+    assert not lcp.Structure(lcp.LCP(2.0**power * game, [0, 0])).semidefinite
+
+
 def sparse_examples(rng):
     n = 40
     band = sp.diags_array([rng.standard_normal(n - abs(k)) for k in (-2, 0, 1)], offsets=[-2, 0, 1])

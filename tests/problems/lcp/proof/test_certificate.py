@@ -337,3 +337,14 @@ def test_a_solution_that_falls_off_below_the_smallest_number_is_one():
     off = found.x.copy()
     off[5] *= 1.001
     assert not certify(LCP(A, q), off).solves()
+
+
+def test_what_no_float_holds_makes_up_for_a_row_where_it_may_be_there():
+    # Row 0 asks for x1 = 1e-341, and row 1 allows it.
+    A = np.array([[1e-186, -1e-16], [1e123, 1e8]])
+    for unit in (1.0, 1e170):
+        assert certify(LCP(A * [[unit], [1.0]], [0.0, -1e-48]), np.array([1e-171, 0.0])).solves()
+    # w1 is pressed against zero: x1 is zero, and row 0 is off by all of it.
+    assert certify(LCP(A, [0.0, 1.0]), np.array([1e-171, 0.0])).relative_residual == 1.0
+    B = [[0.0, 1e-22, -1e-176], [2e124, 0.0, -1e198], [1e-12, -5e-5, 8e59]]
+    assert certify(LCP(B, [0.0, 4e163, -4e-159]), np.array([0.0, 0.0, 5e-219])).relative_residual == 1.0
