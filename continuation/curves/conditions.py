@@ -12,8 +12,8 @@ from attrs import frozen
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
 from continuation.curves.local import Local, Scaled, ScaledBase, Tangential, last_column
-from continuation.curves.nullspace import null_vectors
 from continuation.events.singularity import full_derivative
+from continuation.linear.nullspace import null_vectors
 
 
 @frozen(eq=False)

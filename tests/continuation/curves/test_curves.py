@@ -12,9 +12,9 @@ import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.archive import open_archive, resume
 from continuation.counts import Counts
-from continuation.curves.nullspace import null_vectors
 from continuation.evaluation.derivatives import difference_along
 from continuation.evaluation.evaluator import Evaluator, RaisedError
+from continuation.linear.nullspace import null_vectors
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 from problems import lcp
