@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import Evaluator
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
 
 Mask = NDArray[np.bool_]
@@ -48,6 +48,9 @@ units thirteen orders apart are no longer told from that."""
 SUSPECT, REPLACED = 1e-8, 0.1
 """Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
 refinement changes by more than the second are."""
+
+UNCERTAIN = 100.0
+"""A correction is told from round-off where it is so many times what that makes: its signs are one sample of many."""
 
 NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
@@ -125,6 +128,7 @@ def initial_extent(
         h = min(h, whole)
         if high < AROUND * low:
             break
+    off = _beyond_round_off(evaluator, point, u + found * v, off, moving)
     if found > room:
         found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off))
@@ -144,6 +148,18 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
         return v
     replaced = np.abs(point.solve(-apply(v))) > REPLACED * np.abs(v)
     return np.where(small & replaced, 0.0, v)
+
+
+def _beyond_round_off(evaluator: Evaluator, point: Linearization, there: Array, off: Array, moving: Mask) -> Array:
+    """How far components have turned that stand still along the tangent; zero where that is round-off of H."""
+    loose = (off != 0.0) & ~moving & (np.abs(off) < SUSPECT * float(np.abs(off).max(initial=0.0)))
+    if not loose.any():
+        return off
+    try:
+        noise = point.solve(evaluator.round_off(there, evaluator.residual(there)))
+    except EvaluationError:
+        return off
+    return np.where(loose & (np.abs(off) <= UNCERTAIN * np.abs(noise)), 0.0, off)
 
 
 def _nonlinearity(
