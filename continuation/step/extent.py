@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
 
 Mask = NDArray[np.bool_]
@@ -128,7 +128,6 @@ def initial_extent(
         h = min(h, whole)
         if high < AROUND * low:
             break
-    off = _beyond_round_off(evaluator, point, u + found * v, off, moving)
     if found > room:
         found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off))
@@ -150,16 +149,12 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
     return np.where(small & replaced, 0.0, v)
 
 
-def _beyond_round_off(evaluator: Evaluator, point: Linearization, there: Array, off: Array, moving: Mask) -> Array:
-    """How far components have turned that stand still along the tangent; zero where that is round-off of H."""
-    loose = (off != 0.0) & ~moving & (np.abs(off) < SUSPECT * float(np.abs(off).max(initial=0.0)))
+def _beyond_round_off(evaluator: Evaluator, point: Linearization, there: Array, d: Array, loose: Mask) -> Array:
+    """A correction at a point, with zeros for those `loose` components that are round-off of H."""
     if not loose.any():
-        return off
-    try:
-        noise = point.solve(evaluator.round_off(there, evaluator.residual(there)))
-    except EvaluationError:
-        return off
-    return np.where(loose & (np.abs(off) <= UNCERTAIN * np.abs(noise)), 0.0, off)
+        return d
+    noise = np.abs(point.solve(evaluator.round_off(there, evaluator.residual(there))))
+    return np.where(loose & (np.abs(d) <= UNCERTAIN * noise), 0.0, d)
 
 
 def _nonlinearity(
@@ -174,6 +169,9 @@ def _nonlinearity(
 
     there = point.u + h * v
     d = corrected(there)
+    # A component that stands still along the tangent would be measured by its correction.
+    loose = (d != 0.0) & ~moving & (np.abs(d) < SUSPECT * h * float(np.abs(v).max()))
+    d = _beyond_round_off(evaluator, point, there, d, loose)
     e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = float(np.median(relative))
