@@ -49,8 +49,9 @@ SUSPECT, REPLACED = 1e-8, 0.1
 """Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
 refinement changes by more than the second are."""
 
-UNCERTAIN = 100.0
-"""A correction is told from round-off where it is so many times what that makes: its signs are one sample of many."""
+DOUBTED, UNCERTAIN = 1e-6, 100.0
+"""Corrections of components that stand still along the tangent are doubted where they are smaller than the first,
+beside the way; they are told from round-off by so many times what that makes: its signs are one sample of many."""
 
 NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
@@ -170,7 +171,7 @@ def _nonlinearity(
     there = point.u + h * v
     d = corrected(there)
     # A component that stands still along the tangent would be measured by its correction.
-    loose = (d != 0.0) & ~moving & (np.abs(d) < SUSPECT * h * float(np.abs(v).max()))
+    loose = (d != 0.0) & ~moving & (np.abs(d) < DOUBTED * h * float(np.abs(v).max()))
     d = _beyond_round_off(evaluator, point, there, d, loose)
     e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
