@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from continuation.path import Path
 
@@ -16,12 +17,15 @@ class Interrupted(KeyboardInterrupt):
         All accepted points, with the status INTERRUPTED.
     paths : sequence of Path
         From a sweep: the paths before it, and it.
+    diagram : Diagram or None
+        From `diagram`: the branches that were finished.
     """
 
-    def __init__(self, path: Path, paths: Sequence[Path] = ()) -> None:
+    def __init__(self, path: Path, paths: Sequence[Path] = (), diagram: Any = None) -> None:
         self.path = path
         self.paths = tuple(paths) or (path,)
-        super().__init__(path, self.paths)
+        self.diagram = diagram
+        super().__init__(path, self.paths, diagram)
 
     def __str__(self) -> str:
         points = sum(map(len, self.paths))

@@ -87,6 +87,8 @@ def turned_round(path: Path) -> Path:
     """
     old, last = list(path.steps), len(path.steps) - 1
     whole = old[-1].arclength if old else 0.0
+    # At a kink the tangent is that of the arc which comes there, and that is the other one now.
+    kinks = {e.step: -e.rays[1] for e in path.events if e.kind == Kind.KINK and e.rays is not None and len(e.rays) > 1}
     steps = []
     for k, step in enumerate(reversed(old)):
         # What belongs to an arc is kept with the step at its end, which is the other one now.
@@ -97,7 +99,7 @@ def turned_round(path: Path) -> Path:
             evolve(
                 step,
                 index=k,
-                tangent=-step.tangent,
+                tangent=kinks.get(step.index, -step.tangent),
                 orientation=-step.orientation,
                 arclength=whole - step.arclength,
                 kind=kind,
@@ -109,7 +111,8 @@ def turned_round(path: Path) -> Path:
     events = [
         evolve(
             event,
-            tangent=-event.tangent,
+            tangent=kinks[event.step] if event.kind == Kind.KINK and event.step in kinks else -event.tangent,
+            rays=None if event.rays is None else event.rays[[1, 0, *range(2, len(event.rays))]],
             orientation=-event.orientation,
             arclength=whole - event.arclength,
             step=max(last - event.step + (not event.ends_step), 1),

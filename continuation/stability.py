@@ -19,7 +19,8 @@ from scipy.optimize import brentq
 from continuation.arrays import Array
 from continuation.checks import integer, one_of, sign
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.linear.spectrum import Spectrum, spectrum
+from continuation.linear.followed import Followed
+from continuation.linear.spectrum import Spectrum, plain, spectrum
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
@@ -48,6 +49,10 @@ CLOSE = 1e-12
 
 RESOLVED = 1e-14
 """The same where it is zero: what is left is round-off of the eigenvalues."""
+
+SECANTS, ROUGH = 10, 1e-8
+"""Of a pair that is followed: at most so many steps of the secant method, and its real part, relative to its modulus,
+from which one more step is as near as round-off allows, the last two errors multiplied."""
 
 
 @frozen
@@ -86,6 +91,7 @@ class HopfPoint:
         evaluator : Evaluator
             Of the homotopy.
         """
+        evaluator.keeping = True
         return BoundHopf(self, evaluator)
 
 
@@ -162,9 +168,8 @@ class BoundHopf:
 
     def _computed(self, u: Array) -> Spectrum:
         counts = self.evaluator.counts
-        counts.jacobians += 1
+        H_y = self.evaluator.matrix(u)
         counts.factorizations += 1
-        H_y, _ = self.evaluator.derivative(u[:-1], float(u[-1]))
         try:
             found = spectrum(H_y, self.event.side, self.event.k)
             counts.solves += found.solves
@@ -195,9 +200,11 @@ class BoundHopf:
             # Real eigenvalues that become a pair, or a pair that becomes real, change no other number.
             if p == q or before.unstable == after.unstable or (q - p) * self.direction < 0:
                 continue
-            points = [self._located(solver, arc, left, right, rank) for rank in range(min(p, q), max(p, q))]
-            known = [point for point in points if point is not None]
-            found += sorted(known, key=lambda point: position(arc, point.u))
+            ranks, ends = range(min(p, q), max(p, q)), ((left, before), (right, after))
+            points = [self._located(solver, arc, self._followed(solver, arc, ends, rank)) for rank in ranks]
+            if None in points or len({point.u.tobytes() for point in points if point is not None}) < len(points):
+                points = [self._located(solver, arc, self._searched(solver, arc, left, right, rank)) for rank in ranks]
+            found += sorted((at for at in points if at is not None), key=lambda point: position(arc, point.u))
         return found
 
     def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
@@ -214,10 +221,18 @@ class BoundHopf:
         pair = found.pairs[rank]
         return float(pair.real) if abs(pair.real) > RESOLVED * abs(pair) else 0.0
 
-    def _located(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> Linearization | None:
-        """Where the real part of the pair of a rank vanishes; None where it jumps, as a pair out of real ones does.
+    def _located(self, solver: PathSolver, arc: Arc, t: float | None) -> Linearization | None:
+        """The point of the path at a place, if a pair is on the axis there."""
+        if t is None:
+            return None
+        at = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
+        pairs = self.at(at.u).pairs
+        return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
 
-        Brent's method on points of the path: few spectra, which cost more than all the rest.
+    def _searched(self, solver: PathSolver, arc: Arc, left: float, right: float, rank: int) -> float | None:
+        """Where the real part of the pair of a rank vanishes, by spectra; None where it jumps.
+
+        Brent's method on points of the path; a pair that is made of two real ones jumps.
         """
 
         def real_part(t: float) -> float:
@@ -228,10 +243,38 @@ class BoundHopf:
         if real_part(left) * real_part(right) > 0.0:
             # What the segment shows is not so on the path itself.
             return None
-        t = float(brentq(real_part, left, right, xtol=CLOSE, rtol=CLOSE, disp=False))
-        at = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
-        pairs = self.at(at.u).pairs
-        return at if (np.abs(pairs.real) <= ON_AXIS * np.abs(pairs)).any() else None
+        return float(brentq(real_part, left, right, xtol=CLOSE, rtol=CLOSE, disp=False))
+
+    def _followed(
+        self, solver: PathSolver, arc: Arc, ends: Sequence[tuple[float, Spectrum]], rank: int
+    ) -> float | None:
+        """The same by the pair alone, followed with one factorisation where spectra cost much; None where that fails.
+
+        A spectrum of 2000 unknowns costs five times as much as a new H_y and the few solves that follow the pair.
+        """
+        (left, before), (right, after) = ends
+        if arc.a.u.size - 1 == before.values.size or rank >= min(before.pairs.size, after.pairs.size):
+            return None
+        p, q = complex(before.pairs[rank]), complex(after.pairs[rank])
+        side, counts, pair = self.event.side, self.evaluator.counts, None
+        # The nearer end last.
+        (s, g), (t, h) = sorted([(left, p.real), (right, q.real)], key=lambda end: -abs(end[1]))
+        try:
+            for _ in range(SECANTS):
+                if pair is not None and abs(h) <= ROUGH * abs(p):
+                    return t - h * (t - s) / (h - g)
+                s, g, t = t, h, t - h * (t - s) / (h - g)
+                if not left < t < right:
+                    break
+                matrix = plain(self.evaluator.matrix(solver.project(arc.a, arc.segment.at(t), arc.border)[0]))
+                if pair is None:
+                    pair = Followed.of(matrix, side * (p + (t - left) / (right - left) * (q - p)))
+                    counts.factorizations += pair.near.made
+                z, solves = pair.at(matrix)
+                counts.solves, h = counts.solves + solves, side * z.real
+        except ArithmeticError:
+            pass
+        return None
 
     def accounts_for(self, arc: Arc, found: Sequence[tuple[Kind, Linearization]]) -> bool:
         """Whether the events found on an arc explain how the number of unstable eigenvalues changes along it."""

@@ -12,19 +12,21 @@ from continuation.archive import frames, record
 from continuation.archive.atomic import as_file, check_new
 from continuation.archive.copies import put
 from continuation.archive.provenance import root_attributes
-from continuation.archive.rows import Row, to_columns
+from continuation.archive.rows import Row, parts_of, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, Layout
 from continuation.archive.store import Store
 from continuation.archive.tables import Table
 from continuation.path import LocatedEvent, Path
 
 
-def rows_of(path: Path) -> list[Row]:
+def rows_of(path: Path, pieces: bool = False) -> list[Row]:
     """Steps and located events in the order of the path.
 
     Parameters
     ----------
     path : Path
+    pieces : bool
+        With the switches and the rays of its kinks.
     """
     waiting: list[LocatedEvent] = list(path.events)
     rows = []
@@ -36,18 +38,31 @@ def rows_of(path: Path) -> list[Row]:
                 last = event
             else:
                 rows.append(Row(None, event))
-        rows.append(Row(step, last))
+        rows += [Row(step, last), *(parts_of(last) if pieces else ())]
     return rows
 
 
-def _tables(path: Path, title: str) -> tuple[Layout, dict[str, Any], dict[str, Any], list[str], dict[str, Any]]:
-    rows, names = rows_of(path), list(dict.fromkeys(event.name for event in path.events))
+def layout_of(path: Path, title: str, pieces: bool = False) -> tuple[Layout, dict[str, Any]]:
+    """What a file has columns for that begins with a path, and its attributes.
+
+    Parameters
+    ----------
+    path : Path
+    title : str
+    pieces : bool
+        Whether kinks are kept with their switches and rays.
+    """
     observed = tuple(path.steps[0].observed) if path.steps else ()
     tangents = bool(path.steps) and bool(np.isfinite(path.steps[0].tangent).all())
     unknowns = path.steps[0].y.size if path.steps else 1
-    layout = Layout(unknowns, CONTROLLER_STATE, observed, (), tangents)
+    layout = Layout(unknowns, CONTROLLER_STATE, observed, (), tangents or pieces, pieces)
     attributes = root_attributes(None, title or "A path", {})
-    attributes |= {**path.labels.attributes(), "references": "\n\n".join(path.references)}
+    return layout, attributes | {**path.labels.attributes(), "references": "\n\n".join(path.references)}
+
+
+def _tables(path: Path) -> tuple[Layout, dict[str, Any], dict[str, Any], list[str], dict[str, Any]]:
+    rows, names = rows_of(path), list(dict.fromkeys(event.name for event in path.events))
+    layout, attributes = layout_of(path, "")
     row = {**record.of_path(path, None, ()), "path": 0, "member": 0, "n_points": len(rows)}
     row["source"] = f"{attributes['identifier']} 0"
     points = to_columns(rows, 0, layout, names.index) if rows else {}
@@ -61,7 +76,7 @@ def dataset_of(path: Path) -> Any:
     ----------
     path : Path
     """
-    layout, points, paths, names, attributes = _tables(path, "")
+    layout, points, paths, names, attributes = _tables(path)
     return frames.dataset(
         Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]),
         Table(layout.path_columns, 1, lambda name, rows: paths[name][rows]),
@@ -78,7 +93,7 @@ def dataframe_of(path: Path) -> Any:
     ----------
     path : Path
     """
-    layout, points, _, names, _ = _tables(path, "")
+    layout, points, _, names, _ = _tables(path)
     frame = frames.dataframe(Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]))
     frame["event"] = [names[k] if k >= 0 else "" for k in points.get("event_index", ())]
     called = {f"y_{i}": name for i, name in enumerate(path.labels.names)}
@@ -121,17 +136,28 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     """
     target = as_file("file", file)
     check_new(target)
-    layout, _, _, _, attributes = _tables(many[0], title)
+    layout, attributes = layout_of(many[0], title, any(event.switches for path in many for event in path.events))
 
     def write(part: Any) -> Store:
         store = Store(part, layout, attributes)
-        begin = 0
-        for number, path in enumerate(many):
-            rows, row = rows_of(path), {**record.of_path(path, None, ()), "path": number, "member": number}
-            row |= {"n_points": len(rows), "source": f"{attributes['identifier']} {number} {target.name}"}
-            points = to_columns(rows, number, layout, store.name_event) if rows else None
-            store.commit(points, begin, record.to_columns(row, layout), number)
-            begin += len(rows)
+        for path in many:
+            append(store, path, f"{attributes['identifier']} {store.committed.paths} {target.name}")
         return store
 
     put(target, write)
+
+
+def append(store: Store, path: Path, source: str) -> None:
+    """Write a path behind those that a file holds, in one commit.
+
+    Parameters
+    ----------
+    store : Store
+    path : Path
+    source : str
+        Where it was written first.
+    """
+    held, rows = store.committed, rows_of(path, store.layout.pieces)
+    row = {**record.of_path(path, None, ()), "path": held.paths, "member": held.paths, "n_points": len(rows)}
+    points = to_columns(rows, held.paths, store.layout, store.name_event) if rows else None
+    store.commit(points, held.points, record.to_columns({**row, "source": source}, store.layout), held.paths)

@@ -26,6 +26,7 @@ from continuation.archive.store import Store
 from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
+from continuation.arrays import Array
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
@@ -106,7 +107,7 @@ def resume(
         tracer = _tracer(source, checkpoint, known, homotopy, options)
         rows = source.rows(checkpoint.path).start + checkpoint.rows
         residual = source.points.some("residual_norm", slice(rows - 1, rows))
-        _check_homotopy(tracer.homotopy, checkpoint, float(residual[0]))
+        check_homotopy(tracer.homotopy, checkpoint.state.here.u, float(residual[0]))
         roles = source.points.some("role", slice(source.rows(checkpoint.path).start, rows))
         before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
         store = _beginning(source, checkpoint, rows, target, archive is None)
@@ -217,9 +218,21 @@ def _options(
     return {"box": None, **stored, **given}
 
 
-def _check_homotopy(homotopy: Any, checkpoint: Checkpoint, stored: float) -> None:
-    """Whether the homotopy has the residual that the file says at the point to go on from."""
-    u = checkpoint.state.here.u
+def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
+    """Whether the homotopy has the residual that the file says at a point to go on from.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    u : ndarray, shape (N + 1,)
+    stored : float
+        The largest component of that residual.
+
+    Raises
+    ------
+    ValueError
+        If it is another homotopy.
+    """
     unknowns = np.size(homotopy.start()[0])
     if unknowns != u.size - 1:
         raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")

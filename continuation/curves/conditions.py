@@ -12,8 +12,8 @@ from attrs import frozen
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
 from continuation.curves.local import Local, Scaled, ScaledBase, Tangential, last_column
-from continuation.curves.nullspace import null_vectors
 from continuation.events.singularity import full_derivative
+from continuation.linear.nullspace import null_vectors
 
 
 @frozen(eq=False)
@@ -62,13 +62,16 @@ class Singular:
         if not self.branches:
             signs = {
                 "cusp": lambda rows: float(-sign * rows[0, :-1] @ v),
-                "Bogdanov-Takens": lambda _: float(w @ v[:-1]),
+                # The sign of the determinant changes with either border's side, as the product of the vectors does.
+                "Bogdanov-Takens": lambda _: float(sign * (w @ v[:-1])),
             }
             return Local(values, lambda: gradient()[None, :], lambda: base, empty, signs=signs)
-        z = base.solve(last_column(full), 0.0)
+        # By the extent of lam: what is added to H is then of its size, in any unit.
+        reach = calculus.extent[-1]
+        z = base.solve(reach * last_column(full), 0.0)
 
         def gradients() -> Array:
-            other = calculus.second(u, mu, np.append(-z[:-1], 1.0), w)
+            other = calculus.second(u, mu, np.append(-z[:-1], reach), w)
             return np.array([np.insert(gradient(), u.size, 0.0), np.insert(-other, u.size, 1.0)])
 
         return Local(values, gradients, lambda: base, (scaled.rows * near.border)[:, None], hidden=float(z[-1]))

@@ -11,6 +11,9 @@ from continuation.arrays import Array
 INCREMENTS = 20
 """At most so many; they end where they no longer shrink."""
 
+NOTHING = 1e-14
+"""What is smaller, beside how far it goes, is what round-off left of zero: as a size it would mislead."""
+
 FAR = 10.0
 """A first increment longer than this, beside the size of the point, is that of a singular system."""
 
@@ -39,4 +42,4 @@ def corrected(homotopy: Any, y: Array, lam: float, size: Array) -> Array:
         if not longest < least:
             break
         y, best, least = y - z, y, longest
-    return best
+    return np.where(np.abs(best) > NOTHING * size, best, 0.0)

@@ -220,9 +220,16 @@ class Curve:
             The unknowns: y and lam of the family, and what is beside them.
         lam : float
             The second parameter, mu.
+
+        Raises
+        ------
+        TypeError
+            For jets and intervals, where what is to vanish comes out of a factorisation.
         """
-        if not isinstance(y, np.ndarray) and self._plain is not None:
-            # Jets and intervals.
+        if not isinstance(y, np.ndarray):
+            if self._plain is None:
+                what = self.event.name.lower().replace("_", " ") if isinstance(self.event, Kind) else "tangent's"
+                raise TypeError(f"the residual of a {what} curve is not plain arithmetic: it takes a factorisation")
             U = np.concatenate([y, np.stack([lam])])
             return np.concatenate([self._calculus.residual(U), np.stack([self._plain(U)])])
         return self._at(y, lam).residual()

@@ -15,9 +15,9 @@ from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.curves.calculus import Calculus
-from continuation.curves.nullspace import LONG, REFRESHED, Factors, null_vectors
 from continuation.events.singularity import row_sizes
 from continuation.linear import BorderedSystem
+from continuation.linear.nullspace import LONG, REFRESHED, Factors, null_vectors
 
 
 @frozen(eq=False, slots=False)

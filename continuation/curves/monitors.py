@@ -11,10 +11,10 @@ from attrs import frozen
 from continuation.arrays import Array, generic_vector
 from continuation.curves.calculus import AGREE, Calculus
 from continuation.curves.local import Local, Scaled, Tangential, last_column
-from continuation.curves.nullspace import bordered, factor
 from continuation.evaluation.derivatives import by_differences, difference_along, sizes
 from continuation.events import Monitor, TargetValue
 from continuation.events.singularity import full_derivative
+from continuation.linear.nullspace import bordered, factor
 
 
 @frozen(eq=False)

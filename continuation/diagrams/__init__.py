@@ -2,6 +2,6 @@
 
 from continuation.diagrams.branches import Branch, Diagram, Special
 from continuation.diagrams.deflation import Deflated
-from continuation.diagrams.search import diagram
+from continuation.diagrams.tracing import diagram
 
 __all__ = ["Branch", "Deflated", "Diagram", "Special", "diagram"]

@@ -8,9 +8,9 @@ import numpy as np
 from attrs import define, field
 
 from continuation.arrays import Array
-from continuation.branch_switching import leaving_branches, metric_at, switch_branch
+from continuation.branch_switching import branch_directions, leaving_branches, metric_at, switch_branch
 from continuation.metric import inner, norm
-from continuation.path import LocatedEvent, Path
+from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind
 
 MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
@@ -43,6 +43,9 @@ class Junction:
     used : set of int
         The rays that are known to be followed.
     label : str
+        Empty until it lies on a branch that is finished.
+    number, generation : int
+        In the order of the labels, and of the branch that it was found on.
     failed : str
         Why its rays are not known.
     """
@@ -52,6 +55,8 @@ class Junction:
     rays: Array
     starts: list[tuple[Array, Array]]
     label: str = ""
+    number: int = -1
+    generation: int = 0
     failed: str = ""
     used: set[int] = field(factory=set)
 
@@ -67,11 +72,21 @@ class Junction:
             starts = list(switch_branch(homotopy, event, step))
         except ArithmeticError as error:
             return cls(event, weights, own, [], failed=str(error))
-        return cls(event, weights, own if event.rays is None else event.rays, starts)
+        rays = event.rays
+        if rays is None:
+            # A file keeps none of branch points.
+            other = branch_directions(homotopy, event)[1]
+            rays = np.array([*own, *(np.copysign(1.0, inner(weights, other, v)) * other for _, v in starts)])
+        return cls(event, weights, rays, starts)
 
     def is_at(self, event: LocatedEvent) -> bool:
         """Whether it is the place of an event."""
         return norm(self.weights, event.u - self.event.u) <= SAME_POINT
+
+    def on(self, path: Path) -> Step | None:
+        """The step of a path there, as that of a branch that was found from here has one, or else None."""
+        at = np.flatnonzero((path.u == self.event.u).all(axis=1))
+        return path.steps[int(at[0])] if at.size else None
 
     def take(self, direction: Array) -> None:
         """A branch follows the ray of a direction."""
@@ -114,7 +129,8 @@ def directions_of(event: LocatedEvent, path: Path) -> list[Array]:
     event : LocatedEvent
     path : Path
     """
+    ends = event.ends_step and event.step == path.steps[-1].index
+    begins = np.array_equal(event.u, path.steps[0].u)
     at_kink = event.kind == Kind.KINK and event.rays is not None
     both = list(event.rays[:2]) if at_kink and event.rays is not None else [-event.tangent, event.tangent]
-    ends = event.ends_step and event.step == path.steps[-1].index
-    return both[:1] if ends else both
+    return both[begins : 1 if ends else 2]

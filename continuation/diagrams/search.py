@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from concurrent.futures import Executor, Future
-from numbers import Integral
-from os import PathLike
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 from attrs import define, evolve, field, frozen
 
-from continuation.archive.atomic import as_file, check_new
+from continuation.archive.growing import Growing
 from continuation.arrays import Array
-from continuation.branch_switching import metric_at
-from continuation.checks import complain, instance_with, is_number
 from continuation.counts import Counts
-from continuation.diagrams.branches import LABELS, Branch, Diagram, Special, from_point
+from continuation.diagrams.branches import LABELS, Branch, Diagram, from_point
 from continuation.diagrams.deflation import others, same_solution, solved
-from continuation.diagrams.junctions import SAME_POINT, Junction, directions_of, meetings
-from continuation.evaluation.evaluator import Evaluator
+from continuation.diagrams.junctions import Junction, directions_of, meetings
+from continuation.diagrams.points import points_of
 from continuation.events.box import is_inside
 from continuation.labels import Labels
-from continuation.metric import Inherited, norm
+from continuation.metric import Inherited
 from continuation.path import LocatedEvent, Path
-from continuation.stability import Stability
 from continuation.status import Status
-from continuation.step.options import Options, check_names, documented
-from continuation.step.start import guessed, is_guess
+from continuation.step.options import Options
+from continuation.step.start import guessed
 from continuation.tracing import trace
 
 WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.DIVERGED, Status.DEAD_END)
@@ -52,6 +47,16 @@ class Task:
         return None if self.junction is None else self.junction.weights
 
     @property
+    def place(self) -> int:
+        """The number of the junction."""
+        return -1 if self.junction is None else self.junction.number
+
+    @property
+    def after(self) -> int:
+        """The generation before that of the path."""
+        return -1 if self.junction is None else self.junction.generation
+
+    @property
     def idle(self) -> bool:
         """Whether somebody has come along the ray meanwhile."""
         return self.junction is not None and self.ray in self.junction.used
@@ -68,91 +73,6 @@ def _path(homotopy: Any, start: Any, direction: int, options: Options, before: A
     return trace(homotopy, **asked)
 
 
-@documented
-def diagram(
-    homotopy: Any,
-    *,
-    starts: Sequence[Any] = (),
-    branches: int = 100,
-    generations: int | None = None,
-    deflate: Sequence[float] = (),
-    step: float = 1e-2,
-    stability: Stability | None = None,
-    executor: Executor | None = None,
-    archive: str | PathLike[str] | None = None,
-    **options: Unpack[Options],
-) -> Diagram:
-    """Trace all branches that hang together: from the start both ways, then from every point at which others leave.
-
-    A branch is a smooth curve; it goes straight on where others cross. At simple and multiple branch points, and at
-    kinks, those that leave are followed, breadth first; which rays of a point have been followed is kept, so that a
-    branch that comes back to a known point is not traced again. With several processes the result is the same: of two
-    that meet from both ends, the later one is dropped.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-        To be picklable where the executor needs it.
-    starts : sequence of (y, lam), default ()
-        More points to begin at, besides the homotopy's own start.
-    branches : int, default 100
-        At most so many.
-    generations : int, optional
-        At most so many branch points between a branch and the start; 0 for the start's own branch.
-    deflate : sequence of float, default ()
-        Values of the parameter at which more solutions are sought, when nothing is left that hangs together: by
-        Newton's method with the known ones divided out (`Deflated`).
-    step : float, default 1e-2
-        How far beside a branch point branches begin, in the metric, as for `switch_branch`.
-    stability : Stability, optional
-        Stored with each point, and drawn; its Hopf points are found.
-    executor : concurrent.futures.Executor, optional
-        Traces the paths of one generation; without one this process does.
-    archive : path, optional
-        A new file that all branches are written to, at the end.
-    {options}
-
-    Returns
-    -------
-    Diagram
-        What was found, also where a limit was reached: `complete` and `message` say so.
-
-    Raises
-    ------
-    TypeError, ValueError
-        For bad input; if there is no box, and so no end; if the start is not inside of it.
-    """
-    check_names(options, owned={"start": "there is starts=", "direction": "both are traced"})
-    Evaluator(homotopy, Counts())
-    for name, count in (("branches", branches), ("generations", 1 if generations is None else generations)):
-        if not isinstance(count, Integral) or isinstance(count, bool) or count < (name == "branches"):
-            raise complain(ValueError, name, "a positive integer", count)
-    if not is_number(step) or isinstance(step, bool) or not 0.0 < step < np.inf:
-        raise complain(ValueError, "step", "a positive finite number", step)
-    if stability is not None and not isinstance(stability, Stability):
-        raise complain(TypeError, "stability", "a Stability or None", stability)
-    if executor is not None:
-        instance_with("executor", executor, ("submit",), "a concurrent.futures.Executor")
-    if not isinstance(deflate, Sequence) or not all(is_number(lam) and np.isfinite(lam) for lam in deflate):
-        raise complain(TypeError, "deflate", "values of the parameter", deflate)
-    if not all(is_guess(start) for start in starts):
-        raise complain(TypeError, "starts", "pairs (y, lam)", starts)
-    file = None if archive is None else as_file("archive", archive)
-    if file is not None:
-        check_new(file)
-    box = options.get("box", getattr(homotopy, "box", None))
-    if box is None or isinstance(box, str):
-        raise complain(ValueError, "box", 'one, as {"lam": (0, 5)}, since branches have no other end', box)
-    asked: Options = {**options, "box": box, "target": options.get("target")}
-    if stability is not None:
-        asked["events"] = (*options.get("events", ()), *stability.events)
-    search = Search(homotopy, asked, executor, float(step), branches, generations)
-    found = search.run([None, *starts], [float(lam) for lam in deflate])
-    if file is not None:
-        found.save(file)
-    return found
-
-
 @define(eq=False)
 class Search:
     """A search under way."""
@@ -163,22 +83,32 @@ class Search:
     step: float
     most: int
     generations: int | None
+    log: Growing | None = None
     branches: list[Branch] = field(factory=list)
     junctions: list[Junction] = field(factory=list)
     missing: list[str] = field(factory=list)
     counts: Counts = field(factory=Counts)
 
-    def run(self, starts: list[Any], deflate: list[float]) -> Diagram:
+    def run(self, starts: list[Any], deflate: list[float]) -> None:
         """All of it."""
+        for path in [] if self.log is None else self.log.held(self.homotopy):
+            self._recall(path)
         for start in starts:
             self._begin(start)
         for lam in deflate:
             known = self._solutions(lam)
             for y in others(self.homotopy, lam, known, self._guesses(known)):
                 self._begin((y, lam))
-        found = Diagram(self.branches, self._points(), not self.missing, "", self.counts)
-        said = f"Not complete: {'; '.join(self.missing)}." if self.missing else "Complete: nothing is left open."
-        return evolve(found, message=said)
+
+    @property
+    def found(self) -> Diagram:
+        """What there is by now."""
+        said = (
+            f"Not complete: {'; '.join(dict.fromkeys(self.missing))}."
+            if self.missing
+            else "Complete: nothing is left open."
+        )
+        return Diagram(self.branches, points_of(self.branches, self.junctions), not self.missing, said, self.counts)
 
     def _guesses(self, known: list[Array]) -> list[Array]:
         start = np.atleast_1d(np.asarray(self.homotopy.start()[0], dtype=float))
@@ -187,22 +117,35 @@ class Search:
         beside = LEAVES * np.where(apart > 0.0, apart, 1.0)
         return [start, every.mean(axis=0), *(y + way * beside for y in every for way in (1.0, -1.0))]
 
+    def _recall(self, path: Path) -> None:
+        """A branch of the archive: the rays that it follows are not followed again."""
+        self.counts = self.counts + path.counts
+        self._meet(path)
+        known = ((j, at) for j in self.junctions if j.label and (at := j.on(path)) is not None)
+        junction, at = next(known, (None, None))
+        if junction is None or at is None:
+            self._add(path, "", 0, kept=True)
+            return
+        junction.take(at.tangent)
+        if at.index:
+            junction.take(-at.tangent)
+        self._add(path, junction.label, junction.generation + 1, kept=True)
+
     def _begin(self, start: Any) -> None:
         """Both ways from a start, and all that hangs on it, unless it lies on a known branch."""
         u = np.append(*self.homotopy.start()) if start is None else guessed(start)
         if not self._inside(u):
             raise ValueError(f"box: expected each start inside, found one at lam = {u[-1]:g} on a face or beyond")
-        if self._known(u):
-            return
-        both = (path for _, path in self._traced([Task(start, 1), Task(start, -1)]))
-        whole = ahead = next(both)
-        if ahead.status is not Status.CLOSED:
-            behind = next(both)
-            self._meet(behind)
-            whole = behind.reversed().join(ahead)
-        self._meet(ahead)
-        if len(whole):
-            self.branches.append(Branch(whole, "", 0))
+        if not (start is None and self.branches) and not self._known(u):
+            both = (path for _, path in self._traced([Task(start, 1), Task(start, -1)]) if path is not None)
+            whole = ahead = next(both)
+            if ahead.status is not Status.CLOSED:
+                behind = next(both)
+                self._meet(behind)
+                whole = _through(behind, ahead)
+            self._meet(ahead)
+            if len(whole):
+                self._add(whole, "", 0)
         self._spread()
 
     def _inside(self, u: Array) -> bool:
@@ -228,95 +171,111 @@ class Search:
                 found.append(guess)
         return found
 
-    def _traced(self, tasks: list[Task]) -> Iterator[tuple[Task, Path]]:
-        """The paths of tasks, but for those that have become idle when it is their turn."""
+    def _traced(self, tasks: list[Task]) -> Iterator[tuple[Task, Path | None]]:
+        """The paths of tasks in their order; none of those that have become idle when it is their turn."""
         ready: list[Future[Path]] = []
         asked = [(self.homotopy, task.start, task.direction, self.options, task.metric) for task in tasks]
         if self.executor is not None:
             ready = [self.executor.submit(_path, *one) for one in asked]
-        for k, task in enumerate(tasks):
-            if task.idle and not ready:
-                continue
-            path = ready[k].result() if ready else _path(*asked[k])
-            self.counts = self.counts + path.counts
-            if not task.idle:
-                yield task, path
+        try:
+            for k, task in enumerate(tasks):
+                path = None
+                if ready or not task.idle:
+                    path = ready[k].result() if ready else _path(*asked[k])
+                    self.counts = self.counts + path.counts
+                yield task, None if task.idle else path
+        finally:
+            for future in ready:
+                future.cancel()
 
     def _meet(self, path: Path) -> None:
-        """Whether a path came to its end, and the junctions on it: new ones are waiting, of old ones rays are taken."""
-        if path.status not in WHOLE:
-            self.missing.append(f"a path from lam = {path.steps[0].lam:.6g} ended with: {path.message}" if len(path)
-                                else path.message)  # fmt: skip
+        """The junctions on a path: new ones wait, of old ones rays are taken."""
+        if not len(path):
+            self.missing.append(path.message)
         for event in meetings(path):
-            junction = next((known for known in self.junctions if known.is_at(event)), None)
-            if junction is None:
-                junction = Junction.at(self.homotopy, event, self.step)
-                prefix = LABELS[event.kind]
-                junction.label = f"{prefix}{1 + sum(known.label.startswith(prefix) for known in self.junctions)}"
-                self.junctions.append(junction)
-                if junction.failed:
-                    self.missing.append(f"at {junction.label}, lam = {event.lam:.6g}, {junction.failed}")
+            junction = self._junction(event)
             for direction in directions_of(event, path):
                 junction.take(direction)
 
+    def _junction(self, event: LocatedEvent) -> Junction:
+        junction = next((known for known in self.junctions if known.is_at(event)), None)
+        if junction is None:
+            junction = Junction.at(self.homotopy, event, self.step)
+            self.junctions.append(junction)
+        return junction
+
+    def _add(self, path: Path, origin: str, generation: int, kept: bool = False) -> None:
+        """A finished branch: its junctions get labels, and it is written, if the archive has not `kept` it."""
+        if path.status not in WHOLE:
+            self.missing.append(f"a path from lam = {path.steps[0].lam:.6g} ended with: {path.message}")
+        for event in meetings(path):
+            junction = self._junction(event)
+            if junction.label:
+                continue
+            prefix = LABELS[event.kind]
+            junction.label = f"{prefix}{1 + sum(known.label.startswith(prefix) for known in self.junctions)}"
+            junction.number, junction.generation = sum(bool(known.label) for known in self.junctions), generation
+            if junction.failed:
+                self.missing.append(f"at {junction.label}, lam = {event.lam:.6g}, {junction.failed}")
+        self.branches.append(Branch(path, origin, generation))
+        if self.log is not None and not kept:
+            self.log.add(path)
+
     def _spread(self) -> None:
         """Generation after generation, until no ray is open."""
-        generation = 0
         while True:
-            tasks = [Task(j.starts[ray - 2], 0, j, ray) for j in self.junctions for ray in j.open()]
+            labelled = sorted((j for j in self.junctions if j.label), key=lambda j: j.number)
+            tasks = [Task(j.starts[ray - 2], 0, j, ray) for j in labelled for ray in j.open()]
             tasks = [task for task in tasks if self._inside(task.start[0])]
             if not tasks:
                 return
-            generation += 1
-            if self.generations is not None and generation > self.generations:
+            before = min(task.after for task in tasks)
+            if self.generations is not None and before >= self.generations:
                 self.missing.append(f"{len(tasks)} rays beyond generation {self.generations} were not followed")
                 return
             if len(self.branches) >= self.most:
                 self.missing.append(f"the limit of {self.most} branches is reached, {len(tasks)} rays are open")
                 return
-            self._follow(tasks, generation)
+            self._follow([task for task in tasks if task.after == before], before + 1)
 
     def _follow(self, tasks: list[Task], generation: int) -> None:
         """One generation: its paths, each accepted before the next is looked at, and the branches that they make."""
         paths: dict[tuple[int, int], tuple[Junction, Path]] = {}
-        for task, path in self._traced(tasks):
-            assert task.junction is not None
-            task.junction.used.add(task.ray)
-            self._meet(path)
-            if len(path):
-                paths[self.junctions.index(task.junction), task.ray] = task.junction, path
+        waiting = {(task.place, task.ray) for task in tasks}
+        try:
+            for task, path in self._traced(tasks):
+                assert task.junction is not None
+                waiting.remove((task.place, task.ray))
+                if path is not None:
+                    task.junction.used.add(task.ray)
+                    self._meet(path)
+                    if len(path):
+                        paths[task.place, task.ray] = task.junction, path
+                self._put_together(paths, waiting, generation)
+        except KeyboardInterrupt:
+            # What has come one way is shown; it is traced again when the diagram goes on.
+            self.log = None
+            self._put_together(paths, set(), generation)
+            raise
+
+    def _put_together(
+        self, paths: dict[tuple[int, int], tuple[Junction, Path]], waiting: set[tuple[int, int]], generation: int
+    ) -> None:
+        """The branches whose paths are there, each from both its rays, in the order of the rays."""
         while paths:
             number, ray = next(iter(paths))
-            junction, path = paths.pop((number, ray))
-            whole = from_point(junction.event, junction.rays[ray], path, junction.weights)
+            junction = paths[number, ray][0]
             across = junction.opposite(ray)
+            if across is not None and (number, across) in waiting:
+                return
+            whole = from_point(junction.event, junction.rays[ray], paths.pop((number, ray))[1], junction.weights)
             if across is not None and (number, across) in paths:
                 _, other = paths.pop((number, across))
-                behind = from_point(junction.event, junction.rays[across], other, junction.weights)
-                whole = behind.reversed().join(whole)
-            self.branches.append(Branch(whole, junction.label, generation))
-
-    def _points(self) -> list[Special]:
-        """Junctions, turning points, Hopf points and kinks, each once, in the order of the branches."""
-        found: list[tuple[str, LocatedEvent, list[int]]] = [(j.label, j.event, []) for j in self.junctions]
-        numbers = dict.fromkeys(LABELS.values(), 0)
-        for k, branch in enumerate(self.branches):
-            for event in branch.path.events:
-                if event.kind not in LABELS:
-                    continue
-                label = LABELS[event.kind]
-                same = [entry for entry in found if entry[0].startswith(label) and _one_place(entry[1], event)]
-                if not same:
-                    numbers[label] += 1
-                    junctions = sum(j.label.startswith(label) for j in self.junctions)
-                    same = [(f"{label}{junctions + numbers[label]}", event, [])]
-                    found += same
-                same[0][2].append(k)
-            for entry in found:
-                if entry[0] == branch.origin:
-                    entry[2].append(k)
-        return [Special(label, event, tuple(dict.fromkeys(through))) for label, event, through in found]
+                whole = _through(from_point(junction.event, junction.rays[across], other, junction.weights), whole)
+            self._add(whole, junction.label, generation)
 
 
-def _one_place(a: LocatedEvent, b: LocatedEvent) -> bool:
-    return norm(metric_at(a), a.u - b.u) <= SAME_POINT
+def _through(behind: Path, ahead: Path) -> Path:
+    """One path out of two that leave a point; the end that leaves something open is the one that it tells of."""
+    whole = behind.reversed().join(ahead)
+    return whole if behind.status in WHOLE else evolve(whole, status=behind.status, message=behind.message)

@@ -24,6 +24,9 @@ from continuation.rejection import Rejection
 ULPS = 4.0
 """Units in the last place by which round-off moves a point, about."""
 
+KEPT = 4
+"""Derivatives that are kept where somebody looks again: at a step's end, and where crossings are looked for ahead."""
+
 LOOK = 64.0
 """By so many a point is moved to see it: the change of an equation is then more than a few of its own last places."""
 
@@ -110,6 +113,8 @@ class Evaluator:
     ----------
     methods : set of str
         BibTeX of what served where the homotopy gave no derivative of its own.
+    keeping : bool
+        Whether the last derivatives are kept, for `matrix`.
 
     Raises
     ------
@@ -125,6 +130,7 @@ class Evaluator:
             raise TypeError(f"homotopy: expected an object, found the class {name}; make one, {name}(...)")
         self.counts = counts
         self.methods: set[str] = set()
+        self.keeping = False
         self.bind(homotopy)
         if isinstance(homotopy, SupportsPieces):
             self.bind(WholeMap(homotopy, self.start()))
@@ -145,6 +151,7 @@ class Evaluator:
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
         self._checked = False
+        self._kept: dict[bytes, Matrix] = {}
         self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
         self._derivative: Derivative | None = None
@@ -251,7 +258,20 @@ class Evaluator:
             # Once: whoever gets it right at the start does so later on.
             check_derivative(answer, u.size - 1)
             self._checked = True
+        if self.keeping:
+            while len(self._kept) >= KEPT:
+                del self._kept[next(iter(self._kept))]
+            # A dense one may be an array that the plug-in fills anew every time.
+            self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
         return answer
+
+    def matrix(self, u: Array) -> Matrix:
+        """H_y at u: that of a step there, if it is `keeping` some, else evaluated and counted."""
+        known = self._kept.get(u.tobytes())
+        if known is None:
+            self.counts.jacobians += 1
+            known, _ = self._evaluated(u)
+        return known
 
     def factor(self, u: Array, border: Array) -> CountedSystem:
         """Factor [[H_y, H_lam], [border']] at u; EvaluationError where that is impossible."""

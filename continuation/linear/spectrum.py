@@ -117,14 +117,18 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """
     if isinstance(matrix, Symmetric):
         return _of_signs(matrix, side)
-    if isinstance(matrix, Banded):
-        matrix = matrix.tosparse()
+    matrix = plain(matrix)
     if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
         raise TypeError(f"stability: expected H_y as a matrix, found {type(matrix).__name__}")
     if matrix.shape[0] <= ALL and k is None:
         whole = matrix.toarray() if issparse(matrix) else matrix
         return _counted(eigvals(side * np.asarray(whole, dtype=float)))
     return _nearest(side * matrix, WANTED if k is None else k)
+
+
+def plain(matrix: Matrix) -> Matrix:
+    """The same matrix, sparse if it is banded."""
+    return matrix.tosparse() if isinstance(matrix, Banded) else matrix
 
 
 def _counted(values: Any, covered: bool = True) -> Spectrum:
@@ -150,7 +154,7 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
     ----------
     matrix : ndarray or sparse array, shape (N, N)
     """
-    turned = matrix.T
+    turned = csc_array(matrix.T) if issparse(matrix) else matrix.T
     rows = abs(matrix + turned).sum(axis=1)
     diagonal = matrix.diagonal()
     real = 0.5 * np.asarray(rows).ravel() - np.abs(diagonal) + diagonal

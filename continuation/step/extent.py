@@ -49,6 +49,10 @@ SUSPECT, REPLACED = 1e-8, 0.1
 """Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
 refinement changes by more than the second are."""
 
+DOUBTED, UNCERTAIN = 1e-6, 100.0
+"""Corrections of components that stand still along the tangent are doubted where they are smaller than the first,
+beside the way; they are told from round-off by so many times what that makes: its signs are one sample of many."""
+
 OTHER_UNITS = 1e4
 """The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
 
@@ -172,6 +176,14 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
     return np.where(small & replaced, 0.0, v)
 
 
+def _beyond_round_off(evaluator: Evaluator, point: Linearization, there: Array, d: Array, loose: Mask) -> Array:
+    """A correction at a point, with zeros for those `loose` components that are round-off of H."""
+    if not loose.any():
+        return d
+    noise = np.abs(point.solve(evaluator.round_off(there, evaluator.residual(there))))
+    return np.where(loose & (np.abs(d) <= UNCERTAIN * noise), 0.0, d)
+
+
 def _nonlinearity(
     evaluator: Evaluator, point: Linearization, v: Array, moving: Mask, h: float, residual: Array
 ) -> tuple[Array, float]:
@@ -184,6 +196,9 @@ def _nonlinearity(
 
     there = point.u + h * v
     d = corrected(there)
+    # A component that stands still along the tangent would be measured by its correction.
+    loose = (d != 0.0) & ~moving & (np.abs(d) < DOUBTED * h * float(np.abs(v).max()))
+    d = _beyond_round_off(evaluator, point, there, d, loose)
     e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = float(np.median(relative))

@@ -132,12 +132,54 @@ def test_what_stability_costs_on_a_large_sparse_branch():
     alone = trace(homotopy, target=0.15)
     watched = trace(homotopy, target=0.15, observers=[Stability()])
     np.testing.assert_array_equal(watched.u, alone.u)
-    # One factorisation and one H_y a point, and none to find out that nothing crosses.
+    # One factorisation a point, none to find out that nothing crosses, and no H_y beyond those of the steps.
     assert watched.counts.factorizations == alone.counts.factorizations + len(alone)
-    assert watched.counts.jacobians == alone.counts.jacobians + len(alone)
+    assert watched.counts.jacobians == alone.counts.jacobians
     assert watched.counts.solves <= alone.counts.solves + 40 * len(alone)
     assert {step.observed["unstable"] for step in watched.steps} == {0.0}
     assert all(step.observed["covered"] for step in watched.steps)
+
+
+def test_what_a_hopf_point_costs_on_a_large_sparse_branch():
+    homotopy = Diffusing(1000)
+    alone = trace(homotopy, target=0.25)
+    watched = trace(homotopy, target=0.25, observers=[Stability()])
+    (event,) = hopf_points(watched)
+    assert abs(event.lam - homotopy.rate(1)) < 1e-10
+    # The pair is followed at two places: two factorisations bring it near, and the point has a spectrum.
+    assert watched.counts.factorizations == alone.counts.factorizations + len(alone) + 3
+    assert watched.counts.jacobians == alone.counts.jacobians + 2
+    assert watched.counts.solves <= alone.counts.solves + 40 * (len(alone) + 1)
+
+
+def test_a_pair_is_followed_where_the_flow_is_minus_h_too():
+    homotopy = Diffusing(60)
+
+    def turned(y, lam):
+        H_y, H_lam = homotopy.jacobian(y, lam)
+        return -H_y, -H_lam
+
+    minus = from_functions(lambda y, lam: -homotopy.residual(y, lam), turned, start=homotopy.start(), target=0.25)
+    alone, watched = trace(minus), trace(minus, observers=[Stability(side=-1)])
+    (event,) = hopf_points(watched)
+    assert abs(event.lam - homotopy.rate(1)) < 1e-10
+    assert watched.counts.jacobians == alone.counts.jacobians + 2
+
+
+def test_a_jacobian_that_is_one_array_all_the_time_does_no_harm():
+    whole, J, column = brusselator(1.0), np.empty((2, 2)), np.empty(2)
+
+    def filled(y, B):
+        J[:], column[:] = (
+            [[2.0 * y[0] * y[1] - B - 1.0, y[0] ** 2], [B - 2.0 * y[0] * y[1], -(y[0] ** 2)]],
+            [-y[0], y[0]],
+        )
+        return J, column
+
+    one = from_functions(whole.residual, filled, start=([1.0, 0.5], 0.5), target=4.0)
+    found = [trace(homotopy, observers=[Stability()], max_step=0.1) for homotopy in (whole, one)]
+    stable, other = ([step.observed["rightmost"] for step in path.steps] for path in found)
+    np.testing.assert_allclose(other, stable, atol=1e-9)
 
 
 @every_preset

@@ -158,7 +158,8 @@ def engine(w: World) -> Iterator[Call]:
     yield Call(
         c.diagram, {"homotopy": w.pitchfork, "box": {"lam": (-1.0, 1.0)}},
         {"homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
-         "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values"},
+         "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values",
+         "resume": "truth"},
     )  # fmt: skip
     yield Call(
         c.Deflated, {**right, "known": [np.zeros(1)]},

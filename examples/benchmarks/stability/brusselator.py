@@ -73,7 +73,7 @@ def traced(brusselator, **options):
 
 
 def main(points=1000, repetitions=3):
-    # Up to the first Hopf point, and over two: to locate one takes about six computations of eigenvalues more.
+    # Up to the first Hopf point, and over two, with many points and with few.
     for target, max_step in ((5.1, 0.02), (6.2, 0.02), (6.2, 0.05)):
         compare(Brusselator(points, target=target), repetitions, max_step)
     uniform = Brusselator(points, ends=1.0)

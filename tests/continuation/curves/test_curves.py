@@ -12,9 +12,9 @@ import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.archive import open_archive, resume
 from continuation.counts import Counts
-from continuation.curves.nullspace import null_vectors
 from continuation.evaluation.derivatives import difference_along
 from continuation.evaluation.evaluator import Evaluator, RaisedError
+from continuation.linear.nullspace import null_vectors
 from continuation.plot import plot_bifurcation
 from continuation.testing import check_homotopy
 from problems import lcp
@@ -230,6 +230,12 @@ def test_a_curve_of_values_is_proved():
     curve = Curve(Family(Imperfect(), "eps"), TargetValue(1.5), (np.array([1.2]), 1.5), mu=-0.07)
     path = continuation.trace(curve, box={"lam": (-1.0, 1.0), "y": (-5.0, 5.0)})
     assert continuation.certify(path, curve).complete
+
+
+def test_a_curve_of_folds_is_not_proved_and_that_is_said():
+    path = continuation.trace(folds(), budget=Budget(steps=3))
+    with pytest.raises(TypeError, match="residual of a turning point curve is not plain arithmetic: it takes a factor"):
+        continuation.certify(path, folds())
 
 
 def test_the_suite_passes():

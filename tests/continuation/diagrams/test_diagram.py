@@ -4,60 +4,14 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from attrs import frozen
 
 from continuation import Budget, Kind, Stability, diagram, from_functions
 from continuation.archive import open_archive
-from continuation.linear import Banded
 from continuation.status import Status
 from problems.bifurcation import FreudensteinRoth, Pitchfork
 
 from ..kinks.util import Folded
-
-
-@frozen
-class ChafeeInfante:
-    """u'' + lam (u - u^3) = 0 on (0, pi), zero at both ends, second differences."""
-
-    n: int
-
-    @property
-    def h(self):
-        return np.pi / (self.n + 1)
-
-    def start(self):
-        return np.zeros(self.n), 0.2
-
-    def residual(self, y, lam):
-        return np.diff(np.concatenate(([0.0], y, [0.0])), 2) / self.h**2 + lam * (y - y**3)
-
-    def jacobian(self, y, lam):
-        bands = np.full((3, self.n), self.h**-2)
-        bands[1] = -2.0 * self.h**-2 + lam * (1.0 - 3.0 * y * y)
-        return Banded(bands, 1, 1), y - y**3
-
-    def crossings(self):
-        return 4.0 / self.h**2 * np.sin(0.5 * np.arange(1, 6) * self.h) ** 2
-
-
-@frozen
-class Forks:
-    """Pitchforks on a trunk: (lam - k) y_k - y_k^3, or with |y|^2 y_k, so that no branch leaves an arm."""
-
-    places: tuple[float, ...]
-    coupled: bool = False
-
-    def start(self):
-        return np.zeros(len(self.places)), 0.5
-
-    def residual(self, y, lam):
-        return (lam - np.array(self.places)) * y - (y @ y if self.coupled else y * y) * y
-
-    def jacobian(self, y, lam):
-        own = lam - np.array(self.places)
-        if self.coupled:
-            return np.diag(own - y @ y) - 2.0 * np.outer(y, y), y.copy()
-        return np.diag(own - 3.0 * y * y), y.copy()
+from .util import ChafeeInfante, Forks
 
 
 def outline(found):
@@ -126,12 +80,34 @@ def test_branches_that_leave_branches_are_all_there_and_none_twice():
     assert len(found.at(5.5)) == 3**4
 
 
+def test_ten_pitchforks_that_leave_each_other_have_an_arm_for_each_and_a_crossing_for_each_later_one():
+    # All of them are 29525 branches: the trunk and its arms, by the limit on generations.
+    homotopy, asked = Forks(tuple(range(1, 11))), {"box": {"lam": (0.0, 12.0)}, "generations": 1}
+    found = diagram(homotopy, **asked)
+    assert found.message == "Not complete: 180 rays beyond generation 1 were not followed."
+    assert [branch.origin for branch in found.branches] == ["", *(f"BP{k}" for k in range(1, 11))]
+    trunk, arms = found.points[:10], found.points[10:]
+    np.testing.assert_allclose([p.event.lam for p in trunk], range(1, 11), rtol=0, atol=1e-10)
+    assert [p.branches for p in trunk] == [(0, k) for k in range(1, 11)]
+    # On the arm of y_k, of either sign, each later one crosses once.
+    wanted = sorted((k, sign * np.sqrt(j - k), j) for k in range(1, 11) for j in range(k + 1, 11) for sign in (-1, 1))
+    places = sorted((p.branches[0], p.event.y[p.branches[0] - 1], p.event.lam) for p in arms)
+    np.testing.assert_allclose(places, wanted, rtol=0, atol=1e-10)
+    with ThreadPoolExecutor(3) as workers:
+        assert outline(diagram(homotopy, executor=workers, **asked)) == outline(found)
+
+
 @pytest.mark.parametrize("executor", [ThreadPoolExecutor, ProcessPoolExecutor])
-def test_several_workers_find_the_same_branches_in_the_same_order(executor):
-    homotopy, box = Forks((1.0, 2.0, 3.0)), {"lam": (0.0, 5.0)}
+@pytest.mark.parametrize("limits", [{}, {"budget": Budget(steps=12)}], ids=["whole", "box and budget"])
+def test_several_workers_find_the_same_branches_in_the_same_order(executor, limits):
+    homotopy, box = Forks((1.0, 2.0, 3.0)), {"lam": (0.0, 5.0), **({"y": (-1.6, 1.7)} if limits else {})}
     with executor(2) as workers:
-        found = diagram(homotopy, box=box, executor=workers)
-    assert outline(found) == outline(diagram(homotopy, box=box))
+        found = diagram(homotopy, box=box, executor=workers, **limits)
+    alone = diagram(homotopy, box=box, **limits)
+    assert outline(found) == outline(alone)
+    assert [(p.label, p.branches) for p in found.points] == [(p.label, p.branches) for p in alone.points]
+    assert found.message == alone.message
+    assert found.complete == (not limits)
 
 
 def test_a_branch_that_meets_another_twice_is_traced_once_whoever_traces_it():

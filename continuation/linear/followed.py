@@ -1,0 +1,82 @@
+"""One eigenvalue, followed from a matrix to others near to it with one factorisation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+
+from continuation.arrays import Array, Matrix, generic_vector
+from continuation.contraction import Contraction, Iteration
+from continuation.linear.nullspace import NearlySingular, null_vectors
+
+CHORD = Contraction(iterations=15)
+
+SETTLED, NEARLY = 1e-15, 1e-10
+"""The last change of the eigenvalue, relative to it, and the one that will do where round-off ends the contraction."""
+
+
+@frozen(eq=False)
+class Followed:
+    """An eigenvalue of a matrix, with its vector, and a bordered factorisation made with a value near to it.
+
+    Attributes
+    ----------
+    value : complex
+    near : NearlySingular
+    turned : ndarray, shape (N + 1,)
+        The bordered solution for the vector: what a change of the eigenvalue makes of it.
+    """
+
+    value: complex
+    near: NearlySingular
+    turned: Any
+
+    @classmethod
+    def of(cls, matrix: Matrix, value: complex) -> Followed:
+        """The eigenvalue nearest to a value.
+
+        Parameters
+        ----------
+        matrix : ndarray or sparse array, shape (N, N)
+        value : complex
+
+        Raises
+        ------
+        ArithmeticError
+            If the bordered matrix is singular.
+        """
+        n = matrix.shape[0]
+        eye = sp.eye_array(n, format="csc") if sp.issparse(matrix) else np.eye(n)
+        b, c = np.split(generic_vector(2 * n), 2)
+        near = null_vectors(matrix - value * eye, b / np.linalg.norm(b), c / np.linalg.norm(c))
+        return cls(value, near, near.factors.solve(np.append(near.right, 0.0)))
+
+    def at(self, matrix: Matrix) -> tuple[complex, int]:
+        """The eigenvalue of a matrix nearby, and how many solves it took: Newton's chord for (A - z) v = 0, c*v fixed.
+
+        Parameters
+        ----------
+        matrix : ndarray or sparse array, shape (N, N)
+
+        Raises
+        ------
+        ArithmeticError
+            If it does not converge.
+        """
+        pair = Iteration(np.append(self.near.right, self.value), CHORD)
+
+        def increment() -> Array:
+            v, z = pair.x[:-1], pair.x[-1]
+            step = self.near.factors.solve(np.append(z * v - matrix @ v, 0.0))
+            change = -step[-1] / self.turned[-1]
+            return np.append(step[:-1] + change * self.turned[:-1], change)
+
+        def measure(step: Array, x: Array) -> float:
+            return float(abs(step[-1]) / abs(x[-1]))
+
+        if not (pair.run(increment, measure, lambda size: size <= SETTLED) or pair.size <= NEARLY):
+            raise ArithmeticError("an eigenvalue is not followed from one matrix to the other")
+        return complex(pair.x[-1]), pair.count

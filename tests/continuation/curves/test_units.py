@@ -1,0 +1,164 @@
+"""The same answers in other units, drawn over twelve orders: y -> D y + c, H -> D H, lam -> lam / a, mu -> mu / m."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import continuation
+from continuation import Curve, Family, Kind
+from continuation.linear import Banded
+
+from .util import (
+    Brusselator,
+    Coupled,
+    CuspForm,
+    Gelfand,
+    GelfandBanded,
+    Imperfect,
+    Lorenz,
+    TakensBogdanov,
+    VanDerPol,
+    first_fold,
+    named,
+)
+
+TIGHT = {"tolerance": 1e-12}
+
+
+class Units:
+    """A family in other units; the equations are scaled as y is, so that eigenvalues are what they were."""
+
+    parameter_name = "mu"
+
+    def __init__(self, homotopy, name, seed, shifted=True):
+        generator, n = np.random.default_rng(seed), np.size(homotopy.start()[0])
+        self.family = Family(homotopy, name)
+        self.d = 10.0 ** generator.uniform(-6, 6, n)
+        self.c = self.d * generator.uniform(-3, 3, n) * shifted
+        self.a, self.m = 10.0 ** generator.uniform(-6, 6, 2)
+        self.value = self.family.value / self.m
+
+    def __call__(self, mu):
+        return Member(self, self.family(mu * self.m))
+
+    def told(self, y, lam):
+        """A point in these units."""
+        return self.d * y + self.c, lam / self.a
+
+    def back(self, u):
+        """Rows (y, lam, ..., mu) in the units of the family."""
+        n, u = self.d.size, np.atleast_2d(u)
+        return np.column_stack([(u[:, :n] - self.c) / self.d, u[:, n] * self.a, u[:, n + 1 : -1], u[:, -1] * self.m])
+
+    def box(self, low, high):
+        """Of mu."""
+        return {"lam": (None if low is None else low / self.m, None if high is None else high / self.m)}
+
+
+class Member:
+    """One of them."""
+
+    target = None
+
+    def __init__(self, units, own):
+        self.by, self.own = units, own
+        if hasattr(own, "jacobian"):
+            self.jacobian = self.derivative
+
+    def start(self):
+        return self.by.told(*self.own.start())
+
+    def residual(self, y, lam):
+        return self.by.d * self.own.residual((y - self.by.c) / self.by.d, lam * self.by.a)
+
+    def derivative(self, y, lam):
+        d = self.by.d
+        H_y, H_lam = self.own.jacobian((y - self.by.c) / d, lam * self.by.a)
+        H_y = H_y.tosparse() if isinstance(H_y, Banded) else H_y
+        left, right = (sp.diags_array(x) if sp.issparse(H_y) else np.diag(x) for x in (d, 1.0 / d))
+        H_y = left @ H_y @ right
+        return sp.csc_array(H_y) if sp.issparse(H_y) else H_y, d * H_lam * self.by.a
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize(("homotopy", "name", "columns"), [(CuspForm(), "mu", (1, 2)), (Imperfect(), "eps", (2, 1))])
+def test_the_fold_curve_through_a_cusp(seed, homotopy, name, columns):
+    units = Units(homotopy, name, seed)
+    fold = first_fold(units(units.value), direction=0 if name == "mu" else -1)
+    path = continuation.trace_both(Curve(units, fold), box=units.box(-4.0, 4.0), **TIGHT)
+    a, b = units.back(path.u)[:, columns].T
+    assert np.abs(27.0 * a**2 - 4.0 * b**3).max() <= 1e-10
+    (cusp,) = named(path, "cusp")
+    assert np.abs(units.back(cusp.u)).max() <= 1e-10
+
+
+@pytest.mark.parametrize("seed", [0])
+def test_the_cusp_and_the_end_of_the_perturbed_gelfand_problem(seed):
+    units = Units(Gelfand(), "eps", seed, shifted=False)
+    curve = Curve(units, first_fold(units(units.value)))
+    (cusp,) = named(continuation.trace(curve, box=units.box(0.15, None), **TIGHT), "cusp")
+    ((*_, height, delta, eps),) = units.back(cusp.u)
+    # By Gauss' formula for the time map, in 50 digits.
+    assert abs(eps - 0.245780427232365629) <= 1e-11
+    assert abs(delta - 1.30737356367320925) <= 1e-11
+    assert abs(height - 4.89654789987477872) <= 1e-9
+    end = continuation.trace(curve, target=0.0, **TIGHT).endpoint
+    assert abs(end.u[-2] * units.a - 0.8784576797812903) <= 1e-11
+
+
+def test_a_sparse_family_has_the_same_cusp():
+    plain, units = GelfandBanded(n=8, kind="sparse"), Units(GelfandBanded(n=8, kind="sparse"), "eps", 5, shifted=False)
+    ours, theirs = (
+        named(continuation.trace(Curve(family, first_fold(family(family.value))), box=box, **TIGHT), "cusp")[0].u
+        for family, box in ((Family(plain, "eps"), {"lam": (0.15, None)}), (units, units.box(0.15, None)))
+    )
+    np.testing.assert_allclose(units.back(theirs)[0], ours, rtol=1e-10)
+
+
+@pytest.mark.parametrize("seed", [0])
+def test_hopf_curves(seed):
+    units = Units(Lorenz(), "b", seed)
+    curve = Curve(units, Kind.HOPF, units.told(*Lorenz().wing(25.0)))
+    r, frequency, b = units.back(continuation.trace(curve, box=units.box(None, 8.0), **TIGHT).u)[:, 3:].T
+    np.testing.assert_allclose(r, 10.0 * (13.0 + b) / (9.0 - b), rtol=1e-11)
+    np.testing.assert_allclose(frequency, np.sqrt(b * (r + 10.0)), rtol=1e-11)
+    assert (abs(r[0] - 470.0 / 19.0), abs(b[-1] - 8.0)) <= (1e-10, 1e-12)
+    units = Units(Brusselator(), "A", seed)
+    curve = Curve(units, Kind.HOPF, units.told(np.array([1.0, 2.0]), 2.1))
+    B, frequency, A = units.back(continuation.trace_both(curve, box=units.box(0.25, 4.0), **TIGHT).u)[:, 2:].T
+    assert np.abs(B - 1.0 - A**2).max() <= 1e-10
+    assert np.abs(frequency - A).max() <= 1e-10
+    assert A.max() - A.min() == pytest.approx(3.75)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_what_stands_still_is_not_measured_by_round_off(seed):
+    # All but k and the frequency keep their values, which are no round numbers here.
+    units = Units(VanDerPol(), "k", seed)
+    path = continuation.trace(Curve(units, Kind.HOPF, units.told(np.zeros(2), 0.05)), box=units.box(None, 1.5))
+    found = units.back(path.u)
+    assert np.abs(found[:, :3]).max() <= 1e-10
+    assert np.abs(found[:, 3] - np.sqrt(found[:, 4])).max() <= 1e-10
+    assert found[-1, 4] == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_fold_curve_meets_a_hopf_curve_once(seed):
+    units = Units(TakensBogdanov(), "mu", seed)
+    fold = first_fold(units(units.value), target=0.5 / units.a)
+    path = continuation.trace(Curve(units, fold), direction=-1, box=units.box(-1.0, None), **TIGHT)
+    (point,) = named(path, "Bogdanov-Takens")
+    assert np.abs(units.back(point.u)).max() <= 1e-10
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_branch_points_of_a_symmetric_problem(seed):
+    units = Units(Coupled(), "mu", seed, shifted=False)
+    trunk = continuation.trace(units(units.value), direction=-1, box={"lam": (2.5 / units.a, None)})
+    (point,) = [event for event in trunk.events if event.kind == Kind.BRANCH_POINT]
+    path = continuation.trace(Curve(units, point), box=units.box(None, 5.0), **TIGHT)
+    y, _, lam, mu = units.back(path.u).T
+    assert np.abs(lam - 3.0 * mu).max() <= 1e-10
+    assert np.abs(y**2 - mu).max() <= 1e-10
+    assert mu[-1] == pytest.approx(5.0)
+    assert len(path) < 10

@@ -1,0 +1,51 @@
+"""Diagrams that are known: the cubic equation on an interval, and pitchforks on a trunk."""
+
+import numpy as np
+from attrs import frozen
+
+from continuation.linear import Banded
+
+
+@frozen
+class ChafeeInfante:
+    """u'' + lam (u - u^3) = 0 on (0, pi), zero at both ends, second differences."""
+
+    n: int
+
+    @property
+    def h(self):
+        return np.pi / (self.n + 1)
+
+    def start(self):
+        return np.zeros(self.n), 0.2
+
+    def residual(self, y, lam):
+        return np.diff(np.concatenate(([0.0], y, [0.0])), 2) / self.h**2 + lam * (y - y**3)
+
+    def jacobian(self, y, lam):
+        bands = np.full((3, self.n), self.h**-2)
+        bands[1] = -2.0 * self.h**-2 + lam * (1.0 - 3.0 * y * y)
+        return Banded(bands, 1, 1), y - y**3
+
+    def crossings(self):
+        return 4.0 / self.h**2 * np.sin(0.5 * np.arange(1, 6) * self.h) ** 2
+
+
+@frozen
+class Forks:
+    """Pitchforks on a trunk: (lam - k) y_k - y_k^3, or with |y|^2 y_k, so that no branch leaves an arm."""
+
+    places: tuple[float, ...]
+    coupled: bool = False
+
+    def start(self):
+        return np.zeros(len(self.places)), 0.5
+
+    def residual(self, y, lam):
+        return (lam - np.array(self.places)) * y - (y @ y if self.coupled else y * y) * y
+
+    def jacobian(self, y, lam):
+        own = lam - np.array(self.places)
+        if self.coupled:
+            return np.diag(own - y @ y) - 2.0 * np.outer(y, y), y.copy()
+        return np.diag(own - 3.0 * y * y), y.copy()
