@@ -59,9 +59,11 @@ class AlmostComplementary:
 
     def step(self) -> None:
         """One pivot."""
-        now, column = next(
-            (one, column) for one in self.dictionaries if (column := one.column(self.entering)) is not None
-        )
+        for now in self.dictionaries:
+            column = now.column(self.entering)
+            if column is not None:
+                break
+        assert column is not None
         row = now.first_zero(column, self.stop)
         if row is None:
             self.ended = Ended.RAY
