@@ -113,6 +113,13 @@ class AlmostComplementary:
         mask[basic[(basic >= self.n) & (basic < 2 * self.n)] - self.n] = True
         return mask
 
+    def values(self) -> Array:
+        """X at the basis, shape (n,)."""
+        values = np.zeros(2 * self.n + 1)
+        for one in self.dictionaries:
+            values[one.basic] = one.table[:, -1]
+        return np.maximum(values[self.n : 2 * self.n], 0.0)
+
     def ray(self) -> Array:
         """How x changes along the ray on which the path ended, shape (n,)."""
         direction = np.zeros(2 * self.n + 1)

@@ -44,6 +44,10 @@ LARGEST_EARLY_FACES = 10
 """Up to this order trying all faces takes less than two paths: 0.6 ms (n = 6), 3 to 50 ms (9), where the paths of
 feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 45 to 600 ms (12, where many are singular)."""
 
+LARGEST_TINY = 6
+"""Up to this order they come right after Lemke's method: 0.4 ms (n = 3, 4) to 1.3 ms (6), where units of the problem's
+own, 0.4 ms, and Lemke's method in them lead further."""
+
 LEAST_START = 1e-3
 """In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
 
