@@ -27,7 +27,7 @@ ROUNDING = 1e-13
 
 
 def by_pivots(A: Array, q: Array) -> tuple[bool, Array | None]:
-    """Whether there clearly is a solution; else a multiplier y >= 0 with A'y <= 0 < -q'y, to be checked, if one is seen.
+    """Whether there clearly is a solution; else perhaps a multiplier y >= 0, A'y <= 0 < -q'y, which is to be checked.
 
     The LCP of ``[[0, -A'], [A, 0]]`` and (0, q) is monotone, so its path ends at a solution or on a ray that is y.
 
