@@ -129,6 +129,12 @@ def level(problem: MixedLCP) -> bool:
     return most <= LEVELLED * least and 1.0 / LEVELLED <= most <= LEVELLED
 
 
+def alike(problem: MixedLCP) -> bool:
+    """Whether the largest entries of all rows and columns are within `ALIKE` of another."""
+    least, most = _range(problem)
+    return 0.0 < most <= ALIKE * least
+
+
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     """LCP(s q, s A) with s = 1, or a power of two where entries are extreme; and whether active sets can begin with it.
 
@@ -146,9 +152,9 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
         None where s = 1.
     bool
     """
-    least, most = _range(problem)
-    if not 0.0 < most <= ALIKE * least:
+    if not alike(problem):
         return None, False
+    most = _range(problem)[1]
     if EXTREME**-0.5 <= most <= EXTREME**0.5:
         return None, True
     rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
@@ -160,7 +166,14 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
 
 
 def _range(problem: MixedLCP) -> tuple[float, float]:
-    """The least and the largest of the largest entries of rows and columns."""
+    """The least and the largest of the largest entries of rows and columns; found once for a problem."""
+    if "range" not in problem.known:
+        problem.known["range"] = _range_found(problem)
+    found: tuple[float, float] = problem.known["range"]
+    return found
+
+
+def _range_found(problem: MixedLCP) -> tuple[float, float]:
     if problem.sparse:
         entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
