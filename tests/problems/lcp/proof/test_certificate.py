@@ -11,8 +11,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from problems.lcp import LCP, Outcome, solve
-from problems.lcp.data.scaling import units
-from problems.lcp.proof import off
 from problems.lcp.proof.certificate import certify, certify_exactly, farkas
 from problems.lcp.proof.compensated import accurate_w
 from problems.lcp.proof.rational import PRIMES, solve_exactly
@@ -339,16 +337,3 @@ def test_a_solution_that_falls_off_below_the_smallest_number_is_one():
     off = found.x.copy()
     off[5] *= 1.001
     assert not certify(LCP(A, q), off).solves()
-
-
-def test_units_are_asked_for_only_where_they_may_matter(monkeypatch):
-    """A row with q_i = 0, as those of friction, off by round-off: clear where the entries are alike."""
-    A, q, x = np.array([[1.0, -3.0], [0.0, 1.0]]), np.array([0.0, -0.1]), np.array([0.3, 0.1])
-    asked = []
-    monkeypatch.setattr(off, "units", lambda problem: asked.append(problem) or units(problem))
-    assert certify(LCP(A, q), x).drowned == 0.0
-    assert not asked
-    # In units a million apart, and at a point that is off by more, they are.
-    assert certify(LCP(A * [[1e6], [1.0]], q), x).drowned == 0.0
-    assert 1e-3 < certify(LCP(A, q), np.array([0.301, 0.1])).drowned < 1e-2
-    assert len(asked) == 2
