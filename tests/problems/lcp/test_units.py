@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from problems import lcp
 from problems.lcp.data.scaling import balanced, units
-from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof import off
+from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.farkas import FloatFarkas, infeasibility
 from problems.lcp.reference.enumeration import exhaust
 
