@@ -301,9 +301,9 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt(
         "active sets of A + shift I, from x = 0", lambda c: c.definite_perhaps, _proximally_from_zero, said.SETTLED
     ),
+    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("active sets, from x = 0", _always, _from_zero, said.SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, said.SETTLED_SHIFTED),
-    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("Lemke, as given", _as_given(_pivotable), _by_lemke, said.LEMKE),
     Attempt("active sets, further", _stopped, _further, said.SETTLED),
     Attempt("proof, at once", _tiny, _proof, said.PROVED),
