@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
-from problems.lcp.data.scaling import alike, units
+from problems.lcp.data.scaling import units
+from problems.lcp.data.spread import alike
 from problems.lcp.proof.compensated import Terms
 
 DROWNED = 1e-6

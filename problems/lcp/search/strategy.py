@@ -251,10 +251,6 @@ def _provable(case: Case) -> bool:
     return bool(n * entries <= LARGEST_PROOF or case.search.seconds_left < math.inf)
 
 
-def _early_provable(case: Case) -> bool:
-    return case.problem.n <= LARGEST_EARLY_PROOF and not case.proof_sought
-
-
 def _zero_solves(case: Case) -> bool:
     if case.problem.standard:
         return bool(case.problem.q.min() >= 0.0)
@@ -279,7 +275,6 @@ def _has_few_faces(case: Case) -> bool:
 
 
 def _tiny(case: Case) -> bool:
-    """Whether all faces take less time than units of its own do."""
     return case.pivoted and case.problem.n <= LARGEST_TINY
 
 
@@ -313,7 +308,7 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
     Attempt("Lemke and Howson", _scaled(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
-    Attempt("proof, early", _early_provable, _proof, said.PROVED),
+    Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
     Attempt("few faces", _has_few_faces, _all_faces, said.TRIED),
     Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
 )
