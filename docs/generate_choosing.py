@@ -10,7 +10,8 @@ import re
 import sys
 from pathlib import Path
 
-from choosing_claims import CLAIMS, Charts
+from choosing_claims import Charts
+from choosing_scenes import CLAIMS
 
 from continuation import chart
 from continuation.chart.style import CHART_DPI

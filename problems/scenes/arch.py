@@ -106,10 +106,12 @@ class Arch:
                 )
             for edge in (inner, outer):
                 axes.plot(side * edge * np.sin(angle), edge * np.cos(angle), color="0.3")
-            axes.plot(side * r * np.sin(angle), r * np.cos(angle), color="#D55E00", label="thrust" if side > 0 else "")
+            axes.plot(
+                side * r * np.sin(angle), r * np.cos(angle), color="#D55E00", label="line of thrust" if side > 0 else ""
+            )
             room = np.minimum(own + moment - inner * across, outer * across - own - moment)
             near = room <= spare + 1e-9 * self._unit
             axes.plot(side * (r * np.sin(angle))[near], (r * np.cos(angle))[near], "ko", markersize=4)
-        axes.set(aspect="equal", xlabel="m", ylabel="m")
-        axes.set_title("stands" if spare >= 0.0 else "falls", fontsize="medium")
+        axes.set(aspect="equal", xlabel="m from the middle", ylabel="height (m)")
+        axes.set_title(f"{'stands' if spare >= 0.0 else 'falls'}: {spare:.3g} N to spare", fontsize="medium")
         axes.legend(frameon=False, loc="center")

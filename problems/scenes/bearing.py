@@ -113,7 +113,7 @@ class Bearing:
         axes.plot(angle, 1e-6 * self.unit * np.pad(solution.x, 1), color="#0072B2", label="pressure")
         breaks = self.answer(solution)["film breaks at"]
         axes.axvline(breaks, color="0.5", linestyle=":", label=f"film breaks at {breaks:.2f} degrees")
-        axes.set(xlabel="degrees from the widest gap", ylabel="MPa", xticks=range(0, 361, 60))
+        axes.set(xlabel="degrees from the widest gap", ylabel="pressure (MPa)", xticks=range(0, 361, 60))
         axes.legend(frameon=False)
 
 

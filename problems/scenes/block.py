@@ -89,4 +89,5 @@ class Block:
         arrow(axes, (0.0, 0.0), (friction, 0.0), 1, f"friction impulse {found['friction impulse']:.4g} N s")
         arrow(axes, (0.0, 0.3), (np.sign(found["speed"]), 0.0), 2, f"{found['speed']:.4g} m/s after the step")
         axes.set(xlim=(-1.5, 1.5), ylim=(-0.2, 1.9), aspect="equal", xticks=[], yticks=[])
+        axes.set_title("slides" if found["speed"] else "sticks", fontsize="medium")
         axes.legend(loc="upper right", fontsize="small", frameon=False)

@@ -102,4 +102,7 @@ class Box:
         arrow(axes, (-half, self.height), (unit * self.push, 0.0), 3, f"push {self.push:.3g} N")
         axes.set(xlim=(-2 * self.width, 3 * self.width), ylim=(-0.1 * self.height, 1.2 * self.height))
         axes.set(aspect="equal", xticks=[], yticks=[])
+        moves = 1e-9 * self.step * self.gravity
+        turns, slides = abs(found["rotation"]) * self.height > moves, abs(found["speed"]) > moves
+        axes.set_title("tips" if turns else "slides" if slides else "rests", fontsize="medium")
         axes.legend(loc="center right", fontsize="small", frameon=False)

@@ -17,6 +17,7 @@ from continuation.tracing import solve_at
 from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap
 from problems.nonlinear.obstacle import BratuForce
+from problems.scenes.arc_length import arc_length_method
 from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 
@@ -68,12 +69,17 @@ class BratuLid:
     load: float = positive(6.0)
     n: int = field(default=50, validator=integer(4))
     units: ClassVar[Mapping[str, str]] = {"fold": "", "turning kink": "", "contact from": ""}
-    rivals: ClassVar[tuple[Rival, ...]] = ()
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
         """One half: with both, kinks would come in pairs."""
         return (Unknown("temperatures", self.n, "where they reach the lid"),)
+
+    @property
+    def rivals(self) -> tuple[Rival, ...]:
+        """What finite element programs do; loads one after another, by `scipy.optimize.root`, end at the fold."""
+        named = BratuLid._named
+        return (arc_length_method(BratuLid._load, lambda scene, at: named(scene, at.fold, at.kink, at.z)),)
 
     def problem(self) -> NormalMap:
         """The path from zero load, to the load."""
@@ -86,12 +92,16 @@ class BratuLid:
         folds = [event.lam for event in solution.turning_points if event not in solution.kinks]
         kinks = [kink.lam for kink in solution.kinks if kink.name == "turning kink"]
         z = solve_at(self.problem(), self.load, solution.crossings(self.load)[-1][:-1])
+        return self._named(folds[0] if folds else np.nan, kinks[0] if kinks else np.nan, z)
+
+    def _load(self) -> float:
+        return self.load
+
+    def _named(self, fold: float, kink: float, z: Array) -> Quantities:
         # z is above the lid by the lid's force; where u rests that is the load's, so it tells how far: to second order.
         force = np.maximum(z - self.lid, 0.0) * np.append(np.ones(self.n - 1), 0.5) * 2.0 * self.n
         edge = 0.5 - float(force.sum()) / (self.load * exp(self.lid))
-        return {
-            "fold": folds[0] if folds else np.nan, "turning kink": kinks[0] if kinks else np.nan, "contact from": edge,
-        }  # fmt: skip
+        return {"fold": fold, "turning kink": kink, "contact from": edge}
 
     def exact(self) -> Quantities:
         """By quadrature: u' = 0 at the lid's edge, so that all is in elementary functions."""

@@ -106,6 +106,6 @@ class Converter:
         time = 1e6 * np.linspace(0.0, self.period, self.n + 1)
         axes.plot(time, np.append(i[-1], i), color="#0072B2", label="current of the coil")
         axes.axvspan(0.0, 1e6 * self.duty * self.period, color="#E69F00", alpha=0.15, label="switch closed")
-        axes.set(xlabel="microseconds", ylabel="A")
+        axes.set(xlabel="time (microseconds)", ylabel="current (A)")
         axes.set_title(f"output {self.answer(solution)['output']:.4g} V", fontsize="medium")
         axes.legend(frameon=False)

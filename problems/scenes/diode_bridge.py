@@ -111,5 +111,5 @@ class DiodeBridge:
         load = self.load * np.interp(source, solution.lam, solution.y[:, :2].sum(axis=1))
         axes.plot(time, source, "--", color="0.6", label="source")
         axes.plot(time, load, color="#D55E00", label="load")
-        axes.set(xlabel="half periods", ylabel="V")
+        axes.set(xlabel="time (half periods)", ylabel="voltage (V)")
         axes.legend(frameon=False)

@@ -138,4 +138,4 @@ class FlashDrum:
             axes.plot(kink.lam, np.clip(kink.y[0], 0.0, 1.0), "kD", markersize=5)
             axes.annotate(f"{name} {kink.lam:.2f}", (kink.lam, np.clip(kink.y[0], 0.0, 1.0)), (0, 8), ha="right",
                           textcoords="offset points")  # fmt: skip
-        axes.set(xlabel="degrees Celsius", ylabel="part of vapour", ylim=(-0.05, 1.15))
+        axes.set(xlabel="temperature (degrees Celsius)", ylabel="part of vapour", ylim=(-0.05, 1.15))

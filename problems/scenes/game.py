@@ -129,6 +129,7 @@ class Game:
                     left += part
         axes.set(yticks=[3 * k + 0.5 for k in range(len(found))], xlabel="probability", xlim=(0.0, 1.0))
         axes.set_yticklabels([f"equilibrium {k}" for k in range(len(found))])
+        axes.set_title("strategies of the first player, blue, and of the second", fontsize="medium")
         axes.invert_yaxis()
 
 

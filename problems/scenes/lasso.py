@@ -115,8 +115,9 @@ class Lasso:
         axes.plot(solution.lam, solution.y, linewidth=1.0)
         for kink in solution.kinks:
             axes.plot(np.full(len(kink.switches), kink.lam), kink.y[list(kink.switches)], "k.", markersize=5)
-        axes.axvline(self.penalty, color="0.8", linewidth=0.8, zorder=0)
+        axes.axvline(self.penalty, color="0.6", linewidth=0.8, zorder=0, label=f"penalty {self.penalty:g}")
         axes.set(xlabel="penalty", ylabel="coefficients", xlim=(1.02 * solution.kinks[0].lam, 0.0))
+        axes.legend(frameon=False)
 
 
 def _lars(scene: Lasso) -> Quantities:

@@ -173,9 +173,10 @@ class Pile:
             for place in places:
                 rectangle(axes, place, self.side, self.side, **style)
         axes.axhline(0.0, color="0.3", linewidth=1.0)
-        axes.plot(*solution.places[:, :, :2].T, color="#D55E00", linewidth=0.8)
-        axes.set(aspect="equal", xlabel="m", ylabel="m")
-        axes.set_title(f"after {self.steps * self.step:g} s", fontsize="medium")
+        axes.plot(solution.places[:, :, 0], solution.places[:, :, 1], ".", color="#D55E00", markersize=2)
+        wide = 0.5 * self.boxes * self.side
+        axes.set(aspect="equal", xlabel="m", ylabel="height (m)", xlim=(-wide, wide))
+        axes.set_title(f"dashed: before, dots: middles, blue: after {self.steps * self.step:g} s", fontsize="medium")
 
 
 def _in_steps(rival: Rival, method: Callable[[LCP], Array]) -> Rival:

@@ -124,7 +124,7 @@ class Regulator:
     def draw(self, solution: Any, axes: Any) -> None:
         """The first three forces against the distance, with all kinks."""
         for k in range(min(3, self.horizon)):
-            axes.plot(solution.lam, solution.y[:, k], label=("now", "next", "then")[k])
+            axes.plot(solution.lam, solution.y[:, k], label=("now", "a step later", "two steps later")[k])
         for kink in solution.kinks:
             axes.axvline(kink.lam, color="0.85", linewidth=0.8, zorder=0)
         axes.set(xlabel="distance (m)", ylabel="force (N)")

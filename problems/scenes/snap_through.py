@@ -12,6 +12,7 @@ from attrs import field, frozen
 from continuation.arrays import Array
 from continuation.checks import number
 from problems.nonlinear.normal_map import NormalMap
+from problems.scenes.arc_length import arc_length_method
 from problems.scenes.scene import Quantities, Rival, Unknown, positive
 
 
@@ -58,12 +59,17 @@ class SnapThrough:
     stop: float = field(default=-0.3, validator=number("a number between -1 and 0", lambda s: -1.0 < s < 0.0))
     load: float = positive(1.5)
     units: ClassVar[Mapping[str, str]] = {"snap load": "N", "load at touch": "N", "force on stop": "N"}
-    rivals: ClassVar[tuple[Rival, ...]] = ()
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
         """One, by symmetry; the force of the stop is what balances the joint."""
         return (Unknown("height of the joint", 1, "where it is when it touches the stop"),)
+
+    @property
+    def rivals(self) -> tuple[Rival, ...]:
+        """What finite element programs do; loads one after another, by `scipy.optimize.root`, end at the fold."""
+        named = SnapThrough._named
+        return (arc_length_method(SnapThrough._load, lambda scene, at: named(scene, at.fold, at.kink, at.z)),)
 
     @property
     def unit(self) -> float:
@@ -83,13 +89,16 @@ class SnapThrough:
     def answer(self, solution: Any) -> Quantities:
         """The loads at which the path turns; beyond the second the stop bears what exceeds it."""
         (kink,) = (event.lam for event in solution.kinks)
-        fold = solution.turning_points[0].lam
-        z = float(solution.crossings(self.load * 2.0 / (3.0 * sqrt(3.0)))[-1][0])
+        z = solution.crossings(self._load())[-1][:-1]
+        return self._named(solution.turning_points[0].lam, kink, z)
+
+    def _load(self) -> float:
+        return self.load * 2.0 / (3.0 * sqrt(3.0))
+
+    def _named(self, fold: float, kink: float, z: Array) -> Quantities:
         # The normal map's z is below the bound by the force that the bound bears.
-        return {
-            "snap load": self.unit * fold, "load at touch": self.unit * kink,
-            "force on stop": self.unit * max(self.stop - z, 0.0),
-        }  # fmt: skip
+        force = max(self.stop - float(z[0]), 0.0)
+        return {"snap load": self.unit * fold, "load at touch": self.unit * kink, "force on stop": self.unit * force}
 
     def exact(self) -> Quantities:
         """The cubic's extremum, and its value at the stop."""

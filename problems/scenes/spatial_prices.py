@@ -106,10 +106,11 @@ class SpatialPrices:
             for j, flow in enumerate(row):
                 if flow > 0.0:
                     axes.plot([0.0, 1.0], [-i, -j], color="#0072B2", linewidth=8.0 * flow / widest, alpha=0.7)
+                    axes.text(0.3, -0.7 * i - 0.3 * j, f"{flow:.3g}", backgroundcolor="white", ha="center", va="center")
         for x, prices, side in ((0.0, found["offers"], "right"), (1.0, found["bids"], "left")):
             for i, price in enumerate(prices):
                 axes.text(x + (-0.03 if side == "right" else 0.03), -i, f"{price:.3g}", ha=side, va="center")
             axes.plot(np.full(prices.size, x), -np.arange(prices.size), "ko")
         axes.set(xlim=(-0.25, 1.25), xticks=[0.0, 1.0], yticks=[])
         axes.set_xticklabels(["producers", "markets"])
-        axes.set_title("flows, and prices at both ends", fontsize="medium")
+        axes.set_title("flows (units), and prices at both ends (money a unit)", fontsize="medium")

@@ -86,5 +86,5 @@ class String:
         a = self.answer(solution)["contact from"]
         axes.plot([a, self.length - a], [0.0, 0.0], "kD", markersize=4, label=f"contact from {a:.4f} m")
         axes.axhline(0.0, color="0.4", linewidth=0.8, zorder=0)
-        axes.set(xlabel="m", ylabel="height (m)")
+        axes.set(xlabel="m from the left support", ylabel="height (m)")
         axes.legend(frameon=False)

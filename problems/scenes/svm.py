@@ -116,7 +116,7 @@ class SVM:
         value = self.kernel(there, X) @ (found["weights"] * side) + found["offset"]
         axes.contour(across, up, value.reshape(across.shape), levels=[-1.0, 0.0, 1.0], colors="0.4",
                      linestyles=[":", "-", ":"])  # fmt: skip
-        axes.set(aspect="equal")
+        axes.set(aspect="equal", xlabel="first feature", ylabel="second feature")
         axes.legend(frameon=False, fontsize="small")
 
 

@@ -107,10 +107,14 @@ class Torsion:
         on = solution.x >= self.yield_stress * 0.5 * self.side / self.n * j * (1.0 - 1e-9)
         for a, b in ((i, j), (j, i)):
             quarter[a, b], yields[a, b] = solution.x, on
+        # On the surface the stress is that of the points beside it.
+        yields[0], yields[:, 0] = yields[1], yields[:, 1]
         whole, plastic = (np.block([[k, k[:, -2::-1]], [k[-2::-1], k[-2::-1, -2::-1]]]) for k in (quarter, yields))
         place = np.linspace(0.0, self.side, 2 * self.n + 1)
         axes.contourf(place, place, plastic, levels=[0.5, 1.5], colors=["#E69F00"], alpha=0.5)
-        axes.contour(place, place, whole, levels=12, colors="#0072B2", linewidths=0.8)
+        axes.contour(
+            place, place, whole, levels=np.linspace(0.0, whole.max(), 13)[1:], colors="#0072B2", linewidths=0.8
+        )
         axes.set(aspect="equal", xlabel="m", ylabel="m")
         axes.set_title(
             f"yields in {100.0 * self.answer(solution)['plastic part']:.0f} % of the section", fontsize="medium"

@@ -107,4 +107,6 @@ class Traffic:
         across, down = np.meshgrid(range(self.side), range(self.side))
         axes.plot(across.ravel(), -down.ravel(), "o", color="0.3", markersize=4)
         axes.set(aspect="equal", xticks=[], yticks=[])
-        axes.set_title(f"each takes {found['time']:.4g} minutes", fontsize="medium")
+        axes.set_title(
+            f"each takes {found['time']:.4g} minutes from the upper left to the lower right", fontsize="medium"
+        )

@@ -112,12 +112,12 @@ class Truss:
     def draw(self, solution: Any, axes: Any) -> None:
         """The load against the stretch of the bars, with a kink wherever one yields."""
         u, v = solution.u, solution.steps[-1].tangent
-        u = np.vstack([u, u[-1] + v / np.abs(v).max() * 0.5 * np.abs(u).max()])
+        u = np.vstack([u, u[-1] + v / np.abs(v).max() * 0.2 * np.abs(u).max()])
         stretch = u[:, -1] / len(self.limits) / self.stiffness + u[:, :-1].mean(axis=1)
         axes.plot(stretch, u[:, -1], color="#0072B2")
         loads = [kink.lam for kink in solution.kinks]
         axes.plot(np.interp(loads, u[:, -1], stretch) if self.hardening else stretch[1 : len(loads) + 1], loads, "kD",
                   markersize=5, label="a bar yields")  # fmt: skip
-        axes.axhline(self.load, color="0.8", linewidth=0.8, zorder=0)
-        axes.set(xlabel="stretch", ylabel="load")
+        axes.axhline(self.load, color="0.6", linewidth=0.8, zorder=0, label="the load")
+        axes.set(xlabel="stretch (length)", ylabel="load (force)")
         axes.legend(frameon=False)

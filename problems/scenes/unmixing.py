@@ -88,7 +88,7 @@ class Unmixing:
         x = np.asarray(solution.x)
         place = np.linspace(-1.0, self.substances, self.channels)
         axes.plot(place, measured, "k.", markersize=2, label="measured")
-        axes.plot(place, spectra @ x, color="#D55E00", linewidth=1.0, label="sum")
+        axes.plot(place, spectra @ x, color="#D55E00", linewidth=1.0, label="sum of the parts (blue)")
         axes.plot(place, spectra * x, color="#0072B2", linewidth=0.7)
         axes.set(xlabel="channel", ylabel="intensity")
         axes.legend(frameon=False)
