@@ -219,6 +219,21 @@ def solve(rows: Sequence[IntRow], right: Sequence[IntRow]) -> tuple[list[list[in
     return [[sign * v for v in row[m:]] for row in work], sign * previous
 
 
+def consistent(rows: Sequence[IntRow]) -> bool:
+    """Whether equations have a solution, each row its coefficients and then its right-hand side.
+
+    By the same elimination, with rows of smaller rank left behind: what is left of those holds zeros.
+    """
+    work, previous = [list(row) for row in rows], 1
+    for k in range(len(work[0]) - 1):
+        pivot = next((row for row in work if row[k]), None)
+        if pivot is not None:
+            work.remove(pivot)
+            work = [[(pivot[k] * v - row[k] * t) // previous for v, t in zip(row, pivot)] for row in work]
+            previous = pivot[k]
+    return not any(row[-1] for row in work)
+
+
 def simplest(vector: Sequence[Fraction], accepts: Callable[[Sequence[Fraction]], bool]) -> tuple[Fraction, ...]:
     """A positive multiple of the vector, rounded to integers as small as `accepts` allows, or else the vector."""
     largest = max(abs(v) for v in vector)

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from attrs import frozen
 
-from problems.lcp.classes.exact import Indices, IntRow, solve
+from problems.lcp.classes.exact import Indices, IntRow, consistent, solve
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point
 
 Bound = tuple[int | None, int | None]
@@ -132,6 +132,8 @@ def _nonsingular_piece(piece: Piece, columns: Sequence[Sequence[int]], d: int) -
 
 def _singular_piece(piece: Piece) -> tuple[Point, Point, bool] | None:
     """By linear programming, in distances from the lower bounds, or upper ones; of what has neither, in two parts."""
+    if not consistent([[*piece.columns[i], -piece.constants[i]] for i in piece.inside]):
+        return None
     m = len(piece.inside)
     signs = [1 if low is not None or high is None else -1 for low, high in piece.bounds]
     origin = [low if low is not None else high if high is not None else 0 for low, high in piece.bounds]

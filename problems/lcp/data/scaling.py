@@ -18,6 +18,7 @@ from scipy.sparse.csgraph import connected_components
 
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP, MixedLCP
+from problems.lcp.data.spread import EXTREME, alike, largest_entries, level
 
 Exponents = NDArray[np.int64]
 
@@ -37,21 +38,9 @@ SMALLEST = -1021
 HALVES = 1e-3
 """Further above the noise of the logarithms than any fraction that matters: what is this near to 1/2 is rounded up."""
 
-EXTREME = 1e90
-"""Products of three entries below this, and above its inverse, are floats."""
-
 NEGLIGIBLE = -27.0
 """An a_ij with |a_ij a_ji| below 2^-27 (1e-8) of |a_ii a_jj|, which knows no units, says nothing about units: such are
 the entries down to 1e-300 in a matrix of a kernel exp(-d^2)."""
-
-LEVELLED = 16.0
-"""Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
-stays as it is. Finding units and changing to them takes longer than solving it then (n = 1000: 0.25 of 0.45 s)."""
-
-ALIKE = 256.0
-"""Where they are within this factor of another, active sets and pivots are tried on an LCP as it is. Finding units
-takes longer than that (monotone LCPs, n = 60: 0.5 of 1.3 ms), and two digits more or fewer decide nothing there; arches
-of five stones have 50."""
 
 LEVEL = 0.02
 """Logarithms of the largest entries that no sweep need improve: the rounding to powers of two changes them by more."""
@@ -123,12 +112,6 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
 
 
-def level(problem: MixedLCP) -> bool:
-    """Whether the largest entries of rows and columns are so alike that other units would change next to nothing."""
-    least, most = _range(problem)
-    return most <= LEVELLED * least and 1.0 / LEVELLED <= most <= LEVELLED
-
-
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     """LCP(s q, s A) with s = 1, or a power of two where entries are extreme; and whether active sets can begin with it.
 
@@ -146,9 +129,9 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
         None where s = 1.
     bool
     """
-    least, most = _range(problem)
-    if not 0.0 < most <= ALIKE * least:
+    if not alike(problem):
         return None, False
+    most = largest_entries(problem)[1]
     if EXTREME**-0.5 <= most <= EXTREME**0.5:
         return None, True
     rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
@@ -157,37 +140,6 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
         return None, False
     scaled = LCP(_scaled(problem.A, rows, columns), q, primal=problem.primal)
     return Scaled(scaled, rows, columns, exact=True), True
-
-
-def _range(problem: MixedLCP) -> tuple[float, float]:
-    """The least and the largest of the largest entries of rows and columns."""
-    if problem.sparse:
-        entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
-        np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
-        np.maximum.at(both, problem.n + problem.A.indices, entries)
-    else:
-        # No array of the absolute values: at n = 300 that is most of the time.
-        A = problem.A
-        both = np.concatenate([np.maximum(A.max(axis=k), -A.min(axis=k)) for k in (0, 1)])
-    return float(both.min()), float(both.max())
-
-
-def far_apart(problem: MixedLCP) -> bool:
-    """Whether some entries are extreme beside others: `extreme`, whatever factor all of them have."""
-    size = _sizes(problem)
-    return bool(size.size and size.max() * (1.0 / EXTREME) > size.min())
-
-
-def _sizes(problem: MixedLCP) -> Array:
-    values = problem.A.data if sp.issparse(problem.A) else problem.A
-    size = np.append(np.abs(values).ravel(), np.abs(problem.q))
-    return size[size > 0.0]
-
-
-def extreme(problem: MixedLCP) -> bool:
-    """Whether entries are so large, or so small, that products of three of them may overflow or vanish."""
-    size = _sizes(problem)
-    return bool(size.size and (size.max() > EXTREME or size.min() < 1.0 / EXTREME))
 
 
 def units(problem: MixedLCP) -> tuple[Exponents, Exponents]:

@@ -59,9 +59,11 @@ class AlmostComplementary:
 
     def step(self) -> None:
         """One pivot."""
-        now, column = next(
-            (one, column) for one in self.dictionaries if (column := one.column(self.entering)) is not None
-        )
+        for now in self.dictionaries:
+            column = now.column(self.entering)
+            if column is not None:
+                break
+        assert column is not None
         row = now.first_zero(column, self.stop)
         if row is None:
             self.ended = Ended.RAY
@@ -110,6 +112,13 @@ class AlmostComplementary:
         mask = np.zeros(self.n, dtype=bool)
         mask[basic[(basic >= self.n) & (basic < 2 * self.n)] - self.n] = True
         return mask
+
+    def values(self) -> Array:
+        """X at the basis, shape (n,)."""
+        values = np.zeros(2 * self.n + 1)
+        for one in self.dictionaries:
+            values[one.basic] = one.table[:, -1]
+        return np.maximum(values[self.n : 2 * self.n], 0.0)
 
     def ray(self) -> Array:
         """How x changes along the ray on which the path ended, shape (n,)."""

@@ -34,7 +34,7 @@ class Dictionary:
     first : Array of shape (m, k + 1)
         The table at the beginning, the constants last.
     rows, columns : integer arrays of shape (m,), (k,)
-        Which variables were basic, and which were not.
+        Which variables were basic, by consecutive numbers, and which were not.
     table : Array of shape (m, k + 1)
     basic, nonbasic : integer arrays of shape (m,), (k,)
         The same now.
@@ -46,15 +46,18 @@ class Dictionary:
     table: Array = field(init=False)
     basic: Indices = field(init=False)
     nonbasic: Indices = field(init=False)
+    _place: Indices = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         self.table = np.array(self.first, order="F")
         self.basic, self.nonbasic = self.rows.copy(), self.columns.copy()
+        self._place = np.full(1 + max(int(one.max(initial=0)) for one in (self.rows, self.columns)), -1)
+        self._place[self.nonbasic] = np.arange(self.nonbasic.size)
 
     def column(self, variable: int) -> int | None:
         """Where a variable is among the nonbasic ones; None if it is not."""
-        place = int((self.nonbasic == variable).argmax())
-        return place if self.nonbasic[place] == variable else None
+        place: int = self._place.item(variable) if variable < self._place.size else -1
+        return place if place >= 0 else None
 
     def pivot(self, row: int, column: int) -> int:
         """Exchange a basic variable for a nonbasic one; the variable that has left the basis.
@@ -65,7 +68,7 @@ class Dictionary:
             Their places.
         """
         table = self.table
-        pivot = table[row, column]
+        pivot = table.item(row, column)
         moved = table[row] / -pivot
         moved[column] = 1.0 / pivot
         slopes = table[:, column].copy()
@@ -73,8 +76,9 @@ class Dictionary:
         table[:, column] = 0.0
         dger(1.0, slopes, moved, a=table, overwrite_a=1)
         table[row] = moved
-        leaving = int(self.basic[row])
-        self.basic[row], self.nonbasic[column] = self.nonbasic[column], leaving
+        leaving, entering = self.basic.item(row), self.nonbasic.item(column)
+        self.basic[row], self.nonbasic[column] = entering, leaving
+        self._place[leaving], self._place[entering] = column, -1
         return leaving
 
     def last_zero(self, column: int) -> int | None:
@@ -95,7 +99,7 @@ class Dictionary:
         if growing.size == 0:
             return None
         at = constants[growing] / slopes[growing]
-        zero = constants[growing] - at.min() * slopes[growing] <= self._tie()
+        zero = constants[growing] - at.min() * slopes[growing] <= TIE * largest(constants)
         return self._least(growing[zero], slopes[growing[zero]])
 
     def first_zero(self, column: int, preferred: frozenset[int]) -> int | None:
@@ -113,20 +117,23 @@ class Dictionary:
         int or None
             None if no row falls: the variable grows along a ray.
         """
-        slopes = self.table[:, column]
+        slopes, constants = self.table[:, column], self.table[:, -1]
         falling = (slopes < -ZERO * largest(slopes)).nonzero()[0]
         if falling.size == 0:
             return None
-        values, rates = np.maximum(self.table[:, -1][falling], 0.0), -slopes[falling]
+        values, rates = constants[falling], slopes[falling]
+        if values.item(values.argmin()) < 0.0:
+            values = np.maximum(values, 0.0)
         ratios = values / rates
-        zero = (values - ratios.min() * rates <= self._tie()).nonzero()[0]
+        last = ratios.argmax()
+        zero = (values - ratios[last] * rates <= TIE * largest(constants)).nonzero()[0]
+        if zero.size == 1:
+            return int(falling[zero[0]])
         tied = falling[zero]
-        if tied.size == 1:
-            return int(tied[0])
         for row in tied:
             if int(self.basic[row]) in preferred:
                 return int(row)
-        return self._least(tied, rates[zero])
+        return self._least(tied, -rates[zero])
 
     def rebuilt(self) -> float:
         """Compute the table afresh from the first one; the least constant, relative to the largest; NaN if singular.
@@ -149,48 +156,39 @@ class Dictionary:
         self.table = np.asfortranarray(np.vstack([solved, kept]))
         self.basic = np.concatenate([self.columns[entered], self.rows[~left]])
         self.nonbasic = np.concatenate([self.rows[left], self.columns[~entered]])
-        least: float = self.table[:, -1].min() / max(self._size(), np.finfo(float).tiny)
+        self._place.fill(-1)
+        self._place[self.nonbasic] = np.arange(self.nonbasic.size)
+        least: float = self.table[:, -1].min() / max(largest(self.table[:, -1]), np.finfo(float).tiny)
         return least
-
-    def _size(self) -> float:
-        return largest(self.table[:, -1])
-
-    def _tie(self) -> float:
-        return TIE * self._size()
 
     def _least(self, tied: Indices, scale: Array) -> int:
         """Of rows whose constants are tied the one that is least in eps, eps^2, ..., relative to a scale."""
-        if tied.size == 1:
-            return int(tied[0])
-        # The coefficients of eps^k are those of the inverse basis: of a variable of the first one with their sign.
-        place = np.full(int(max(self.rows.max(), self.columns.max())) + 1, -1)
-        place[self.nonbasic] = np.arange(self.nonbasic.size)
-        places = place[self.rows]
-        columns = np.append((places >= 0).nonzero()[0], places.size)
-        place[self.rows] = np.arange(places.size)
-        place[self.columns] = -1
-        power = place[self.basic[tied]]
+        # The coefficients of eps^k are those of the inverse basis: of a variable of the first one with their sign, and
+        # of a row whose basic variable is of the first one 1 at its power, where others have 0.
+        places = self._place[self.rows]
+        powers = (places >= 0).nonzero()[0]
+        own = np.minimum(self.basic[tied] - self.rows[0], places.size)
         at, width = 0, AT_FIRST
-        while at < columns.size:
+        while tied.size > 1:
             # Some columns at a time: the first few tell most rows apart.
-            now = columns[at : at + width]
-            now = now[now < places.size]
-            ratios = -self.table[tied[:, None], places[now]] / scale[:, None]
-            limit = ratios.min(axis=0) + TIE * np.maximum(1.0, np.abs(ratios).max(axis=0))
-            told = (ratios > limit).any(axis=0)
-            first = int(told.argmax()) if told.any() else now.size
-            # A row whose basic variable is of the first basis has the coefficient 1 at its power, where others have 0.
-            until = columns[min(at + first, columns.size - 1)]
-            kept = (power < 0) | (power >= until)
-            if not kept.any():
-                return int(tied[power.argmax()])
-            if kept.all():
-                if first < now.size:
+            now = powers[at : at + width]
+            ratios = self.table[tied[:, None], places[now]] / -scale[:, None]
+            low, high = np.minimum.reduce(ratios), np.maximum.reduce(ratios)
+            limit = low + TIE * np.maximum(np.maximum(high, -low), 1.0)
+            told = (high > limit).nonzero()[0]
+            first = told.item(0) if told.size else now.size
+            until = powers.item(at + first) if at + first < powers.size else places.size
+            kept = own >= until
+            held = np.count_nonzero(kept)
+            if held == 0:
+                return int(tied[own.argmax()])
+            if held == tied.size:
+                if told.size:
                     kept = ratios[:, first] <= limit[first]
                     first += 1
+                elif until == places.size:
+                    break
                 else:
-                    first, width = max(first, 1), 2 * width
-            tied, scale, power, at = tied[kept], scale[kept], power[kept], at + first
-            if tied.size == 1:
-                break
+                    width *= 2
+            tied, scale, own, at = tied[kept], scale[kept], own[kept], at + first
         return int(tied[0])

@@ -118,17 +118,11 @@ class Game:
         ----------
         Lemke and Howson, "Equilibrium points of bimatrix games", SIAM J. Appl. Math. 12, 1964.
         """
-        unit, n, m = unit_of(self.problem), self.problem.n, self.actions
-        A, q = self.problem.A / unit, self.problem.q / unit
-        players = np.arange(m), np.arange(m, n)
-        if label >= m:
-            players = players[::-1]
-        own, other = players
+        n, m = self.problem.n, self.actions
+        players = (0, m), (m, n)
+        own, other = players[::-1] if label >= m else players
         # The first player's x makes the second one's w: one dictionary each.
-        tables = tuple(
-            Dictionary(np.column_stack([A[np.ix_(theirs, mine)], q[theirs]]), theirs, mine + n)
-            for mine, theirs in ((own, other), (other, own))
-        )
+        tables = tuple(self._dictionary(mine, theirs) for mine, theirs in ((own, other), (other, own)))
         path = AlmostComplementary(n, tables, label + n, frozenset({label, label + n}))
         for table in tables:
             column = table.column(path.entering)
@@ -137,3 +131,10 @@ class Game:
             assert row is not None  # costs are positive
             path.left(table.pivot(row, column))
         return path
+
+    def _dictionary(self, mine: tuple[int, int], theirs: tuple[int, int]) -> Dictionary:
+        """W of one player by x of the other, each from an index to another."""
+        columns, rows = slice(*mine), slice(*theirs)
+        first = np.column_stack([self.problem.A[rows, columns], self.problem.q[rows]])
+        first /= unit_of(self.problem)
+        return Dictionary(first, np.arange(*theirs), np.arange(*mine) + self.problem.n)

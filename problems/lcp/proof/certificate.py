@@ -63,7 +63,7 @@ class Certificate:
     drowned : float
         By how much a row is off relative to the largest |q_i|, in balanced units (`problems.lcp.data.scaling`). It is
         large at a point that runs off to infinity along a solution of LCP(0, A), where the relative residual is small.
-        Zero where every |min(x_i, w_i)| is far below |q_i|, so that there is no need to ask.
+        Zero up to 1e-10, and where every |min(x_i, w_i)| is so far below |q_i| that there is no need to ask.
 
     References
     ----------

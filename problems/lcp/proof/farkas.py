@@ -17,16 +17,14 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.proof.compensated import row_terms
+from problems.lcp.proof.feasibility import LARGEST_PIVOTED, by_linear_program, by_pivots, transposed
 from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions_of, inequalities
 from problems.lcp.proof.rational import IntegerRow, Integers, integers, solve_exactly
 
-_HIGHS_TOLERANCE = 1e-10
-"""The tightest feasibility tolerance that HiGHS accepts."""
 _CLEARLY_POSITIVE = 1e-6
 """A scaled gap q'y above this is not worth an attempt at an exact proof."""
 _DENOMINATORS = (1, 12, 360, 10**4, 10**8)
@@ -174,8 +172,22 @@ def infeasibility(
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
     if guess is not None:
         guess = guess * rows / max(float((guess * rows).max()), np.finfo(float).tiny)
-    guess = _linear_program(matrix, vector, seconds) if guess is None else guess
-    if guess is None or not float(vector @ guess) < 0.0 or float((matrix.T @ guess).max()) > _NEARLY_TIGHT:
+    if guess is None and not problem.sparse and max(matrix.shape) <= LARGEST_PIVOTED:
+        feasible, ray = by_pivots(matrix, vector)
+        if feasible:
+            return None
+        proof = None if ray is None else _proved(problem, system, matrix, vector, ray / ray.max(), rows)
+        if proof is not None:
+            return proof
+    guess = by_linear_program(matrix, vector, seconds) if guess is None else guess
+    return None if guess is None else _proved(problem, system, matrix, vector, guess, rows)
+
+
+def _proved(
+    problem: MixedLCP, system: Inequalities, matrix: Matrix, vector: Array, guess: Array, rows: Array
+) -> Farkas | FloatFarkas | None:
+    """The proof near a scaled guess, if there is one."""
+    if not float(vector @ guess) < 0.0 or float((matrix.T @ guess).max()) > _NEARLY_TIGHT:
         return None
     proof = _exact(problem, system, matrix, guess, rows, strict=True, largest=AFFORDABLE_VERTEX)
     return proof if proof is not None else _nearly(Inequalities(matrix, vector), guess, rows, system, problem.n)
@@ -229,7 +241,7 @@ def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
     rows, columns = scales(system)
     matrix, vector = scaled_data(system, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    guess = _linear_program(matrix, vector, math.inf)
+    guess = by_linear_program(matrix, vector, math.inf)
     if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
         return None
     return _exact(problem, system, matrix, guess, rows, strict, LARGEST_VERTEX)
@@ -250,7 +262,7 @@ def _exact(
 def _nearly(scaled: Inequalities, guess: Array, rows: Array, system: Inequalities, n: int) -> FloatFarkas | None:
     """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
     y = np.where(guess > _SUPPORT, guess, 0.0)
-    conditions = Inequalities(_transposed(scaled.A), np.zeros(scaled.A.shape[1]))
+    conditions = Inequalities(transposed(scaled.A), np.zeros(scaled.A.shape[1]))
     for _ in range(_REFINEMENTS):
         terms = row_terms(conditions, y)
         relative = np.where(terms.size > 0.0, terms.w / np.where(terms.size > 0.0, terms.size, 1.0), 0.0)
@@ -272,26 +284,6 @@ def _nearly(scaled: Inequalities, guess: Array, rows: Array, system: Inequalitie
         moved[support] -= y[support] * np.linalg.lstsq(block * y[support], terms.w[tight], rcond=None)[0]
         y = np.maximum(moved, 0.0)
     return None
-
-
-def _transposed(matrix: Matrix) -> Matrix:
-    return sp.csr_array(matrix.T) if sp.issparse(matrix) else matrix.T
-
-
-def _linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | None:
-    """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if there is none, or HiGHS gave up."""
-    n = vector.size
-    total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
-    result = linprog(
-        vector, A_ub=_transposed(matrix), b_ub=np.zeros(matrix.shape[1]), A_eq=total, b_eq=[1.0], bounds=(0, None),
-        method="highs",
-        options={"primal_feasibility_tolerance": _HIGHS_TOLERANCE, "dual_feasibility_tolerance": _HIGHS_TOLERANCE,
-                 **({"time_limit": seconds} if seconds < math.inf else {})},
-    )  # fmt: skip
-    if result.status != 0:
-        return None
-    solution: Array = np.maximum(result.x, 0.0)
-    return solution
 
 
 def _candidates(conditions: Conditions, matrix: Matrix, guess: Array, rows: Array, order: int) -> Iterator[list[int]]:

@@ -36,14 +36,25 @@ def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
     states : ndarray of int, shape (number, n)
         -1 where x is at its lower bound, 1 where at its upper one, 0 between.
     """
-    parts = [states[k : k + TOGETHER] for k in range(0, len(states), TOGETHER)]
-    with np.errstate(all="ignore"):
-        return np.concatenate([_doubtful(problem, part) for part in parts])
-
-
-def _doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
-    return in_doubt(A, problem.q, problem.lower, problem.upper, states)
+    asked = _signs_allow(A, problem.q, states == BETWEEN) if problem.standard else np.ones(len(states), dtype=bool)
+    left = asked.nonzero()[0]
+    with np.errstate(all="ignore"):
+        for k in range(0, left.size, TOGETHER):
+            part = left[k : k + TOGETHER]
+            asked[part] = in_doubt(A, problem.q, problem.lower, problem.upper, states[part])
+    return asked
+
+
+def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which faces no row forbids by its signs alone, which know no rounding: w_i < 0, or w_i > 0 where x_i may be too.
+
+    That is all where the face is singular, and it forbids most of those of small integers.
+    """
+    support = inside.astype(float)
+    rises, falls = support @ (A > 0.0).T > 0.0, support @ (A < 0.0).T > 0.0
+    forbidden = (~rises & (q < 0.0)) | (inside & ~falls & (q > 0.0))
+    return np.asarray(~forbidden.any(axis=1))
 
 
 def in_doubt(A: Array, q: Array, low: Array, high: Array, states: States) -> NDArray[np.bool_]:

@@ -41,8 +41,13 @@ LARGEST_MADE_DENSE = 500
 5 % entries and n = 200 a path takes a tenth of the time then."""
 
 LARGEST_EARLY_FACES = 10
-"""Up to this order trying all faces takes less than two paths: 0.6 ms (n = 6), 3 to 50 ms (9), where the paths of
-feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 45 to 600 ms (12, where many are singular)."""
+"""Up to this order trying all faces takes less than two paths: 0.1 ms (n = 3), 0.3 to 7 ms (9), where the paths of
+feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 15 to 50 ms (12), where Wang's path alone takes
+25 on solvable ones."""
+
+LARGEST_TINY = 6
+"""Up to this order they come right after Lemke's method, before units of the problem's own, which take 0.4 ms: 0.1 ms
+(n = 3, 4) to 0.8 ms (6)."""
 
 LEAST_START = 1e-3
 """In natural units: what a zero of x0 is where a path begins, which needs positive ones."""

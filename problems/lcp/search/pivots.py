@@ -162,14 +162,15 @@ def by_lemke_howson(search: Search) -> bool:
     if game is None:
         return False
     n, m = search.problem.n, game.actions
-    paths = [game.path(label % n) for label in LABELS]
+    paths: list[AlmostComplementary] = []
     most = AT_ORDER * n
     last = max(most, GAME_WORK // (m * (n - m)))
-    while paths and most <= last:
-        for path in paths:
-            if _reached(search, path, path.run(most, search.seconds_left)):
+    while most <= last and (not paths or any(path.ended is None for path in paths)):
+        for k, label in enumerate(LABELS):
+            if k == len(paths):
+                paths.append(game.path(label % n))
+            if paths[k].ended is None and _reached(search, paths[k], paths[k].run(most, search.seconds_left)):
                 return True
-        paths = [path for path in paths if path.ended is None]
         most *= 2
     return False
 

@@ -29,7 +29,8 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, extreme, far_apart, without_far_factor
+from problems.lcp.data.scaling import balanced, without_far_factor
+from problems.lcp.data.spread import extreme, far_apart
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector

@@ -36,6 +36,7 @@ from problems.lcp.search.limits import (
     LARGEST_EARLY_PROOF,
     LARGEST_MADE_DENSE,
     LARGEST_PROOF,
+    LARGEST_TINY,
     LEAST_START,
     MOST_AUGMENTED,
     MOST_Z_STEPS,
@@ -273,6 +274,10 @@ def _has_few_faces(case: Case) -> bool:
     return decidable(case.problem, FEW_PIECES)
 
 
+def _tiny(case: Case) -> bool:
+    return case.pivoted and case.problem.n <= LARGEST_TINY
+
+
 def _lacks_feasible_start(case: Case) -> bool:
     return case.x0 is None and HOMOTOPIES[case.asked].feasible
 
@@ -291,17 +296,19 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt(
         "active sets of A + shift I, from x = 0", lambda c: c.definite_perhaps, _proximally_from_zero, said.SETTLED
     ),
+    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("active sets, from x = 0", _always, _from_zero, said.SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, said.SETTLED_SHIFTED),
-    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("Lemke, as given", _as_given(_pivotable), _by_lemke, said.LEMKE),
     Attempt("active sets, further", _stopped, _further, said.SETTLED),
+    Attempt("proof, at once", _tiny, _proof, said.PROVED),
+    Attempt("few faces, at once", _tiny, _all_faces, said.TRIED),
     Attempt("units of its own", lambda c: c.search.postponed, _rescaled, ""),
     Attempt("descent in a box", _in_a_box, _descent, said.DESCENDED),
     Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
     Attempt("Lemke and Howson", _scaled(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
-    Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF, _proof, said.PROVED),
+    Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
     Attempt("few faces", _has_few_faces, _all_faces, said.TRIED),
     Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
 )

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from problems import lcp
 from problems.lcp.data.scaling import balanced, units
+from problems.lcp.proof import off
 from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.farkas import FloatFarkas, infeasibility
 from problems.lcp.reference.enumeration import exhaust
@@ -270,3 +271,16 @@ def test_a_proof_moves_between_units():
     assert solution.farkas.holds(problem)
     assert "Farkas" in solution.proof
     assert not solution.farkas.holds(lcp.LCP(problem.A, -problem.q))
+
+
+def test_units_are_asked_for_only_where_they_may_matter(monkeypatch):
+    """A row with q_i = 0, as those of friction, off by round-off: clear where the entries are alike."""
+    A, q, x = np.array([[1.0, -3.0], [0.0, 1.0]]), np.array([0.0, -0.1]), np.array([0.3, 0.1])
+    asked = []
+    monkeypatch.setattr(off, "units", lambda problem: asked.append(problem) or units(problem))
+    assert lcp.certify(lcp.LCP(A, q), x).drowned == 0.0
+    assert not asked
+    # In units a million apart, and at a point that is off by more, they are.
+    assert lcp.certify(lcp.LCP(A * [[1e6], [1.0]], q), x).drowned == 0.0
+    assert 1e-3 < lcp.certify(lcp.LCP(A, q), np.array([0.301, 0.1])).drowned < 1e-2
+    assert len(asked) == 2

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from problems.lcp import classes
 from problems.lcp.classes import ExactMatrix
-from problems.lcp.classes.exact import determinant, principal_minors
+from problems.lcp.classes.exact import consistent, determinant, principal_minors
 from problems.lcp.classes.simplex import at_least, equal, feasible_point
 from problems.lcp.strategies import matrices
 
@@ -84,3 +84,18 @@ def test_floats_are_taken_as_the_rationals_that_they_are():
     tiny = np.diag([1e-300, 1.0])
     assert classes.is_p(tiny).holds
     assert classes.is_psd(tiny - np.diag([2e-300, 0.0])).holds is False
+
+
+def test_equations_are_consistent_where_the_ranks_agree():
+    seen = [0, 0]
+    for k in range(300):
+        r = np.random.default_rng(k)
+        m, n = r.integers(1, 6, 2)
+        rows = r.choice([0, 0, 1, -1, 2, -3], (m, n + 1))
+        if m > 2:
+            rows[-1] = 2 * rows[0] - rows[1]
+            rows[-1, -1] += k % 2
+        agree = np.linalg.matrix_rank(rows[:, :-1]) == np.linalg.matrix_rank(rows)
+        assert consistent(rows.tolist()) == agree
+        seen[int(agree)] += 1
+    assert min(seen) > 50

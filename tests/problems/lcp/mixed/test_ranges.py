@@ -8,6 +8,7 @@ from scipy.optimize import linprog
 from continuation.testing import check_homotopy
 from problems import lcp
 from problems.lcp.data.ranges import ranges
+from problems.lcp.homotopies import kkt_system
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 from .util import orders
@@ -114,3 +115,26 @@ def test_what_only_looks_like_a_row_with_two_sides_is_none():
     twice = np.array([[0.0, -1.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
     assert ranges(lcp.MixedLCP(twice, np.zeros(3), [-inf, 0, 0], [inf, 1, 1])) is None
     assert lcp.solve(lcp.MixedLCP(twice, np.zeros(3), [-inf, 0, 0], [inf, 1, 1])).success
+
+
+def test_the_core_of_the_kkt_path_has_no_activities(monkeypatch):
+    rng, n, m = np.random.default_rng(3), 30, 20
+    program = random_program(rng, n, m, rank=15)
+    found = orders(monkeypatch)
+    assert lcp.solve(program, "kkt", finish=False).success
+    assert len(found) >= 10
+    assert set(found) == {n + m}
+
+
+@KINDS
+def test_a_core_without_what_is_diagonal_is_that_of_all(sparse):
+    for k in range(6):
+        rng, gone = np.random.default_rng(k), np.array([1, 4])
+        M = rng.standard_normal((7, 7))
+        M = M + M.T
+        M[1, 4] = M[4, 1] = 0.0
+        column, row, r = rng.standard_normal(7), rng.standard_normal(8), rng.standard_normal(7)
+        whole = np.vstack([np.column_stack([M, column]), row])
+        core = kkt_system._factored(sp.csc_array(M) if sparse else M, column, row, False, gone)
+        assert core.sign == np.sign(np.linalg.det(whole))
+        np.testing.assert_allclose(whole @ core.solve(r, 0.5), np.append(r, 0.5), atol=1e-11)
