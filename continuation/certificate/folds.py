@@ -119,13 +119,9 @@ def signs(judged: Judged, radius: Array, tube: Array) -> Signs:
     tube : ndarray, shape (slabs, N + 1)
         Radii with which the test holds.
     """
-    sign = _sign(judged, radius, tube)
     for _ in range(NARROWER):
-        if sign.all():
-            break
         radius = _narrowed(judged, radius)
-        sign = _sign(judged, radius, tube)
-    return Signs(sign, radius)
+    return Signs(_sign(judged, radius, tube), radius)
 
 
 def _judged_signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> tuple[Signs, Judged]:
@@ -165,7 +161,7 @@ def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> I
         if len(image.lo) < 3:  # constant along every line: no derivative has a sign
             return np.zeros(len(slabs), dtype=np.intp)
         lo, hi = (np.concatenate([half[2], np.zeros((len(slabs), 1))], axis=1) for half in (image.lo, image.hi))
-        v = solved(judged, Ends(0.5 * lo, 0.5 * hi), radius, tube)
+        v = solved(judged, judged.applied(Ends(0.5 * lo, 0.5 * hi)), radius, tube)
         return np.where(v.hi[:, -1] < 0.0, 1, np.where(v.lo[:, -1] > 0.0, -1, 0))
 
 

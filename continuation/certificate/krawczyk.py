@@ -35,8 +35,13 @@ class Judged(Protocol):
         """A bound of |Y G(s, p(s))|, shape (slabs, N + 1); nan where there is none."""
         ...
 
+    @property
+    def across(self) -> Ends:
+        """The range of the last column of Y(s) over each slab, shape (slabs, N + 1)."""
+        ...
+
     def applied(self, v: Ends) -> Ends:
-        """The range of Y(s) v over each slab, for v of shape (slabs, N + 1)."""
+        """The range of Y(s) v over each slab, for v of that shape."""
         ...
 
     def spread(self, x: Array, radius: Array) -> Array:
@@ -176,6 +181,11 @@ class Bounded:
     off: Array
     largest: Array
 
+    @property
+    def across(self) -> Ends:
+        """Y is the same all over the slab."""
+        return thin(self.Y[:, :, -1])
+
     def applied(self, v: Ends) -> Ends:
         """Y is the same all over the slab."""
         return applied(self.Y, v)
@@ -214,9 +224,16 @@ class Several:
         """Part by part."""
         return self._gathered([part.spread(x[k], radius[k]) for k, part in self.parts])
 
+    @property
+    def across(self) -> Ends:
+        """Part by part."""
+        return self._both([part.across for _, part in self.parts])
+
     def applied(self, v: Ends) -> Ends:
         """Part by part."""
-        found = [part.applied(v[k]) for k, part in self.parts]
+        return self._both([part.applied(v[k]) for k, part in self.parts])
+
+    def _both(self, found: list[Ends]) -> Ends:
         return Ends(self._gathered([u.lo for u in found]), self._gathered([u.hi for u in found]))
 
 
@@ -247,13 +264,11 @@ def tangent(judged: Judged, radius: Array, tube: Array) -> Ends:
     tube : ndarray, shape (slabs, N + 1)
         Radii with which the test holds, for a norm.
     """
-    right = np.zeros_like(radius)
-    right[:, -1] = 1.0
-    return solved(judged, thin(right), radius, tube)
+    return solved(judged, judged.across, radius, tube)
 
 
-def solved(judged: Judged, b: Ends, radius: Array, tube: Array) -> Ends:
-    """The solutions of G' z = b, all over the slab.
+def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
+    """The solutions of G' z = b, all over the slab, for v that holds Y(s) b.
 
     With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1:
     two terms, and a geometric series, as E^3 |Y(s) b| <= theta r and E r <= kappa r.
@@ -261,12 +276,11 @@ def solved(judged: Judged, b: Ends, radius: Array, tube: Array) -> Ends:
     Parameters
     ----------
     judged : Judged
-    b : Ends
+    v : Ends
     radius, tube : ndarray, shape (slabs, N + 1)
         As in `tangent`.
     """
     with np.errstate(all="ignore"):
-        v = judged.applied(b)
         first = judged.spread(v.magnitude(), radius)
         second = judged.spread(first, radius)
         kappa = (judged.spread(tube, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)

@@ -233,10 +233,17 @@ class Polynomial:
         second = np.abs(np.matmul(left, derivative.matrix(2)) - np.matmul(E, E)) if moving else E
         return cls(_misfit(H, left, E, offset), derivative, chart, Y, size_Y, R, np.abs(E), second, offset)
 
+    @property
+    def across(self) -> Ends:
+        """Y(s) = (I - x E) Y_0."""
+        return self._moved(thin(self.Y[:, :, -1]))
+
     def applied(self, v: Ends) -> Ends:
         """Y(s) = (I - x E) Y_0."""
-        image = applied(self.Y, v)
-        slack = self.offset * up_by(times(self.size_E, image.magnitude()), v.shape[1])
+        return self._moved(applied(self.Y, v))
+
+    def _moved(self, image: Ends) -> Ends:
+        slack = self.offset * up_by(times(self.size_E, image.magnitude()), self.Y.shape[1])
         return image + Ends(-slack, slack)
 
     def spread(self, x: Array, radius: Array) -> Array:
