@@ -7,7 +7,7 @@ OUT    ?= build/paper
 # that what its tests share is made once.
 TESTENV := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=Agg
 
-.PHONY: demo test lint types suite reliability chart docs clean
+.PHONY: demo test lint types suite reliability nightly chart docs clean
 
 demo: $(VENV)/.demo
 	$(BIN)/continuation paper --output $(OUT)
@@ -27,11 +27,19 @@ suite: $(VENV)/.dev
 reliability: $(VENV)/.dev
 	$(TESTENV) $(BIN)/python -m tests.reliability.run --output build/reliability
 
+# Every tube of the proofs of the suite by python-flint, another arithmetic by other authors; two minutes.
+nightly: $(VENV)/.proof
+	$(TESTENV) $(BIN)/pytest tests/continuation/certificate -k flint
+
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.demo: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[plot,progress]"
+	touch $@
+
+$(VENV)/.proof: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[test,proof]"
 	touch $@
 
 $(VENV)/.chart: pyproject.toml | $(VENV)/bin/python

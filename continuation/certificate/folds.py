@@ -11,7 +11,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
 from continuation.certificate.krawczyk import ByIntervals, Engine, Judged, solved, tangent
 from continuation.intervals.calculus import along_curve
-from continuation.intervals.ends import EPS, Ends, bilinear, thin
+from continuation.intervals.ends import EPS, Ends, thin
 
 PARTS, DEPTH = 4, 3
 """A slab without a sign is cut in four, three times at most: where that does not help the tube is too wide."""
@@ -160,9 +160,8 @@ def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> I
         image = plain.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).ends
         if len(image.lo) < 3:  # constant along every line: no derivative has a sign
             return np.zeros(len(slabs), dtype=np.intp)
-        column = Ends(image.lo[2][..., None], image.hi[2][..., None])
-        half = bilinear(np.matmul, thin(judged.preconditioner[:, :, :-1]), column)
-        v = solved(judged, Ends(half.lo[..., 0], half.hi[..., 0]), radius, tube)
+        lo, hi = (np.concatenate([half[2], np.zeros((len(slabs), 1))], axis=1) for half in (image.lo, image.hi))
+        v = solved(judged, judged.applied(Ends(0.5 * lo, 0.5 * hi)), radius, tube)
         return np.where(v.hi[:, -1] < 0.0, 1, np.where(v.lo[:, -1] > 0.0, -1, 0))
 
 

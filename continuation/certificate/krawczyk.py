@@ -12,14 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from itertools import pairwise
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Slabs, expansion
+from continuation.certificate.cells import Index, Slabs, expansion
 from continuation.intervals.array import Interval, UndecidedError, as_interval
 from continuation.intervals.calculus import along_curve, derivatives, with_gradient
 from continuation.intervals.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
@@ -37,12 +36,12 @@ class Judged(Protocol):
         ...
 
     @property
-    def preconditioner(self) -> Array:
-        """Y in the middle of each slab, shape (slabs, N + 1, N + 1)."""
+    def across(self) -> Ends:
+        """The range of the last column of Y(s) over each slab, shape (slabs, N + 1)."""
         ...
 
-    def moved(self, x: Array) -> Array:
-        """A bound of |Y(s) z - Y(middle) z| where |Y(middle) z| <= x, shape (slabs, N + 1)."""
+    def applied(self, v: Ends) -> Ends:
+        """The range of Y(s) v over each slab, for v of that shape."""
         ...
 
     def spread(self, x: Array, radius: Array) -> Array:
@@ -76,6 +75,12 @@ def times(matrix: Array, x: Array) -> Array:
     """Matrices times vectors, slab by slab."""
     product: Array = np.matmul(matrix, x[..., None])[..., 0]
     return product
+
+
+def applied(Y: Array, v: Ends) -> Ends:
+    """The range of matrices times interval vectors, slab by slab."""
+    image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
+    return Ends(image.lo[..., 0], image.hi[..., 0])
 
 
 def inverses(matrices: Array) -> Array:
@@ -125,11 +130,8 @@ class ByIntervals:
         """As `Engine.judge`."""
         m = radius.shape[1]
         size = max(1, ENTRIES // (m * (m + 1)))
-        parts = [
-            self._judge(slabs.take(part), radius[part])
-            for part in np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
-        ]
-        return parts[0] if len(parts) == 1 else Several.of(parts)
+        places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
+        return Several.of([(place, self._judge(slabs.take(place), radius[place])) for place in places])
 
     def _judge(self, slabs: Slabs, radius: Array) -> Bounded:
         curve, x = expansion(slabs), slabs.offset[:, None]
@@ -166,9 +168,7 @@ class ByIntervals:
 
 def size_of(Y: Array, v: Ends) -> Array:
     """A bound of |Y v| for interval vectors v, slab by slab."""
-    column = Ends(v.lo[..., None], v.hi[..., None])
-    image = bilinear(np.matmul, thin(Y), column)
-    bound: Array = image.magnitude()[..., 0]
+    bound = applied(Y, v).magnitude()
     return np.where(np.isfinite(v.lo).all(axis=-1) & np.isfinite(v.hi).all(axis=-1), bound.T, np.nan).T
 
 
@@ -177,13 +177,18 @@ class Bounded:
     """The bounds as a matrix: |I - Y G'| entry by entry, for all radii up to `largest`."""
 
     misfit: Array
-    preconditioner: Array
+    Y: Array
     off: Array
     largest: Array
 
-    def moved(self, x: Array) -> Array:
+    @property
+    def across(self) -> Ends:
         """Y is the same all over the slab."""
-        return np.zeros_like(x)
+        return thin(self.Y[:, :, -1])
+
+    def applied(self, v: Ends) -> Ends:
+        """Y is the same all over the slab."""
+        return applied(self.Y, v)
 
     def spread(self, x: Array, radius: Array) -> Array:
         """Nothing is known (nan) beyond the largest radii."""
@@ -194,28 +199,42 @@ class Bounded:
 
 @frozen(eq=False)
 class Several:
-    """Bounds of slabs that went through in parts."""
+    """Bounds of slabs that were judged in parts, each with the places of its slabs."""
 
-    parts: list[Any]
-    misfit: Array
-    preconditioner: Array
-    places: list[slice]
+    parts: list[tuple[Index, Any]]
 
     @classmethod
-    def of(cls, parts: list[Any]) -> Several:
-        """In order."""
-        ends = np.cumsum([0, *(len(part.misfit) for part in parts)]).tolist()
-        places = [slice(a, b) for a, b in pairwise(ends)]
-        misfit, matrices = (np.concatenate([getattr(p, k) for p in parts]) for k in ("misfit", "preconditioner"))
-        return cls(parts, misfit, matrices, places)
+    def of(cls, parts: list[tuple[Index, Any]]) -> Judged:
+        """One part is what it is."""
+        whole: Judged = cls(parts) if len(parts) > 1 else parts[0][1]
+        return whole
+
+    def _gathered(self, rows: list[Array]) -> Array:
+        out = np.empty((sum(map(len, rows)), rows[0].shape[1]))
+        for (place, _), some in zip(self.parts, rows):
+            out[place] = some
+        return out
+
+    @property
+    def misfit(self) -> Array:
+        """Part by part."""
+        return self._gathered([part.misfit for _, part in self.parts])
 
     def spread(self, x: Array, radius: Array) -> Array:
         """Part by part."""
-        return np.concatenate([part.spread(x[k], radius[k]) for part, k in zip(self.parts, self.places)])
+        return self._gathered([part.spread(x[k], radius[k]) for k, part in self.parts])
 
-    def moved(self, x: Array) -> Array:
+    @property
+    def across(self) -> Ends:
         """Part by part."""
-        return np.concatenate([part.moved(x[k]) for part, k in zip(self.parts, self.places)])
+        return self._both([part.across for _, part in self.parts])
+
+    def applied(self, v: Ends) -> Ends:
+        """Part by part."""
+        return self._both([part.applied(v[k]) for k, part in self.parts])
+
+    def _both(self, found: list[Ends]) -> Ends:
+        return Ends(self._gathered([u.lo for u in found]), self._gathered([u.hi for u in found]))
 
 
 def _boxes(some: slice, x: Array) -> Array:
@@ -245,11 +264,11 @@ def tangent(judged: Judged, radius: Array, tube: Array) -> Ends:
     tube : ndarray, shape (slabs, N + 1)
         Radii with which the test holds, for a norm.
     """
-    return solved(judged, thin(judged.preconditioner[:, :, -1]), radius, tube)
+    return solved(judged, judged.across, radius, tube)
 
 
 def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
-    """The solutions of G' z = b for v that holds Y(middle) b, all over the slab.
+    """The solutions of G' z = b, all over the slab, for v that holds Y(s) b.
 
     With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1:
     two terms, and a geometric series, as E^3 |Y(s) b| <= theta r and E r <= kappa r.
@@ -262,8 +281,6 @@ def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
         As in `tangent`.
     """
     with np.errstate(all="ignore"):
-        slack = judged.moved(v.magnitude())
-        v = v + Ends(-slack, slack)
         first = judged.spread(v.magnitude(), radius)
         second = judged.spread(first, radius)
         kappa = (judged.spread(tube, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)

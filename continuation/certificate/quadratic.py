@@ -15,7 +15,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs, expansion
-from continuation.certificate.krawczyk import Judged, Several, inverses, times, up_by
+from continuation.certificate.krawczyk import Judged, Several, applied, inverses, times, up_by
 from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin
 
 ENTRIES = 4_000_000
@@ -31,7 +31,7 @@ class Affine:
     constant : ndarray, shape (N,)
     matrix : ndarray, shape (N, N + 1)
     sizes : ndarray, shape (N, N + 1), optional
-        Sums of the absolute values of what an entry is the sum of; the entries themselves where they are exact.
+        Sums of the absolute values of what an entry is the sum of; zero where it is exact.
     constant_sizes : ndarray, shape (N,), optional
     """
 
@@ -116,26 +116,17 @@ class ByProducts:
         """As `continuation.certificate.krawczyk.Engine.judge`; valid for all radii."""
         m = radius.shape[1]
         size = max(1, ENTRIES // (m * m))
-        parts = np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
-        judged = [self._judge(slabs.take(part) if len(parts) > 1 else slabs) for part in parts]
-        return judged[0] if len(judged) == 1 else Several.of(judged)
+        places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
+        with np.errstate(all="ignore"):
+            return Several.of([(place, self._judge(slabs.take(place))) for place in places])
 
     def _judge(self, slabs: Slabs) -> Polynomial:
-        form, offset, chart = self.form, slabs.offset[:, None], slabs.cells.chart
-        with np.errstate(all="ignore"):
-            q = expansion(slabs).q
-            cubic = Ends(np.stack([k.lo for k in q], axis=1), np.stack([k.hi for k in q], axis=1))
-            alpha, beta, value = (_apply(part, cubic) for part in (form.first, form.second, form.plain))
-            derivative = Derivative.of(form, alpha, beta)
-            G0 = np.concatenate([derivative.matrix(0), chart[:, None, :]], axis=1)
-            Y = inverses(G0)
-            left, size_Y, m = Y[:, :, :-1], np.abs(Y), Y.shape[1]
-            R = np.abs(np.eye(m) - np.matmul(Y, G0))
-            moving = bool(offset.any())
-            E = np.matmul(left, derivative.matrix(1)) if moving else np.zeros_like(Y)
-            second = np.abs(np.matmul(left, derivative.matrix(2)) - np.matmul(E, E)) if moving else E
-            misfit = _misfit(_coefficients(value, alpha, beta), left, E, offset)
-            return Polynomial(misfit, derivative, chart, Y, size_Y, R, np.abs(E), second, offset)
+        form, chart = self.form, slabs.cells.chart
+        q = expansion(slabs).q
+        cubic = Ends(np.stack([k.lo for k in q], axis=1), np.stack([k.hi for k in q], axis=1))
+        alpha, beta, value = (_apply(part, cubic) for part in (form.first, form.second, form.plain))
+        derivative, H = Derivative.of(form, alpha, beta), _coefficients(value, alpha, beta)
+        return Polynomial.of(derivative, chart, H, slabs.offset[:, None])
 
 
 _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
@@ -223,16 +214,37 @@ class Polynomial:
     misfit: Array
     derivative: Derivative
     chart: Array
-    preconditioner: Array
+    Y: Array
     size_Y: Array
     rest: Array
     size_E: Array
     second: Array
     offset: Array
 
-    def moved(self, x: Array) -> Array:
+    @classmethod
+    def of(cls, derivative: Derivative, chart: Array, H: Ends, offset: Array) -> Polynomial:
+        """With the coefficients of H along the cubic."""
+        G0 = np.concatenate([derivative.matrix(0), chart[:, None, :]], axis=1)
+        Y = inverses(G0)
+        left, size_Y, m = Y[:, :, :-1], np.abs(Y), Y.shape[1]
+        R = np.abs(np.eye(m) - np.matmul(Y, G0))
+        moving = bool(offset.any())
+        E = np.matmul(left, derivative.matrix(1)) if moving else np.zeros_like(Y)
+        second = np.abs(np.matmul(left, derivative.matrix(2)) - np.matmul(E, E)) if moving else E
+        return cls(_misfit(H, left, E, offset), derivative, chart, Y, size_Y, R, np.abs(E), second, offset)
+
+    @property
+    def across(self) -> Ends:
         """Y(s) = (I - x E) Y_0."""
-        return self.offset * up_by(times(self.size_E, x), x.shape[1])
+        return self._moved(thin(self.Y[:, :, -1]))
+
+    def applied(self, v: Ends) -> Ends:
+        """Y(s) = (I - x E) Y_0."""
+        return self._moved(applied(self.Y, v))
+
+    def _moved(self, image: Ends) -> Ends:
+        slack = self.offset * up_by(times(self.size_E, image.magnitude()), self.Y.shape[1])
+        return image + Ends(-slack, slack)
 
     def spread(self, x: Array, radius: Array) -> Array:
         """See `Judged.spread`.

@@ -19,8 +19,9 @@ from continuation.certificate.cells import OVERHANG, Cells
 BITS = 113
 """Of each ball's middle: twice those of a double, so that its own round-off is no matter."""
 
-PARTS = (1, 4, 16, 64)
-"""Into how many parts a slab is cut until the test holds: it is a plainer one, its preconditioner stands still."""
+PARTS, DEPTH = 4, 5
+"""Into how many parts a slab is cut where the test fails, and how often: it is a plainer one, its preconditioner stands
+still."""
 
 _ARCS = {f"arc{name}": f"a{name}" for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
 
@@ -108,14 +109,23 @@ def confirmed(residual: Callable[[Any, Any], Any], cells: Cells) -> list[bool]:
 
 
 def _holds(flint: Any, residual: Callable[[Any, Any], Any], cell: Cells) -> bool:
-    for parts in PARTS:
-        count = int(cell.slabs[0]) * parts
-        length = (1.0 + 2.0 * OVERHANG) / count
-        middles = -OVERHANG + (np.arange(count) + 0.5) * length
-        # A hair more than half: together they cover the whole.
-        if all(_slab(flint, residual, cell, float(m), 0.5 * length * (1.0 + 1e-9)) for m in middles):
-            return True
-    return False
+    count = int(cell.slabs[0])
+    length = (1.0 + 2.0 * OVERHANG) / count
+    return all(
+        _covered(flint, residual, cell, -OVERHANG + (k + 0.5) * length, 0.5 * length, DEPTH) for k in range(count)
+    )
+
+
+def _covered(
+    flint: Any, residual: Callable[[Any, Any], Any], cell: Cells, middle: float, half: float, depth: int
+) -> bool:
+    # A hair more than half: together the parts cover the whole.
+    if _slab(flint, residual, cell, middle, half * (1.0 + 1e-9)):
+        return True
+    part = half / PARTS
+    return depth > 0 and all(
+        _covered(flint, residual, cell, middle + (2 * k + 1 - PARTS) * part, part, depth - 1) for k in range(PARTS)
+    )
 
 
 def _slab(flint: Any, residual: Callable[[Any, Any], Any], cell: Cells, middle: float, half: float) -> bool:
@@ -165,9 +175,23 @@ def _sum(flint: Any, terms: list[Any]) -> Any:
     return sum(terms, flint.arb(0))
 
 
+class Balls(np.ndarray[Any, Any]):
+    """An array of series; numpy counts no objects."""
+
+    def __array_function__(self, function: Any, types: Any, args: Any, kwargs: Any) -> Any:
+        """As numpy's, but for `bincount`."""
+        if function is not np.bincount:
+            return super().__array_function__(function, types, args, kwargs)
+        index, values, size = args
+        out = np.zeros(size, dtype=object).view(Balls)
+        for k, value in zip(index.tolist(), values):
+            out[k] = out[k] + value
+        return out
+
+
 def _image(residual: Callable[[Any, Any], Any], u: list[Any]) -> list[Any]:
     """H of series, as series; a constant of it as numbers."""
-    y = np.empty(len(u) - 1, dtype=object)
+    y = np.empty(len(u) - 1, dtype=object).view(Balls)
     for k, value in enumerate(u[:-1]):
         y[k] = Series(value)
     image = residual(y, Series(u[-1]))

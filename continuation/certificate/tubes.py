@@ -24,6 +24,9 @@ FIRST = 0.1
 INFLATION = 1.1
 """How much wider than what the test gives the next radii are: a fixed point is approached from above."""
 
+WIDE = 10.0
+"""Radii of so many sizes of the cell are given up: they grow from one trial to the next."""
+
 ROUNDS, RADII = 6, 12
 """Tests of a cell, and radii that are tried with the bounds of one of them."""
 
@@ -127,7 +130,9 @@ def search(engine: Engine, cells: Cells) -> Found:
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
-        wanted, kappa, off = _fixed_point(parts, judged, tried, scale[pending])
+        # Exact bounds hold for all radii, others for those that they were made with.
+        bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
+        wanted, kappa, off = _fixed_point(parts, judged, tried, scale[pending], bounded)
         good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             tube = wanted[parts.owner]
@@ -150,21 +155,23 @@ def search(engine: Engine, cells: Cells) -> Found:
     return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, undefined, told)
 
 
-def _fixed_point(slabs: Slabs, judged: Judged, cells: Cells, scale: Array) -> tuple[Array, Array, Array]:
+def _fixed_point(
+    slabs: Slabs, judged: Judged, cells: Cells, scale: Array, bounded: Array
+) -> tuple[Array, Array, Array]:
     """Radii a little above what the test gives back, the bound of the contraction, and the misfit in sizes; a cell."""
     count, owner = len(cells), slabs.owner
     least = FLOOR * scale + ROUND_OFF * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     with np.errstate(all="ignore"):
         off = _largest(judged.misfit, owner, count)
-        radius = np.minimum(np.maximum(2.0 * off, least), cells.radius)
+        radius = np.minimum(np.maximum(2.0 * off, least), bounded)
         radius = np.where(np.isfinite(radius), radius, cells.radius)
         kappa = np.full(count, np.inf)
         for _ in range(RADII):
-            image = _largest(judged.spread(radius[owner], np.minimum(radius, cells.radius)[owner]), owner, count)
+            image = _largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, count)
             kappa = (image / radius).max(axis=1)
             total = off + image
             inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
-            if inside.all():
+            if (inside | ~(radius <= WIDE * scale).all(axis=1)).all():
                 break
             radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
         return radius, kappa, (off / scale).max(axis=1)

@@ -14,7 +14,7 @@ from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.links import Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.tubes import along, check
+from continuation.certificate.tubes import along, check, sizes
 from continuation.intervals.ends import Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
@@ -26,6 +26,9 @@ NO_CURVE = "no point of the curve was found at the end"
 
 NEAR_END = 1e-5
 """How far the parameter may be from its target, of its way there, where an exact end takes the place of the rest."""
+
+CLOSE = 1e-2
+"""How far an event may be from the curve, in sizes of its cell: located ones are off by their tolerance, of 1e-6."""
 
 WIDER = 1.5
 """A tube that does not hold its neighbour's node is tried once with radii that do, and so much more."""
@@ -76,6 +79,7 @@ def verified(
         before = float(cells.place[-1, 1])
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
     places = [_place(cells, event) for event in path.events]
+    places = _on_curve(engine, cells, path.events, places)
     turning, more = _turning(cells, found or pieces(engine, plain, cells), path, places)
     gaps += more + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
@@ -201,6 +205,21 @@ def _place(cells: Cells, event: LocatedEvent) -> float | None:
             if -OVERHANG + width <= t <= 1.0 + OVERHANG - width and _inside(cell, t, width, event.u):
                 return float(k + t)
     return None
+
+
+def _on_curve(
+    engine: Engine, cells: Cells, events: list[LocatedEvent], places: list[float | None]
+) -> list[float | None]:
+    """The places of events next to which there is a point of the curve; None for others, in a wide tube."""
+    known = [k for k, place in enumerate(places) if place is not None]
+    if not known:
+        return places
+    owner = np.clip(np.array([int(places[k] or 0.0) for k in known]), 0, len(cells) - 1)
+    own = cells.take(owner)
+    at = nodes(engine, evolve(own, begin=np.array([events[k].u for k in known])), np.zeros(len(known)))
+    near = np.asarray((at.radius <= CLOSE * sizes(own)).all(axis=1))
+    lost = {k for k, good in zip(known, near) if not good}
+    return [None if k in lost else place for k, place in enumerate(places)]
 
 
 def _parameter(cell: Cells, u: Array) -> float:

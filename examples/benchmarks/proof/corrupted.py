@@ -167,6 +167,16 @@ def campaign(count: int, seed: int = 0) -> Counter:
     return found
 
 
+def by_parts(count: int, part: int = 500) -> Counter:
+    """A long campaign, which says after each part how far it is."""
+    found: Counter = Counter()
+    for seed in range(-(-count // part)):
+        found += campaign(min(part, count - seed * part), seed)
+        accepted = sum(number for (_, verdict), number in found.items() if verdict == "accepted")
+        print(f"{sum(found.values())} corrupted paths, {accepted} accepted", flush=True)
+    return found
+
+
 if __name__ == "__main__":
-    for (kind, verdict), number in sorted(campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 200).items()):
-        print(f"{kind:10} {verdict:9} {number}", flush=True)
+    for (kind, verdict), number in sorted(by_parts(int(sys.argv[1]) if len(sys.argv) > 1 else 200).items()):
+        print(f"{kind:10} {verdict:9} {number}")

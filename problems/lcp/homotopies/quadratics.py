@@ -35,7 +35,7 @@ def exact_end(problem: MixedLCP, x: Array) -> str:
 
 
 def kkt_form(homotopy: Any) -> Quadratic:
-    """``F + lam (x - x0 - F)``, ``z1 x - lam c1``, ``z2 (A x + q + lam rho) - lam c2``, F the stationarity.
+    """``x - x0 + (lam - 1) (x - x0 - F)``, ``z1 x - lam c1``, ``z2 (A x + q + lam rho) - lam c2``, F the stationarity.
 
     With bounds x stands for the distances from them, and ``(width - z2) t - lam c3`` is added for boxes; the row of an
     index without bounds is ``A x + q + lam (rho - give z0) + (lam) (give z2)``.
@@ -52,7 +52,8 @@ def kkt_form(homotopy: Any) -> Quadratic:
     lam, pull = whole[-1:], sides.sign[:, None] * np.eye(n)[sides.index]
     end = np.broadcast_to(rows.end, n)
     F = A @ x + A.T @ (x - z2) - pull.T @ z1
-    sizes = np.abs(A) @ x + np.abs(A.T) @ (x + z2) + np.abs(pull.T) @ z1
+    # Of what is a sum of two entries of A; single entries are exact.
+    sizes = (np.abs(A) + np.abs(A.T)) @ x
     constant = q - A.T @ end
     # The sum of A'end has n terms, the error that goes with `sizes` is that of eight.
     terms = np.abs(q) + (np.abs(A.T) @ np.abs(end)) * (1.0 + n / 4.0)
@@ -65,19 +66,18 @@ def kkt_form(homotopy: Any) -> Quadratic:
     x0, c1, c3 = homotopy.origin.x0, homotopy.c1[:, None] * lam, homotopy.c3[:, None] * lam
     return Quadratic(
         plain=Affine(
-            np.concatenate([constant, none, np.where(rows.free, q, 0.0), 0.0 * width]),
-            np.vstack([F, -c1, row, -c3]),
-            np.vstack([sizes, np.abs(c1), np.abs(row), np.abs(c3)]),
-            np.concatenate([terms, none, np.where(rows.free, np.abs(q), 0.0), 0.0 * width]),
+            np.concatenate([-x0, none, np.where(rows.free, q, 0.0), 0.0 * width]),
+            np.vstack([x, -c1, row, -c3]),
+            np.vstack([0.0 * x, 0.0 * c1, np.where(free, np.abs(row), 0.0), 0.0 * c3]),
         ),
         first=Affine(
-            np.concatenate([np.zeros(n), none, np.zeros(n), width]),
+            np.concatenate([np.full(n, -1.0), none, np.zeros(n), width]),
             np.vstack([np.repeat(lam, n, axis=0), z1, np.where(free, lam, z2), -z2[rows.boxed]]),
         ),
         second=Affine(
             np.concatenate([-x0 - constant, bounds, np.where(rows.free, 0.0, q), 0.0 * width]),
             np.vstack([x - F, pull @ x, np.where(free, homotopy.give * z2, raised), t]),
-            np.vstack([x + sizes, np.abs(pull) @ x, np.abs(np.where(free, homotopy.give * z2, raised)), t]),
+            np.vstack([x + sizes, 0.0 * (pull @ x), 0.0 * raised, 0.0 * t]),
             np.concatenate([np.abs(x0) + terms, np.abs(bounds), np.where(rows.free, 0.0, np.abs(q)), 0.0 * width]),
         ),
     )
@@ -118,7 +118,7 @@ def pairs_form(homotopy: Any) -> Quadratic:
         second=Affine(
             np.concatenate([sign * constant, none]),
             np.vstack([sign * (origin - goal), force]),
-            np.vstack([sizes, np.abs(force)]),
+            np.vstack([sizes, 0.0 * force]),
             np.concatenate([terms, none]),
         ),
     )

@@ -242,13 +242,20 @@ def test_both_engines_prove_it(name):
     assert len(slow.turning_points) == len(proof.turning_points)
 
 
-@pytest.mark.skipif(not second.available(), reason="python-flint is not installed")
-@pytest.mark.parametrize("name", ["freudenstein-roth", "duffing", "cusp"])
+SUBJECTS = {
+    **ACCEPTED,
+    **{name: (homotopy, 200) for name, homotopy in FORMS.items()},
+    **{f"example-{k + 1}": (homotopies.KKTHomotopy(e.problem, e.x0), 200) for k, e in enumerate(EXAMPLES)},
+}
+
+
+@pytest.mark.skipif(not second.available(), reason="python-flint is not installed (make nightly)")
+@pytest.mark.parametrize("name", SUBJECTS)
 def test_python_flint_confirms_every_tube(name):
-    homotopy, steps = ACCEPTED[name]
+    homotopy, steps = SUBJECTS[name]
     proof = certify(trace(homotopy, budget=Budget(steps=steps)), homotopy)
     assert all(second.confirmed(homotopy.residual, proof.cells))
-    thin = proof.cells.with_tubes(1e-9 * proof.cells.radius, proof.cells.slabs)
+    thin = proof.cells.with_tubes(1e-9 * proof.cells.radius, proof.cells.slabs).take(slice(0, 3))
     assert not any(second.confirmed(homotopy.residual, thin))
 
 
