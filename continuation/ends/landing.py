@@ -7,7 +7,7 @@ import math
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError
@@ -123,7 +123,7 @@ class Landing:
         if rejected is not None:
             return rejected
         border = point.border
-        along = float(np.dot(border, correction.u - point.u))
+        along = dot(border, correction.u - point.u)
         if along <= 0.0 or correction.distance > DISTANCE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The target may lie on the boundary of the domain, so the end itself is exempt from the ratio test.

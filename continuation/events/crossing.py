@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, dot, generic_vector
 from continuation.point.linearization import Linearization
 
 PRODUCTS = 40
@@ -107,17 +107,17 @@ def _eigenvalues(
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
     Q, H = np.empty((n + 1, a.u.size)), np.zeros((n + 1, n))
-    Q[0] = start / math.sqrt(np.dot(start, start))
+    Q[0] = start / math.sqrt(dot(start, start))
     converged = False
     for k in range(n):
         q = Q[k] / scale
-        x = Q[k] - scale * a.solve(apply(q), float(np.dot(border, q)))
-        size = math.sqrt(np.dot(x, x))
+        x = Q[k] - scale * a.solve(apply(q), dot(border, q))
+        size = math.sqrt(dot(x, x))
         for _ in range(2):
             part = Q[: k + 1] @ x
             H[: k + 1, k] += part
             x = x - part @ Q[: k + 1]
-        H[k + 1, k] = left_over = math.sqrt(np.dot(x, x))
+        H[k + 1, k] = left_over = math.sqrt(dot(x, x))
         whole = k + 1 == a.u.size or left_over <= EXHAUSTED * size
         if not whole and (k == 0 or (k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left))):
             if k:

@@ -10,7 +10,7 @@ import numpy as np
 from attrs import evolve
 from scipy.optimize import minimize_scalar
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue
@@ -83,7 +83,7 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
     """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
-    length = float(np.dot(arc.border, arc.b.u - arc.a.u))
+    length = dot(arc.border, arc.b.u - arc.a.u)
 
     def g(t: float) -> float:
         return sign * event.monitor(arc.segment.at(t), arc.segment.derivative(t) / length)
@@ -199,7 +199,7 @@ def _root(
     a, b = arc.a, arc.b
     best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
     scale = max(abs(ga), abs(gb))
-    width = first = float(np.dot(arc.border, b.u - a.u))
+    width = first = dot(arc.border, b.u - a.u)
     bisect, stalled, noise = False, 0, None
     for _ in range(PASSES):
         segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
@@ -216,7 +216,7 @@ def _root(
             a, ga = point, g
         else:
             b, gb = point, g
-        width = float(np.dot(arc.border, b.u - a.u))
+        width = dot(arc.border, b.u - a.u)
         stalled = stalled + 1 if bisect else 0
         if least <= AT_ROUND_OFF * scale or (stalled >= 2 and least <= NEARLY_ZERO * scale):
             break

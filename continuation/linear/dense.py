@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
+from scipy.linalg.blas import dtbmv
 from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 
 from continuation.arrays import Array, finite
@@ -18,6 +19,12 @@ def lu_sign(exchanges: NDArray[np.int32], pivots: Array) -> int:
     """Sign of the determinant: rows exchanged with others, and negative pivots (the diagonal of U), are counted."""
     odd = np.count_nonzero(exchanges != np.arange(len(exchanges))) + np.count_nonzero(pivots < 0)
     return -1 if odd % 2 else 1
+
+
+def scaled(z: Array, by: Array) -> Array:
+    """The products of two vectors' components, in the place of the first: by BLAS, which does not warn of overflow."""
+    product: Array = dtbmv(0, by[None], z, overwrite_x=1)
+    return product
 
 
 @frozen(eq=False)
@@ -69,12 +76,10 @@ class Dense:
         z[:-1] = r
         z[-1] = rho
         if self.scale is not None:
-            with np.errstate(over="ignore"):
-                z *= self.scale
+            z = scaled(z, self.scale)
         dgetrs(self.factor.lu, self.factor.pivots, z, overwrite_b=1)
         if self.columns is not None:
-            with np.errstate(over="ignore"):
-                z *= self.columns
+            z = scaled(z, self.columns)
         if not finite(z):
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, generic_vector, largest
+from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration, magnitude
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
@@ -99,10 +99,10 @@ class Linearization:
         """
         z = self.anchor.system.solve(r, 0.0)
         row = self.border if border is None else border
-        along = float(np.dot(row, self.tangent))
+        along = dot(row, self.tangent)
         if along == 0.0:
             raise EvaluationError("the border is orthogonal to the tangent")
-        corrected: Array = z + ((rho - float(np.dot(row, z))) / along) * self.tangent
+        corrected: Array = z + ((rho - dot(row, z)) / along) * self.tangent
         return corrected
 
     def with_weights(self, weights: Array) -> Linearization:
@@ -149,7 +149,7 @@ def relinearize(
     if tangent is None:
         return linearize(evaluator, u, weights, along)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
-    flip = float(np.dot(along, tangent)) < 0.0
+    flip = dot(along, tangent) < 0.0
     sign = anchor.system.sign
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
 
@@ -160,7 +160,7 @@ def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accu
 
     def increment() -> Array:
         v = refinement.x
-        return anchor.system.approximate(-apply(v), 1.0 - float(np.dot(anchor.border, v)))
+        return anchor.system.approximate(-apply(v), 1.0 - dot(anchor.border, v))
 
     done = refinement.run(increment, magnitude, lambda size: size <= accuracy * largest(refinement.x))
     if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * largest(refinement.x))):
@@ -168,7 +168,7 @@ def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accu
     v = refinement.x
     if anchor.system.approximates:
         # Increments of a solver that is not exact may be small because it does not see what is left.
-        left = anchor.system.solve(-apply(v), 1.0 - float(np.dot(anchor.border, v)))
+        left = anchor.system.solve(-apply(v), 1.0 - dot(anchor.border, v))
         if largest(left) > UNSEEN * largest(v):
             return None
     return v
@@ -193,7 +193,7 @@ class RefinedSystem:
 
         def increment() -> Array:
             z = refinement.x
-            return self.near.solve(r - self.apply(z), rho - float(np.dot(self.border, z)))
+            return self.near.solve(r - self.apply(z), rho - dot(self.border, z))
 
         done = refinement.run(increment, magnitude, lambda size: size <= SOLVED * largest(refinement.x))
         if done or refinement.size <= NEARLY_SOLVED * largest(refinement.x):

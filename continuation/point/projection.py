@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.evaluator import ULPS, CountedSystem, EvaluationError, Evaluator
 from continuation.metric import norm
@@ -137,7 +137,7 @@ class PathSolver:
             back = near.solve(evaluator.residual(u + moved) - evaluator.residual(u))
         except EvaluationError:
             return last_place
-        left = back - moved + near.tangent * float(np.dot(near.border, moved))
+        left = back - moved + near.tangent * dot(near.border, moved)
         noise: Array = NOISE_LOOKS * np.abs(left) + last_place
         return noise
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 
 
 class Segment(Protocol):
@@ -149,8 +150,8 @@ def hermite(u0: Array, v0: Array, u1: Array, v1: Array, border: Array) -> Hermit
 
     The derivative of the path with respect to sigma is v / (border . v), which needs no estimate of the arclength.
     """
-    sigma = float(np.dot(border, u1 - u0))
-    return HermiteSegment(u0, u1, v0 * (sigma / float(np.dot(border, v0))), v1 * (sigma / float(np.dot(border, v1))))
+    sigma = dot(border, u1 - u0)
+    return HermiteSegment(u0, u1, v0 * (sigma / dot(border, v0)), v1 * (sigma / dot(border, v1)))
 
 
 _NODES, _WEIGHTS = (tuple(map(float, values)) for values in np.polynomial.legendre.leggauss(8))
@@ -168,7 +169,7 @@ def parameter_at(segment: Segment, weights: Array, fraction: float) -> float:
 
     def speed(t: float) -> float:
         slope = segment.derivative(t)
-        return float(np.sqrt(np.dot(weights * slope, slope)))
+        return math.sqrt(dot(weights * slope, slope))
 
     def behind(t: float) -> float:
         return 0.5 * t * sum(b * speed(0.5 * t * (a + 1.0)) for a, b in zip(_NODES, _WEIGHTS))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 from continuation.checks import integer
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
@@ -163,7 +163,7 @@ def _falling(full: Interpolant, step: float, weights: Array) -> int:
     for k, coefficient in enumerate(full.coefficients):
         if k:
             factor *= abs(step - full.nodes[k - 1])
-        size = factor * math.sqrt(float(np.dot(weights * coefficient, coefficient)))
+        size = factor * math.sqrt(dot(weights * coefficient, coefficient))
         if k > 1 and size >= previous:
             return k
         previous = size if k else math.inf
