@@ -63,7 +63,9 @@ def singular_places(
         Another one for another vector: one in a thousand has next to no part along an eigenvector.
     """
     right, left_end = 1.0 / ahead, -1.0 / behind if np.isfinite(behind) else -np.inf
-    start = np.roll(generic_vector(a.u.size), turned)
+    start = generic_vector(a.u.size)
+    if turned:
+        start = np.roll(start, turned)
     values, _ = _eigenvalues(a, apply, border, right, left_end, start, accuracy)
     return sorted(float(1.0 / value) for value in values)
 
@@ -113,10 +115,11 @@ def _eigenvalues(
         q = Q[k] / scale
         x = Q[k] - scale * a.solve(apply(q), dot(border, q))
         size = math.sqrt(dot(x, x))
+        before_it = Q[: k + 1]
         for _ in range(2):
-            part = Q[: k + 1] @ x
+            part = before_it.dot(x)
             H[: k + 1, k] += part
-            x = x - part @ Q[: k + 1]
+            x = x - part.dot(before_it)
         H[k + 1, k] = left_over = math.sqrt(dot(x, x))
         whole = k + 1 == a.u.size or left_over <= EXHAUSTED * size
         if not whole and (k == 0 or (k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left))):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array, dot
@@ -19,8 +18,8 @@ from continuation.predictors.base import Knot, history_in_pseudo_arclength
 class Interpolant:
     """Newton's form of the polynomial through the current point (h = 0) and past data, with coincident nodes."""
 
-    nodes: Array
-    coefficients: Array
+    nodes: Sequence[float]
+    coefficients: Sequence[Array]
     reach: float = math.inf
 
     def __call__(self, h: float) -> Array:
@@ -57,7 +56,7 @@ def interpolate(nodes: Sequence[float], values: Sequence[Array], slopes: Sequenc
                 following.append((table[i + 1] - table[i]) / (z[i + level] - z[i]))
         table = following
         coefficients.append(table[0])
-    return Interpolant(np.array(z), np.array(coefficients))
+    return Interpolant(z, coefficients)
 
 
 @frozen(eq=False)
