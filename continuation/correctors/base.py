@@ -163,7 +163,7 @@ def iterate(
     def polished(k: int, ratio: float) -> Array:
         return direction(k, iteration.x, r, ratio)
 
-    def leftover(*_: Array) -> float:
+    def leftover(_: Array) -> float:
         return left
 
     def settled(_: float) -> bool:
@@ -172,7 +172,7 @@ def iterate(
         left = level(r, terms)
         return left <= ROUND_OFF
 
-    def measure(step: Array, _: Array) -> float:
+    def measure(step: Array) -> float:
         return tolerance.measure(step, point.weights)
 
     rejection: Rejection | None = None

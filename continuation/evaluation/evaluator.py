@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -62,42 +62,46 @@ def _moves(n: int) -> Array:
     return moves
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class CountedSystem:
     """A bordered factorisation whose solves are counted."""
 
     system: BorderedSystem
     counts: Counts
-    approximates: bool = field(init=False)
-    """Whether `approximate` is another solve than `solve`."""
+    solve: Callable[[Array, float], Array] = field(init=False)
+    """The bordered solve; EvaluationError where the answer is not finite."""
+    approximate: Callable[[Array, float], Array] = field(init=False)
+    """The same for an iteration that measures its own residual: not refined where the structure can do without."""
 
-    @approximates.default
-    def _approximates(self) -> bool:
-        return hasattr(self.system, "approximate")
+    @solve.default
+    def _solve(self) -> Callable[[Array, float], Array]:
+        return partial(_counted, self.counts, self.system.solve)
 
-    @property
+    @approximate.default
+    def _approximate(self) -> Callable[[Array, float], Array]:
+        own = getattr(self.system, "approximate", None)
+        return self.solve if own is None else partial(_counted, self.counts, own)
+
+    @cached_property
     def sign(self) -> int:
         """Sign of the determinant of the bordered matrix; 0 if unknown."""
         return self.system.sign
 
-    def solve(self, r: Array, rho: float) -> Array:
-        """The bordered solve; EvaluationError where the answer is not finite."""
-        return self._counted(self.system.solve, r, rho)
+    @property
+    def approximates(self) -> bool:
+        """Whether `approximate` is another solve than `solve`."""
+        return self.approximate is not self.solve
 
-    def approximate(self, r: Array, rho: float) -> Array:
-        """The same for an iteration that measures its own residual: not refined where the structure can do without."""
-        system: Any = self.system
-        return self._counted(system.approximate if self.approximates else system.solve, r, rho)
 
-    def _counted(self, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
-        self.counts.solves += 1
-        try:
-            z = solve(r, rho)
-        except SingularError as error:
-            raise EvaluationError(str(error)) from error
-        if not finite(z):
-            raise EvaluationError("a bordered solve gave values that are not finite")
-        return z
+def _counted(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
+    counts.solves += 1
+    try:
+        z = solve(r, rho)
+    except SingularError as error:
+        raise EvaluationError(str(error)) from error
+    if not finite(z):
+        raise EvaluationError("a bordered solve gave values that are not finite")
+    return z
 
 
 class Evaluator:

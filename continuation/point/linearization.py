@@ -8,7 +8,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array, dot, generic_vector, largest
-from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration, magnitude
+from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
 from continuation.metric import norm
@@ -157,12 +157,13 @@ def relinearize(
 def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accuracy: float) -> Array | None:
     """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails."""
     refinement = Iteration(guess, TANGENT_REFINEMENT)
+    solve, border = anchor.system.approximate, anchor.border
 
     def increment() -> Array:
         v = refinement.x
-        return anchor.system.approximate(-apply(v), 1.0 - dot(anchor.border, v))
+        return solve(-apply(v), 1.0 - dot(border, v))
 
-    done = refinement.run(increment, magnitude, lambda size: size <= accuracy * largest(refinement.x))
+    done = refinement.run(increment, largest, lambda size: size <= accuracy * largest(refinement.x))
     if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * largest(refinement.x))):
         return None
     v = refinement.x
@@ -195,7 +196,7 @@ class RefinedSystem:
             z = refinement.x
             return self.near.solve(r - self.apply(z), rho - dot(self.border, z))
 
-        done = refinement.run(increment, magnitude, lambda size: size <= SOLVED * largest(refinement.x))
+        done = refinement.run(increment, largest, lambda size: size <= SOLVED * largest(refinement.x))
         if done or refinement.size <= NEARLY_SOLVED * largest(refinement.x):
             return refinement.x
         raise EvaluationError("a factorisation from nearby could not be refined")

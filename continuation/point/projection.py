@@ -108,7 +108,7 @@ class PathSolver:
         """
         chord, residual = Iteration(guess, CHORD_STEPS), self.evaluator.residual
 
-        def measure(step: Array, _: Array) -> float:
+        def measure(step: Array) -> float:
             return self.tolerance.measure(step, near.weights)
 
         if chord.run(lambda: solve(-residual(chord.x)), measure, lambda size: size <= NO_CHANGE):

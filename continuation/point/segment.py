@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -58,12 +57,6 @@ class HermiteSegment:
     d0: Array
     d1: Array
 
-    @cached_property
-    def _chord(self) -> tuple[Array, Array, Array]:
-        """That, and by how much the derivatives at the ends differ from it."""
-        chord = self.u1 - self.u0
-        return chord, self.d0 - chord, chord - self.d1
-
     @property
     def inside(self) -> tuple[float, ...]:
         """Quarters: the derivative of a cubic changes sign twice at most."""
@@ -71,13 +64,17 @@ class HermiteSegment:
 
     def at(self, t: float) -> Array:
         """The cubic at t."""
-        chord, a, b = self._chord
+        chord = self.u1 - self.u0
+        a = self.d0 - chord
+        b = chord - self.d1
         point: Array = self.u0 + t * chord + t * (1.0 - t) * ((1.0 - t) * a + t * b)
         return point
 
     def derivative(self, t: float) -> Array:
         """Its derivative at t."""
-        chord, a, b = self._chord
+        chord = self.u1 - self.u0
+        a = self.d0 - chord
+        b = chord - self.d1
         slope: Array = chord + (1.0 - t) * (1.0 - 3.0 * t) * a + t * (2.0 - 3.0 * t) * b
         return slope
 
