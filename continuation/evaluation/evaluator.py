@@ -293,7 +293,7 @@ class Evaluator:
             else:
                 H_y, H_lam = self._evaluated(u)
                 column = np.asarray(H_lam, dtype=float)
-                if not finite(column) or (isinstance(H_y, np.ndarray) and not np.isfinite(H_y.sum())):
+                if not finite(column) or (isinstance(H_y, np.ndarray) and not math.isfinite(H_y.sum())):
                     raise NotFiniteError("the derivative is not finite")
                 system = factor_bordered(H_y, column, border)
         except EvaluationError:

@@ -115,18 +115,19 @@ def _eigenvalues(
         q = Q[k] / scale
         x = Q[k] - scale * a.solve(apply(q), dot(border, q))
         size = math.sqrt(dot(x, x))
-        before_it = Q[: k + 1]
-        for _ in range(2):
-            part = before_it.dot(x)
-            H[: k + 1, k] += part
-            x = x - part.dot(before_it)
+        space = Q[: k + 1]
+        first = space.dot(x)
+        x = x - first.dot(space)
+        second = space.dot(x)
+        x = x - second.dot(space)
+        H[: k + 1, k] = first + second
         H[k + 1, k] = left_over = math.sqrt(dot(x, x))
         whole = k + 1 == a.u.size or left_over <= EXHAUSTED * size
-        if not whole and (k == 0 or (k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left))):
-            if k:
-                return np.empty(0), np.empty((a.u.size, 0))
+        if k == 0 and not whole:
             Q[1] = x / left_over
             continue
+        if k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left):
+            return np.empty(0), np.empty((a.u.size, 0))
         values, vectors = np.linalg.eig(H[: k + 1, : k + 1])
         error = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
         told = (values.real + error > right) | (values.real - error < left)

@@ -58,8 +58,8 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    sign = math.copysign(1.0, ga)
-    values = [sign * g for g in (ga, *(event.monitor(u, v) for u, v in arc.samples), gb)]
+    sign, monitor = math.copysign(1.0, ga), event.monitor
+    values = [sign * ga, *[sign * monitor(u, v) for u, v in arc.samples], sign * gb]
     places = (0.0, *arc.segment.inside, 1.0)
     return _least(places, values) < 0.5 * min(abs(ga), abs(gb))
 
@@ -70,9 +70,8 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
     For the parameter's component of a cubic's tangent that is the least of all.
     """
     least = min(values)
-    for i in range(len(values) - 2):
-        (p, q, r), (a, b, c) = places[i : i + 3], values[i : i + 3]
-        left, right = (b - a) / (q - p), (c - b) / (r - q)
+    slopes = [(b - a) / (q - p) for p, q, a, b in zip(places, places[1:], values, values[1:])]
+    for p, q, r, a, left, right in zip(places, places[1:], places[2:], values, slopes, slopes[1:]):
         bend = (right - left) / (r - p)
         if bend > 0.0:
             lowest = 0.5 * (p + q - left / bend)

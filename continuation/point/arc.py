@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from functools import cached_property
 
+import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, dot
@@ -27,8 +28,7 @@ class Arc:
     def samples(self) -> list[tuple[Array, Array]]:
         """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
         points, slopes = self.segment.sampled()
-        length = dot(self.border, self.b.u - self.a.u)
-        return [(u, slope / length) for u, slope in zip(points, slopes)]
+        return list(zip(points, np.asarray(slopes) / dot(self.border, self.b.u - self.a.u)))
 
     @property
     def just_after_start(self) -> tuple[Array, Array]:

@@ -117,8 +117,12 @@ class Hermite:
         knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
-        nodes, values, slopes = zip(*knots[:2])
-        return interpolate(nodes, values, slopes)
+        # The divided differences of `interpolate`, written out: every step makes one.
+        (_, u, v), (sigma, past, slope) = knots[:2]
+        chord = (past - u) / sigma
+        square = (chord - v) / sigma
+        cube = ((slope - chord) / sigma - square) / sigma
+        return Interpolant((0.0, 0.0, sigma, sigma), (u, v, square, cube))
 
 
 MOST_POINTS = 50

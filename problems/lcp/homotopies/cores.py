@@ -48,7 +48,7 @@ _silently = np.errstate(all="ignore")
 class Recent(Generic[System]):
     """The system at the last point that was asked for: the engine asks for many products there, one by one."""
 
-    found: tuple[Array, float, System] | None = None
+    found: tuple[bytes, float, System] | None = None
 
     def at(self, y: Array, lam: float, make: Callable[[Array, float], System]) -> System:
         """The system at a point, made of a copy of y.
@@ -59,10 +59,9 @@ class Recent(Generic[System]):
         lam : float
         make : callable
         """
-        found = self.found
-        if found is None or found[1] != lam or not np.array_equal(found[0], y):
-            y = y.copy()
-            self.found = found = y, lam, make(y, lam)
+        found, entries = self.found, y.tobytes()
+        if found is None or found[:2] != (entries, lam):
+            self.found = found = entries, lam, make(y.copy(), lam)
         return found[2]
 
 
@@ -95,6 +94,11 @@ class Pairs:
         """The pair (v, p)."""
         t = r + self.c * l
         return self.a * k + self.e * t, self.b * k + self.f * t
+
+    def partner(self, k: Array, r: Array, l: float) -> Array:
+        """P alone."""
+        p: Array = self.b * k + self.f * (r + self.c * l)
+        return p
 
 
 @_silently
