@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from attrs import evolve, frozen
@@ -145,7 +146,7 @@ def relinearize(
             guess = generic_vector(u.size) / np.sqrt(weights)
         else:
             guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
-        tangent = _refined(apply, anchor, guess, accuracy)
+        tangent = _refined(apply, anchor, guess, weights, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
@@ -154,23 +155,28 @@ def relinearize(
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
 
 
-def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accuracy: float) -> Array | None:
-    """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails."""
+def _refined(
+    apply: Callable[[Array], Array], anchor: Anchor, guess: Array, weights: Array, accuracy: float
+) -> Array | None:
+    """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails.
+
+    Measured in the metric: the largest component is that of the smallest unit, and knows nothing of the others.
+    """
     refinement = Iteration(guess, TANGENT_REFINEMENT)
-    solve, border = anchor.system.approximate, anchor.border
+    solve, border, length = anchor.system.approximate, anchor.border, partial(norm, weights)
 
     def increment() -> Array:
         v = refinement.x
         return solve(-apply(v), 1.0 - dot(border, v))
 
-    done = refinement.run(increment, largest, lambda size: size <= accuracy * largest(refinement.x))
-    if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * largest(refinement.x))):
+    done = refinement.run(increment, length, lambda size: size <= accuracy * length(refinement.x))
+    if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * length(refinement.x))):
         return None
     v = refinement.x
     if anchor.system.approximates:
         # Increments of a solver that is not exact may be small because it does not see what is left.
         left = anchor.system.solve(-apply(v), 1.0 - dot(anchor.border, v))
-        if largest(left) > UNSEEN * largest(v):
+        if length(left) > UNSEEN * length(v):
             return None
     return v
 
