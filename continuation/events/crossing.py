@@ -113,7 +113,7 @@ def _eigenvalues(
     converged = False
     for k in range(n):
         q = Q[k] / scale
-        x = Q[k] - scale * a.solve(apply(q), dot(border, q))
+        x = Q[k] - scale * a.approximate(apply(q), dot(border, q))
         size = math.sqrt(dot(x, x))
         space = Q[: k + 1]
         first = space.dot(x)

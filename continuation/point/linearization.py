@@ -98,7 +98,13 @@ class Linearization:
         no factorisation. The default border is W tangent: then z is the shortest solution when rho = 0, that is, the
         Moore-Penrose inverse applied to r.
         """
-        z = self.anchor.system.solve(r, 0.0)
+        return self._completed(self.anchor.system.solve(r, 0.0), rho, border)
+
+    def approximate(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
+        """The same for estimates, and for iterations that measure their own residual: see `CountedSystem`."""
+        return self._completed(self.anchor.system.approximate(r, 0.0), rho, border)
+
+    def _completed(self, z: Array, rho: float, border: Array | None) -> Array:
         row = self.border if border is None else border
         along = dot(row, self.tangent)
         if along == 0.0:

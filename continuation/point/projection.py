@@ -87,7 +87,7 @@ class PathSolver:
             If nothing helps.
         """
         evaluator = self.evaluator
-        settled = self._chord_steps(guess, lambda r: near.solve(r, 0.0, border), near, AT_ROUND_OFF)
+        settled = self._chord_steps(guess, lambda r: near.approximate(r, 0.0, border), near, AT_ROUND_OFF)
         if settled is not None:
             return settled, near.anchor
         u = guess
@@ -167,7 +167,7 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> bool:
     length = norm(weights, arc.b.u - arc.a.u)
     allowed = min(SLACK * length, max(EVEN * length, MISSED * distance))
     for t in PLACES:
-        off = norm(weights, arc.a.solve(-solver.evaluator.residual(arc.segment.at(t))))
+        off = norm(weights, arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
         if off > allowed and off > NOISE * solver.tolerance.relative:
             return False
     return True

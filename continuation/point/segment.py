@@ -64,18 +64,15 @@ class HermiteSegment:
 
     def at(self, t: float) -> Array:
         """The cubic at t."""
-        chord = self.u1 - self.u0
-        a = self.d0 - chord
-        b = chord - self.d1
-        point: Array = self.u0 + t * chord + t * (1.0 - t) * ((1.0 - t) * a + t * b)
-        return point
+        # From the beginning, so that round-off is that of the way, not of a sum of large parts.
+        s = t * (1.0 - t)
+        onward: Array = (t * t * (3.0 - 2.0 * t)) * (self.u1 - self.u0) + (s * (1.0 - t)) * self.d0 - (s * t) * self.d1
+        return self.u0 + onward
 
     def derivative(self, t: float) -> Array:
         """Its derivative at t."""
-        chord = self.u1 - self.u0
-        a = self.d0 - chord
-        b = chord - self.d1
-        slope: Array = chord + (1.0 - t) * (1.0 - 3.0 * t) * a + t * (2.0 - 3.0 * t) * b
+        at_begin, at_end = (1.0 - t) * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)
+        slope: Array = (6.0 * t * (1.0 - t)) * (self.u1 - self.u0) + at_begin * self.d0 + at_end * self.d1
         return slope
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
