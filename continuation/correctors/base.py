@@ -123,6 +123,25 @@ def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
     return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
 
 
+AGREES = 0.5
+"""The part of a residual that an increment may leave in the linear equations: one that leaves more solves nothing."""
+
+
+def holds(evaluator: Evaluator, u: Array) -> bool:
+    """Whether a point at which Newton's increment is small is a zero of H.
+
+    Either the residual is round-off, or (where it is noise of another kind) the increment does solve its equations.
+    """
+    if not far_from_round_off(evaluator, u):
+        return True
+    apply = evaluator.differential(u)
+    if apply is None:
+        return False
+    r = evaluator.residual(u)
+    z = evaluator.factor(u, np.append(np.zeros(u.size - 1), 1.0)).solve(-r, 0.0)
+    return largest(apply(z) + r) <= AGREES * largest(r)
+
+
 SAME_TERMS = 0.1
 """A component that changed by less than this part of it leaves the round-off of its terms what it was, about."""
 

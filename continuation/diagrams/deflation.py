@@ -11,6 +11,7 @@ from attrs import field, frozen
 from continuation.arrays import Array, Matrix
 from continuation.checks import POSITIVE_FINITE, complain, real_vector
 from continuation.contraction import HALVING, Contraction, Iteration
+from continuation.correctors.base import holds
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import BorderedSystem, factor_bordered
@@ -20,6 +21,9 @@ SEARCHING = Contraction(iterations=60, ratio=np.inf)
 
 FOUND, NEARLY = 1e-13, 1e-6
 """The last increment, and that below which increments that no longer halve are round-off."""
+
+CANCELS = float(np.finfo(float).eps) ** -0.5
+"""By so much an increment of Newton's method for H alone may be longer than that for M H."""
 
 APART = 1e-6
 """Solutions that are nearer to each other are one: the root of round-off and more, as a double one is found."""
@@ -101,8 +105,10 @@ class Deflated:
         return value, slope
 
     def residual(self, y: Array, lam: float) -> Array:
-        """M(y) H(y, lam)."""
-        return self.factor(y)[0] * np.asarray(self.homotopy.residual(y, lam), dtype=float)
+        """M(y) H(y, lam); infinite at a known solution."""
+        value, H = self.factor(y)[0], np.asarray(self.homotopy.residual(y, lam), dtype=float)
+        # There H is zero up to round-off: the product would be no number.
+        return value * H if np.isfinite(value) else np.full_like(H, np.inf)
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """M (H_y + H (log M)'), a dense matrix, and M H_lam: for checks; steps use `bordered`."""
@@ -120,13 +126,17 @@ class Deflated:
         image: Array = value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1]))
         return image
 
-    def bordered(self, y: Array, lam: float, border: Array) -> DeflatedSystem:
-        """The homotopy's own bordered matrix factored, and changed by a matrix of rank one (Sherman and Morrison)."""
+    def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
+        """The homotopy's own bordered matrix factored, and changed by a matrix of rank one (Sherman and Morrison).
+
+        Where the change would cancel more than half of the digits the whole matrix is factored instead.
+        """
         value, slope = self.factor(y)
         H_y, H_lam = self._evaluator.derivative(y, lam)
         system = factor_bordered(H_y, np.asarray(H_lam, dtype=float), border)
         turned = system.solve(np.asarray(self.homotopy.residual(y, lam), dtype=float), 0.0)
-        return DeflatedSystem(system, value, slope, turned)
+        deflated = DeflatedSystem(system, value, slope, turned)
+        return deflated if abs(deflated.pivot) < CANCELS else factor_bordered(*self.jacobian(y, lam), border)
 
 
 @frozen(eq=False)
@@ -139,13 +149,14 @@ class DeflatedSystem:
     turned: Array
 
     @property
-    def _pivot(self) -> float:
+    def pivot(self) -> float:
+        """By what the change of rank one divides."""
         return 1.0 + float(self.slope @ self.turned[:-1])
 
     @property
     def sign(self) -> int:
         """M is positive: that of the homotopy's own matrix, times that of the change."""
-        return self.system.sign * (1 if self._pivot > 0.0 else -1)
+        return self.system.sign * (1 if self.pivot > 0.0 else -1)
 
     def solve(self, r: Array, rho: float) -> Array:
         """The bordered solve.
@@ -156,7 +167,7 @@ class DeflatedSystem:
         rho : float
         """
         z = self.system.solve(r / self.value, rho)
-        changed: Array = z - self.turned * (float(self.slope @ z[:-1]) / self._pivot)
+        changed: Array = z - self.turned * (float(self.slope @ z[:-1]) / self.pivot)
         return changed
 
 
@@ -191,7 +202,7 @@ def solved(homotopy: Any, lam: float, guess: Array, scale: Any = None) -> Array:
         return last <= FOUND or (last < NEARLY and newton.ratio >= HALVING)
 
     with np.errstate(all="ignore"):
-        if not newton.run(increment, measure, done):
+        if not newton.run(increment, measure, done) or not holds(evaluator, newton.x):
             raise ArithmeticError(f"Newton's method at lam = {lam:g} does not converge")
     return newton.x[:-1]
 

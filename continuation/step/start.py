@@ -11,6 +11,7 @@ from attrs import evolve
 from continuation.arrays import Array
 from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
+from continuation.correctors.base import holds
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic, Metric, SupportsExtent, norm
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
@@ -100,11 +101,12 @@ def at_parameter(solver: PathSolver, u: Array) -> Array:
         point, _ = measured(solver, _regular(evaluator, u, unit), Automatic(), None, residual)
         for corrector in (CORRECTING, PATIENT):
             correction = corrector.correct(evaluator, point, u, unit, solver.tolerance)
-            if correction.converged:
+            if correction.converged and holds(evaluator, correction.u):
                 return correction.u
     except EvaluationError as error:
         raise StartError(f"At the guess {error}.") from error
-    raise StartError(f"Newton's method at lam = {u[-1]:g} says: {correction.rejected(0.0)}.")
+    said = str(correction.rejected(0.0) or f"at its end H is {correction.residual_norm:.3g}, which is no round-off")
+    raise StartError(f"Newton's method at lam = {u[-1]:g} says: {said.rstrip('.')}.")
 
 
 def measured(

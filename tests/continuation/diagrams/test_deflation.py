@@ -78,3 +78,49 @@ def test_what_is_no_solution_of_this_homotopy_is_refused():
 def test_where_there_is_nothing_newtons_method_says_so():
     with pytest.raises(ArithmeticError, match="lam = 0 does not converge"):
         solved(from_functions(lambda y, lam: y * y + 1.0 + lam, start=([0.0], -2.0)), 0.0, np.array([0.7]))
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("function", "known"),
+    [
+        (lambda y, lam: np.expm1(y), [[0.0]]),
+        (lambda y, lam: y * y - 1.0, [[1.0], [-1.0]]),
+        (lambda y, lam: np.arctan(y), [[0.0]]),
+        (lambda y, lam: np.array([y[0] ** 2 - 1.0, y[1] - y[0]]), [[1.0, 1.0], [-1.0, -1.0]]),
+    ],
+    ids=["exp", "square", "arctan", "two"],
+)
+def test_where_every_root_is_known_no_guess_finds_another(function, known):
+    # exp(y) - 1 far to the left: H_y = 1e-58, by which the change of rank one lost every digit of the increment.
+    generator = np.random.default_rng(3)
+    deflated = Deflated(from_functions(function, start=(known[0], 0.0)), known)
+    for guess in [*map(np.array, known), *(generator.normal(size=len(known[0])) * 10.0**k for k in range(-2, 4))]:
+        with pytest.raises(ArithmeticError):
+            solve_at(deflated, 0.5, guess)
+
+
+def test_solves_of_a_plugin_that_solve_nothing_lead_to_no_solution():
+    class Lazy:
+        sign = 1
+
+        def solve(self, r, rho):
+            return np.array([0.0, rho])
+
+    class Wrong:
+        def start(self):
+            return np.zeros(1), 0.0
+
+        def residual(self, y, lam):
+            return y - 1.0
+
+        def jacobian(self, y, lam):
+            return np.ones((1, 1)), np.zeros(1)
+
+        def bordered(self, y, lam, border):
+            return Lazy()
+
+    with pytest.raises(ArithmeticError, match="no round-off"):
+        solve_at(Wrong(), 0.0, [3.0])
+    with pytest.raises(ArithmeticError, match="does not converge"):
+        solved(Wrong(), 0.0, np.array([3.0]))
