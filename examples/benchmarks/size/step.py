@@ -53,7 +53,7 @@ def problem(name: str) -> tuple[Any, dict[str, Any]]:
 
 
 def best(work: Callable[[], Any], seconds: float) -> float:
-    """The least time of a call, of as many as fit."""
+    """The least processor time of a call, of as many as fit."""
     found, until = np.inf, time.perf_counter() + seconds
     while time.perf_counter() < until:
         began = time.process_time()
@@ -108,7 +108,8 @@ def measured(name: str) -> dict[str, float]:
     found = {"steps": counts.accepted + counts.rejected, "factorizations": counts.factorizations}
     found |= {"solves": counts.solves, "residuals": counts.residuals}
     found |= {"calls": calls(work), "seconds": best(work, 0.2), "algebra": np.nan}
-    if hasattr(homotopy, "jacobian") and isinstance(homotopy.jacobian(*homotopy.start())[0], np.ndarray):
+    dense = not hasattr(homotopy, "bordered") and isinstance(homotopy.jacobian(*homotopy.start())[0], np.ndarray)
+    if dense:
         found["algebra"] = linear_algebra(homotopy, counts)
     return found
 
@@ -143,15 +144,17 @@ def main() -> None:
                 found[version] = new | {key: min(old[key], new[key]) for key in ("seconds", "algebra")}
         lines = []
         for one in found.values():
-            steps, time_, algebra = one["steps"], 1e6 * one["seconds"], 1e6 * one["algebra"]
+            steps, seconds = one["steps"], one["seconds"]
             lines.append(
-                f"{steps:.0f} steps, {one['factorizations']:.0f} f, {one['solves']:.0f} s, {one['residuals']:.0f} r, "
-                f"a step {time_ / steps:.0f} us ({(time_ - algebra) / steps:.0f} beyond), {one['calls'] / steps:.0f} calls"
+                f"{steps:.0f} steps, {one['factorizations']:.0f} factorisations, {one['solves']:.0f} solves, "
+                f"{one['residuals']:.0f} residuals, a step {1e6 * seconds / steps:.0f} us "
+                f"({1e6 * (seconds - one['algebra']) / steps:.0f} beyond), {one['calls'] / steps:.0f} calls"
             )
         ratio = ""
         if len(found) == 2:
-            a, b = (one["seconds"] / one["steps"] for one in found.values())
-            ratio = f"; ratio {a / b:.2f}"
+            new, old = found.values()
+            a_path = new["seconds"] / old["seconds"]
+            ratio = f"; ratio a step {a_path * old['steps'] / new['steps']:.2f}, a path {a_path:.2f}"
         print(f"{name}: {' | '.join(lines)}{ratio}", flush=True)
 
 
