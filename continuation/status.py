@@ -5,29 +5,40 @@ from __future__ import annotations
 from enum import IntEnum
 
 
-class Status(IntEnum):
+class Described(IntEnum):
+    """Numbers with a sentence each, which is the member's description too."""
+
+    def __new__(cls, number: int, sentence: str = "") -> Described:
+        """A member."""
+        member = int.__new__(cls, number)
+        member._value_ = number
+        member.__doc__ = sentence
+        return member
+
+
+class Status(Described):
     """The end of a path. Numbers are stored in archives: they are added to, never renumbered."""
 
-    TRACING = 0
-    REACHED_TARGET = 1
-    STOPPED_AT_EVENT = 2
-    CLOSED = 3
-    TURNED_BACK = 4
-    DIVERGED = 5
-    STEP_TOO_SMALL = 6
-    LEFT_DOMAIN = 7
-    SINGULAR_START = 8
-    BUDGET_EXHAUSTED = 9
-    INTERRUPTED = 10
-    START_NOT_ON_PATH = 11
-    PREDICTOR_FAILED = 12
-    DEAD_END = 13
-    UNRESOLVED_KINK = 14
-    ABANDONED = 15
-    RAISED = 16
+    TRACING = 0, "The path is still being traced."
+    REACHED_TARGET = 1, "The path reached the target."
+    STOPPED_AT_EVENT = 2, "The path stopped at a terminal event."
+    CLOSED = 3, "The path returned to its start with the same direction: it is a closed curve."
+    TURNED_BACK = 4, "The path came back to the start's parameter value: it will not reach the target this way."
+    DIVERGED = 5, "The path runs off to infinity while the parameter stalls: there is no end to reach."
+    STEP_TOO_SMALL = 6, "The step fell below its floor; loosen `tolerance`, or look for a singular point near it."
+    LEFT_DOMAIN = 7, "The path left the set on which the homotopy can be evaluated; check the formulas there."
+    SINGULAR_START = 8, "The Jacobian [H_y, H_lam] has no full rank at the start; start elsewhere."
+    BUDGET_EXHAUSTED = 9, "The budget is used up; raise `budget`, or resume from the archive."
+    INTERRUPTED = 10, "The trace was interrupted by hand; all accepted points are kept and it can be resumed."
+    START_NOT_ON_PATH = 11, "The start is not on the path and the corrector could not bring it there."
+    PREDICTOR_FAILED = 12, "The predictor found no curve to follow from the last point; take another `predictor`."
+    DEAD_END = 13, "No branch leaves the kink at which the path ends, but the one it came on."
+    UNRESOLVED_KINK = 14, "The path ends at a kink whose branches could not be told; see the message."
+    ABANDONED = 15, "The trace was left before the path ended; all accepted points are kept and it can be resumed."
+    RAISED = 16, "An exception ended the trace; all accepted points are kept, mend that and resume."
 
     def __str__(self) -> str:
-        return _SENTENCES[self]
+        return str(self.__doc__)
 
     def __bool__(self) -> bool:
         return self.success
@@ -43,39 +54,18 @@ class Status(IntEnum):
         return self.name.lower()
 
 
-_SENTENCES = {
-    Status.TRACING: "The path is still being traced.",
-    Status.REACHED_TARGET: "The path reached the target.",
-    Status.STOPPED_AT_EVENT: "The path stopped at a terminal event.",
-    Status.CLOSED: "The path returned to its start with the same direction: it is a closed curve.",
-    Status.TURNED_BACK: "The path came back to the start's parameter value: it will not reach the target this way.",
-    Status.DIVERGED: "The path runs off to infinity while the parameter stalls: there is no end to reach.",
-    Status.STEP_TOO_SMALL: "The step fell below its floor; loosen `tolerance`, or look for a singular point near it.",
-    Status.LEFT_DOMAIN: "The path left the set on which the homotopy can be evaluated; check the formulas there.",
-    Status.SINGULAR_START: "The Jacobian [H_y, H_lam] has no full rank at the start; start elsewhere.",
-    Status.BUDGET_EXHAUSTED: "The budget is used up; raise `budget`, or resume from the archive.",
-    Status.INTERRUPTED: "The trace was interrupted by hand; all accepted points are kept and it can be resumed.",
-    Status.START_NOT_ON_PATH: "The start is not on the path and the corrector could not bring it there.",
-    Status.PREDICTOR_FAILED: "The predictor found no curve to follow from the last point; take another `predictor`.",
-    Status.DEAD_END: "No branch leaves the kink at which the path ends, but the one it came on.",
-    Status.UNRESOLVED_KINK: "The path ends at a kink whose branches could not be told; see the message.",
-    Status.ABANDONED: "The trace was left before the path ended; all accepted points are kept and it can be resumed.",
-    Status.RAISED: "An exception ended the trace; all accepted points are kept, mend that and resume.",
-}
-
-
-class Kind(IntEnum):
+class Kind(Described):
     """What a stored point is. Numbers are stored in archives: they are added to, never renumbered."""
 
-    REGULAR = 0
-    START = 1
-    TARGET = 2
-    TURNING_POINT = 3
-    BRANCH_POINT = 4
-    EVENT = 5
-    KINK = 6
-    SINGULAR_POINT = 7
-    HOPF = 8
+    REGULAR = 0, "A point like others."
+    START = 1, "Where the path begins."
+    TARGET = 2, "Where the parameter takes the target's value."
+    TURNING_POINT = 3, "A fold: the parameter turns back."
+    BRANCH_POINT = 4, "Another branch crosses."
+    EVENT = 5, "A zero of an event's monitor."
+    KINK = 6, "Two smooth pieces of the path meet."
+    SINGULAR_POINT = 7, "Several branches meet, or it is degenerate: the kernel of H' may have three dimensions."
+    HOPF = 8, "A pair of eigenvalues crosses the imaginary axis."
 
     def __repr__(self) -> str:
         return f"Kind.{self.name}"

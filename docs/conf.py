@@ -16,6 +16,7 @@ sys.path.insert(0, str(HERE))
 import executed  # noqa: E402
 
 import continuation  # noqa: E402
+from continuation.status import Described  # noqa: E402
 
 project = "continuation"
 author = "The continuation developers"
@@ -48,7 +49,7 @@ myst_heading_anchors = 3
 html_math_renderer = "mathml"
 html_theme = "furo"
 html_title = "continuation"
-html_static_path = ["static"]
+html_static_path = ["static", "images"]
 html_css_files = ["custom.css"]
 html_copy_source = False
 html_show_copyright = False
@@ -85,6 +86,13 @@ def plain_signs(app, what, name, obj, options, lines):
         parts = line.split("``")
         parts[::2] = [_LONE_STAR.sub(r"\\*", part.replace("|", r"\|")) for part in parts[::2]]
         lines[number] = "``".join(parts)
+
+
+def members_in_sentences(app, what, name, obj, options, lines):
+    """A list of an enumeration's members: each carries its description, which autodoc does not look for."""
+    if what == "class" and issubclass(obj, Described):
+        for member in obj:
+            lines += [f"``{member.name}`` = {member.value}", f"    {member.__doc__}", ""]
 
 
 def whole_sentences(app, what, name, obj, options, lines):
@@ -143,6 +151,7 @@ def setup(app):
     """Connect the functions above; Sphinx calls it."""
     app.add_html_math_renderer("mathml", (formula, None), (displayed_formula, None))
     app.connect("source-read", show_results)
+    app.connect("autodoc-process-docstring", members_in_sentences)
     app.connect("autodoc-process-docstring", whole_sentences, priority=800)
     app.connect("autodoc-process-docstring", plain_signs, priority=900)
     app.connect("autodoc-process-signature", arguments_as_written)

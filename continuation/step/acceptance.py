@@ -98,8 +98,11 @@ class Examiner:
                 # A singular end by itself makes H' lose its rank there.
                 flipped = False
             elif index is not None:
-                end = ending.arc.b.u if ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER) else None
-                found_there = self.crossings.on_arc(arc, attempt, prediction, flipped, end)
+                # Where the path ends on the arc, that end is looked at: it may lie on another branch than the arc does.
+                ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
+                part = ending.arc if ends else arc
+                changed = part.b.orientation not in (0, orientation)
+                found_there = self.crossings.on_arc(part, attempt, prediction, changed, ends)
                 if isinstance(found_there, Rejected):
                     return found_there
                 branch = found_there

@@ -76,6 +76,9 @@ PASSES, LOCATED = 60, 1e-12
 """A point where H' loses several ranks is no regular zero of a system of ours: its place on the arc is iterated, to the
 second of an arc, each time by a part of what was off."""
 
+AT_END = 1e-6
+"""Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
+
 AWAY = 0.7
 """The factor of a step that arrived so near to a crossing that nothing can be said there."""
 
@@ -108,7 +111,7 @@ class Crossings:
     solver: PathSolver
 
     def on_arc(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, end: Array | None
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool
     ) -> Crossed | Rejected | None:
         """The branch point on an arc, if there is one; or why the arc does not count, and which step to try.
 
@@ -121,8 +124,8 @@ class Crossings:
             Of the arc.
         flipped : bool
             Whether the determinant's sign changes from its beginning to its end.
-        end : ndarray or None
-            Where the path ends on the arc, if it does: what lies beyond does not count.
+        ends : bool
+            Whether the path ends where the arc does: what lies beyond does not count.
         """
         # An arc that was cut, as at a kink, is the beginning of what was predicted.
         if arc.b is not attempt.point:
@@ -131,12 +134,10 @@ class Crossings:
         places = max(([t for t in found if t < BEYOND] for found in looked.values()), key=len, default=[])
         if flipped and not places and (apply := self._derivative(arc.b.u)) is not None:
             places = singular_places(arc.a, apply, arc.b.border, 1.0)
-        last = np.inf if end is None else position(arc, end) / position(arc, arc.b.u)
-        guesses, places = places, [t for t in places if t < last]
-        # Where the sign changes beyond the end, that is to be explained all the same: the arc may have left its branch.
-        if end is not None and not (places or flipped):
+        guesses, places = places, [t for t in places if not ends or t < 1.0]
+        if ends and not (places or flipped):
             return None
-        if end is None and any(abs(t - 1.0) < APART for t in places):
+        if not ends and any(abs(t - 1.0) < APART for t in places):
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         inside = [t for t in places if t < 1.0]
         apart = [t for t in inside if t - inside[0] >= APART]
@@ -167,11 +168,12 @@ class Crossings:
         if found is None:
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or inside or doubtful else None
         at = position(arc, found.u) / position(arc, arc.b.u)
-        if at > last:
+        if ends and 1.0 < at <= 1.0 + AT_END:
             return None
-        if end is None and abs(at - 1.0) < BESIDE:
+        if not ends and abs(at - 1.0) < BESIDE:
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         if at > 1.0:
+            # What lies beyond does not change the sign on the arc, which left its branch.
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
         if not flipped or doubtful:
             # With a second crossing behind it the sign is that of the other branch: how well the corrector contracts

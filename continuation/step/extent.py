@@ -49,6 +49,9 @@ SUSPECT, REPLACED = 1e-8, 0.1
 """Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
 refinement changes by more than the second are."""
 
+OTHER_UNITS = 1e4
+"""The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
+
 NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
 
@@ -130,7 +133,30 @@ def initial_extent(
     extent = np.maximum(found * size, np.abs(off))
     still = extent <= standstill * float(extent.max())
     extent[still] = float(np.median(extent[~still]))
+    if still.any() and np.isinf(farthest):
+        extent[still] *= _smaller(evaluator, point, np.where(still, extent, 0.0), residual)
     return extent
+
+
+def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
+    """By what the size of components that stand still is multiplied, so that H is about linear that far from the path.
+
+    Sizes of others say nothing of their units. Where the path is a symmetric trunk, branches leave in these components:
+    measured by ever so much too much, what is round-off of others is a branch's whole length.
+    """
+    h, moved = 1.0, z > 0.0
+    for _ in range(TRIALS):
+        try:
+            d = point.solve(residual - evaluator.residual(point.u + h * z))
+            turned = float((np.abs(d + h * z)[moved] / (h * z[moved])).max())
+        except Exception:
+            # As above.
+            turned = np.inf
+        if turned <= OTHER_UNITS:
+            break
+        # The terms that matter are of second order or of third; the root suits the latter.
+        h *= max(np.sqrt(TURN / turned), TURN / GROWTH)
+    return h
 
 
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from enum import IntEnum
 
 import numpy as np
 from attrs import frozen
@@ -13,7 +12,7 @@ from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.html import MOST_ROWS, table
 from continuation.path import Path, Step
-from continuation.status import Kind, Status
+from continuation.status import Described, Kind, Status
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.parametric.sensitivity import NotDifferentiableError, Sensitivity, sensitivity
@@ -22,18 +21,34 @@ from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.reference.enumeration import Exhaustion
 
 
-class Outcome(IntEnum):
+class Outcome(Described):
     """What became of the problem; ``str()`` of each is a sentence."""
 
-    SOLVED = 0
-    STATIONARY = 1
-    UNSOLVABLE = 2
-    NOT_FOUND = 3
-    INFEASIBLE_TO_PRECISION = 4
-    SOLVED_TO_PRECISION = 5
+    SOLVED = (
+        0,
+        "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, each row relative to its own terms, "
+        "verified in twice the working precision.",
+    )
+    STATIONARY = (
+        1,
+        "A stationary point of min x'w over x >= 0, w >= 0 was found, and it does not solve the LCP; "
+        "other solutions may exist.",
+    )
+    UNSOLVABLE = 2, "The LCP has no solution, which is proved exactly."
+    NOT_FOUND = 3, "No solution was found, and none is excluded."
+    INFEASIBLE_TO_PRECISION = (
+        4,
+        "To working precision no x >= 0 has w >= 0: a vector y >= 0 has q'y < 0, and "
+        "A'y <= 0 but for rounding. A change of A in its last digits makes that a proof.",
+    )
+    SOLVED_TO_PRECISION = (
+        5,
+        "Solved to working precision: x solves an LCP whose entries differ from these in "
+        "their last digits; in exact arithmetic the face of x holds no solution, so the data as given may have none.",
+    )
 
     def __str__(self) -> str:
-        return _SENTENCES[self]
+        return str(self.__doc__)
 
     def __bool__(self) -> bool:
         return self.success
@@ -44,18 +59,6 @@ class Outcome(IntEnum):
         return self in (Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION)
 
 
-_SENTENCES = {
-    Outcome.SOLVED: "Solved: x >= 0, w >= 0 and x'w = 0 to the tolerance, each row relative to its own terms, "
-    "verified in twice the working precision.",
-    Outcome.STATIONARY: "A stationary point of min x'w over x >= 0, w >= 0 was found, and it does not solve the LCP; "
-    "other solutions may exist.",
-    Outcome.UNSOLVABLE: "The LCP has no solution, which is proved exactly.",
-    Outcome.NOT_FOUND: "No solution was found, and none is excluded.",
-    Outcome.INFEASIBLE_TO_PRECISION: "To working precision no x >= 0 has w >= 0: a vector y >= 0 has q'y < 0, and "
-    "A'y <= 0 but for rounding. A change of A in its last digits makes that a proof.",
-    Outcome.SOLVED_TO_PRECISION: "Solved to working precision: x solves an LCP whose entries differ from these in "
-    "their last digits; in exact arithmetic the face of x holds no solution, so the data as given may have none.",
-}
 _WITH_BOUNDS = {
     Outcome.SOLVED: "Solved: x is between its bounds, and w has the signs that these ask for, to the tolerance, each "
     "row relative to its own terms, verified in twice the working precision.",

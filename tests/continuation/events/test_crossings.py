@@ -53,6 +53,46 @@ def test_a_target_in_the_crossing_itself(preset):
         assert abs(path.endpoint.u).max() < 1e-6
 
 
+@every_preset
+@pytest.mark.parametrize(("D", "L"), [(1.2e-10, 320.0), (8.3e-9, 4e4), (2.4e-8, 4.6e5), (1.6e-6, 2.9e5), (3e7, 1e-5)])
+def test_a_trunk_that_stands_still_says_nothing_of_its_units(preset, D, L):
+    # Measured by what the parameter goes, a step failed at the crossing, or put it 1e-4 off.
+    at, k, c, b = -0.11892, 1.3, 20.3 * D, 1.97 * L
+
+    def residual(y, lam):
+        x, s = (y - c) / D, (lam - b) / L
+        return 7.88 * x * (s - at - k * x * x)
+
+    def jacobian(y, lam):
+        x, s = (y[0] - c) / D, (lam - b) / L
+        return np.array([[7.88 * (s - at - 3.0 * k * x * x) / D]]), np.array([7.88 * x / L])
+
+    start = ([c], b - 1.3 * L)
+    path = trace(from_functions(residual, jacobian, start=start, target=b + 1.5 * L), preset=preset)
+    (event,) = branch_points(path)
+    assert abs(event.y[0] - c) / D < 1e-10
+    assert abs((event.lam - b) / L - at) < 1e-10
+
+
+@every_preset
+@pytest.mark.parametrize("seed", [605, 608, 671, 1084, 1377, 1483, 1738, 1981])
+def test_a_target_just_before_a_crossing_lies_on_the_same_curve(preset, seed):
+    # The curves are as near to each other there as the arc is to either: FAST ended on the other, and said nothing.
+    rng = np.random.default_rng(seed)
+    first = rng.normal(size=3)
+    second, target = first + rng.normal(size=3), -(10.0 ** rng.uniform(-3.0, -0.7))
+
+    def graph(c, s):
+        return c[0] * s + c[1] * s * s / 2.0 + c[2] * np.sin(s)
+
+    def residual(y, s):
+        return (y - graph(first, s)) * (y - graph(second, s))
+
+    path = trace(from_functions(residual, start=([graph(first, -2.0)], -2.0), target=target), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert abs(path.endpoint.y[0] - graph(first, target)) < 1e-9
+
+
 def ten(preset, target=10.5):
     """Ten pitchforks on a straight trunk, at lam = 1 .. 10."""
     k = np.arange(1.0, 11.0)
