@@ -1,40 +1,86 @@
 """Pseudo-arclength continuation with pluggable parts.
 
 ``continuation.trace(homotopy)`` follows the zero curve of H(y, lam) from its start to its target.
+
+Names are imported when they are first asked for: ``import continuation`` by itself takes no time, and a trace does not
+wait for what proofs, diagrams and archives are made with.
 """
 
-from continuation.auditing import audit, refine
-from continuation.branch_switching import branch_directions, switch_branch
-from continuation.budget import Budget
-from continuation.certificate import Proof, certify
-from continuation.citation import cite
-from continuation.controllers import Controller
-from continuation.correctors import Corrector
-from continuation.counts import Counts
-from continuation.curves import Curve, Family
-from continuation.diagrams import Deflated, Diagram, diagram
-from continuation.evaluation.evaluator import EvaluationError
-from continuation.evaluation.functions import from_functions
-from continuation.evaluation.jacobian_check import check_jacobian
-from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint
-from continuation.events.branch_point import BranchPoint
-from continuation.guard import Guard
-from continuation.homotopy import Homotopy
-from continuation.interrupted import Interrupted
-from continuation.kinks.start import kink_rays
-from continuation.length import arclength
-from continuation.metric import Automatic, Euclidean, Metric
-from continuation.path import LocatedEvent, Path, Step
-from continuation.predictors import Predictor
-from continuation.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
-from continuation.stability import HopfPoint, Stability
-from continuation.status import Kind, Status
-from continuation.step.options import Options
-from continuation.step.settings import Settings
-from continuation.step.tracer import Observer, Tracer
-from continuation.tolerance import Tolerance
-from continuation.tracing import solve_at, trace, trace_both
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
 from continuation.version import __version__
+
+if TYPE_CHECKING:
+    from continuation.auditing import audit, refine
+    from continuation.branch_switching import branch_directions, switch_branch
+    from continuation.budget import Budget
+    from continuation.certificate import Proof, certify
+    from continuation.citation import cite
+    from continuation.controllers import Controller
+    from continuation.correctors import Corrector
+    from continuation.counts import Counts
+    from continuation.curves import Curve, Family
+    from continuation.diagrams import Deflated, Diagram, diagram
+    from continuation.evaluation.evaluator import EvaluationError
+    from continuation.evaluation.functions import from_functions
+    from continuation.evaluation.jacobian_check import check_jacobian
+    from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint
+    from continuation.events.branch_point import BranchPoint
+    from continuation.guard import Guard
+    from continuation.homotopy import Homotopy
+    from continuation.interrupted import Interrupted
+    from continuation.kinks.start import kink_rays
+    from continuation.length import arclength
+    from continuation.metric import Automatic, Euclidean, Metric
+    from continuation.path import LocatedEvent, Path, Step
+    from continuation.predictors import Predictor
+    from continuation.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
+    from continuation.stability import HopfPoint, Stability
+    from continuation.status import Kind, Status
+    from continuation.step.options import Options
+    from continuation.step.settings import Settings
+    from continuation.step.tracer import Observer, Tracer
+    from continuation.tolerance import Tolerance
+    from continuation.tracing import solve_at, trace, trace_both
+
+_HOMES = {
+    "auditing": "audit refine",
+    "branch_switching": "branch_directions switch_branch",
+    "budget": "Budget",
+    "certificate": "Proof certify",
+    "citation": "cite",
+    "controllers": "Controller",
+    "correctors": "Corrector",
+    "counts": "Counts",
+    "curves": "Curve Family",
+    "diagrams": "Deflated Diagram diagram",
+    "evaluation.evaluator": "EvaluationError",
+    "evaluation.functions": "from_functions",
+    "evaluation.jacobian_check": "check_jacobian",
+    "events": "Event KinkPoint Monitor TargetValue TurningPoint",
+    "events.branch_point": "BranchPoint",
+    "guard": "Guard",
+    "homotopy": "Homotopy",
+    "interrupted": "Interrupted",
+    "kinks.start": "kink_rays",
+    "length": "arclength",
+    "metric": "Automatic Euclidean Metric",
+    "path": "LocatedEvent Path Step",
+    "predictors": "Predictor",
+    "presets": "CONSERVATIVE DEFAULT FAST SERIES Preset",
+    "stability": "HopfPoint Stability",
+    "status": "Kind Status",
+    "step.options": "Options",
+    "step.settings": "Settings",
+    "step.tracer": "Observer Tracer",
+    "tolerance": "Tolerance",
+    "tracing": "solve_at trace trace_both",
+}
+"""Which module holds what: the imports above, for those who run this."""
+
+_HOME = {name: module for module, names in _HOMES.items() for name in names.split()}
 
 __all__ = [
     "CONSERVATIVE",
@@ -93,3 +139,18 @@ __all__ = [
     "trace",
     "trace_both",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, or a module of the package, imported now."""
+    if name in _HOME:
+        found = getattr(import_module(f"continuation.{_HOME[name]}"), name)
+        globals()[name] = found
+        return found
+    if name.startswith("_") or find_spec(f"continuation.{name}") is None:
+        raise AttributeError(f"module 'continuation' has no attribute {name!r}")
+    return import_module(f"continuation.{name}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 from attrs import define, frozen
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array
 
 HALVING = 0.5
 """At this ratio the last increment is itself a bound of the error. Iterative refinement is stopped there (Higham,
@@ -24,11 +24,6 @@ nearby, the coefficients of a series, the branch on which a path lands."""
 MONOTONE = 0.9
 """Increments that merely fall, and do not crawl: Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems,
 Section 2.1) for an iteration whose limit is examined afterwards."""
-
-
-def magnitude(step: Array, x: Array) -> float:
-    """The largest component of an increment, whatever it is added to."""
-    return largest(step)
 
 
 @frozen
@@ -81,7 +76,7 @@ class Iteration:
     stalled: bool = False
 
     def run(
-        self, increment: Callable[[], Array], measure: Callable[[Array, Array], float], done: Callable[[float], bool]
+        self, increment: Callable[[], Array], measure: Callable[[Array], float], done: Callable[[float], bool]
     ) -> bool:
         """Add increments; whether it is done.
 
@@ -90,7 +85,7 @@ class Iteration:
         increment : callable
             The next increment at `x`.
         measure : callable
-            Its size, of the increment and the iterate that it is added to.
+            Its size.
         done : callable
             Whether an increment of that size, which has been added, was the last.
         """
@@ -98,7 +93,7 @@ class Iteration:
         limit = rule.ratio if rule.first is None else rule.first
         for k in range(rule.iterations):
             step = increment()
-            size = measure(step, self.x)
+            size = measure(step)
             self.count = k + 1
             if k:
                 self.ratio = ratio = size / before if before > 0.0 else np.inf

@@ -8,7 +8,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 from continuation.checks import FRACTION, POSITIVE_FINITE
 
 
@@ -30,17 +30,17 @@ class Metric(Protocol):
 
 def inner(weights: Array, a: Array, b: Array) -> float:
     """<a, b> in the metric of `weights`."""
-    return float(np.dot(weights * a, b))
+    return dot(weights * a, b)
 
 
 def norm(weights: Array, a: Array) -> float:
     """The length of `a` in the metric of `weights`."""
-    return math.sqrt(np.dot(weights * a, a))
+    return math.sqrt(dot(weights * a, a))
 
 
 def share(weights: Array, v: Array) -> float:
     """The parameter's share of the squared length of v, between 0 and 1."""
-    return float(weights[-1] * v[-1] ** 2 / np.dot(weights * v, v))
+    return float(weights[-1] * v[-1] ** 2 / dot(weights * v, v))
 
 
 @frozen

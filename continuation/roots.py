@@ -9,6 +9,10 @@ from typing import Any
 from scipy.optimize import brentq
 
 
+class _NoValueError(Exception):
+    """Brentq has no way to stop but this."""
+
+
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: Any) -> float | None:
     """A zero of a function that has different signs at two places; None where it overflows, or is NaN, on the way.
 
@@ -28,16 +32,13 @@ def zero_between(function: Callable[[float], float], low: float, high: float, **
     Brent, Algorithms for Minimization Without Derivatives, 1973, chapter 4.
     """
 
-    class NoValueError(Exception):
-        """Brentq has no way to stop but this."""
-
     def value(t: float) -> float:
         found = function(t)
         if math.isnan(found):
-            raise NoValueError
+            raise _NoValueError
         return found
 
     try:
         return float(brentq(value, low, high, **options))
-    except NoValueError:
+    except _NoValueError:
         return None

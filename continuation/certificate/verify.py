@@ -12,10 +12,10 @@ from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined
 from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.krawczyk import ByIntervals, Engine
-from continuation.certificate.links import Nodes, linked, nodes, reach
+from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import along, check, sizes
-from continuation.intervals.ends import Ends, Mask, thin
+from continuation.intervals.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
 from continuation.status import Kind, Status
@@ -27,7 +27,7 @@ NO_CURVE = "no point of the curve was found at the end"
 NEAR_END = 1e-5
 """How far the parameter may be from its target, of its way there, where an exact end takes the place of the rest."""
 
-CLOSE = 1e-2
+CLOSE = 1e-4
 """How far an event may be from the curve, in sizes of its cell: located ones are off by their tolerance, of 1e-6."""
 
 WIDER = 1.5
@@ -217,7 +217,8 @@ def _on_curve(
     owner = np.clip(np.array([int(places[k] or 0.0) for k in known]), 0, len(cells) - 1)
     own = cells.take(owner)
     at = nodes(engine, evolve(own, begin=np.array([events[k].u for k in known])), np.zeros(len(known)))
-    near = np.asarray((at.radius <= CLOSE * sizes(own)).all(axis=1))
+    round_off = 8.0 * NEAR * EPS * np.abs([events[k].u for k in known])
+    near = np.asarray((at.radius <= CLOSE * sizes(own) + round_off).all(axis=1))
     lost = {k for k, good in zip(known, near) if not good}
     return [None if k in lost else place for k, place in enumerate(places)]
 

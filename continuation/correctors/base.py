@@ -114,7 +114,7 @@ ROUNDS = 10
 
 def level(r: Array, terms: Array) -> float:
     """The largest component of a residual beside the round-off of its terms, as `Evaluator.round_off` sees it."""
-    return float((np.abs(r) / np.maximum(terms, TINY)).max())
+    return largest(r / np.maximum(terms, TINY))
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
@@ -172,27 +172,26 @@ def iterate(
     goes with the outcome.
     """
     iteration = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0))
-    r, residual_norm = predicted, np.nan
+    r, found, left = predicted, False, np.inf
 
     def small(size: float) -> bool:
-        nonlocal r, residual_norm
-        r = evaluator.residual(iteration.x)
-        residual_norm = largest(r)
-        return size <= 1.0 and residual_norm <= tolerance.residual
+        nonlocal r, found
+        r, found = evaluator.residual(iteration.x), True
+        return size <= 1.0 and largest(r) <= tolerance.residual
 
     def polished(k: int, ratio: float) -> Array:
         return direction(k, iteration.x, r, ratio)
 
-    def leftover(*_: Array) -> float:
-        return level(r, terms)
+    def leftover(_: Array) -> float:
+        return left
 
     def settled(_: float) -> bool:
-        nonlocal r, residual_norm
+        nonlocal r, left
         r = evaluator.residual(iteration.x)
-        residual_norm = largest(r)
-        return level(r, terms) <= ROUND_OFF
+        left = level(r, terms)
+        return left <= ROUND_OFF
 
-    def measure(step: Array, _: Array) -> float:
+    def measure(step: Array) -> float:
         return tolerance.measure(step, point.weights)
 
     rejection: Rejection | None = None
@@ -228,5 +227,5 @@ def iterate(
     except EvaluationError as error:
         rejection, detail = error.rejection, str(error)
     u, anchor = iteration.x, anchors[-1] if anchors else None
-    distance = norm(point.weights, u - predicted)
+    distance, residual_norm = norm(point.weights, u - predicted), largest(r) if found else np.nan
     return Correction(u, count, residual_norm, worst, distance, rejection, detail, anchor)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 from typing import ClassVar
 
-import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 from continuation.bibliography import KELLEY
 from continuation.checks import POSITIVE, integer
 from continuation.correctors.base import Correction, iterate
@@ -39,11 +38,11 @@ class Broyden:
         def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
             z = point.solve(-r, 0.0, border)
             for before, after in itertools.pairwise(increments):
-                z = z + (float(np.dot(before, z)) / float(np.dot(before, before))) * after
+                z = z + (dot(before, z) / dot(before, before)) * after
             if increments:
                 last = increments[-1]
-                square = float(np.dot(last, last))
-                shrink = 1.0 - float(np.dot(last, z)) / square if square > 0.0 else 1.0
+                square = dot(last, last)
+                shrink = 1.0 - dot(last, z) / square if square > 0.0 else 1.0
                 if shrink == 0.0:
                     raise EvaluationError("Broyden's update is singular")
                 z = z / shrink

@@ -195,7 +195,7 @@ def solved(homotopy: Any, lam: float, guess: Array, scale: Any = None) -> Array:
     def increment() -> Array:
         return evaluator.factor(newton.x, unit).solve(-evaluator.residual(newton.x), 0.0)
 
-    def measure(step: Array, _: Array) -> float:
+    def measure(step: Array) -> float:
         return float(np.abs(step[:-1] / size).max())
 
     def done(last: float) -> bool:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError
@@ -123,7 +124,7 @@ class Landing:
         if rejected is not None:
             return rejected
         border = point.border
-        along = float(np.dot(border, correction.u - point.u))
+        along = dot(border, correction.u - point.u)
         if along <= 0.0 or correction.distance > DISTANCE * h:
             return Rejected(h, Rejection.ELSEWHERE, contraction=correction.contraction)
         # The target may lie on the boundary of the domain, so the end itself is exempt from the ratio test.
@@ -133,18 +134,22 @@ class Landing:
         return self.stepper.arrive(point, border, h, landed)
 
 
+_at = lru_cache(maxsize=8)(TargetValue)
+"""Made once for all arcs: its checks take longer than its monitor."""
+
+
 def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:
     """Where the arc first takes a parameter value that its ends enclose, or that it touches in a fold."""
     before, after = arc.a.lam - value, arc.b.lam - value
     if before * after < 0.0:
-        points = locate(solver, TargetValue(value), arc, before, after)
+        points = locate(solver, _at(value), arc, before, after)
         return points[0] if points else None
     if before == 0.0:
         return None
     if arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
-        if not may_vanish(TargetValue(value), arc, before, after):
+        if not may_vanish(_at(value), arc, before, after):
             return None
-        return next(iter(locate(solver, TargetValue(value), arc, before, after)), None)
+        return next(iter(locate(solver, _at(value), arc, before, after)), None)
     # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
 
     def slope(t: float) -> float:

@@ -9,7 +9,7 @@ from enum import Enum
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import largest
+from continuation.arrays import dot, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.ends.closed_curve import passes_start
 from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
@@ -181,7 +181,7 @@ class Target:
             if limit is None:
                 raise EvaluationError("the end is singular, and its limit was not found")
             return limit
-        sigma = float(np.dot(arc.border, end.u - arc.a.u))
+        sigma = dot(arc.border, end.u - arc.a.u)
         gap, expected = abs(arc.a.lam - value), abs(sigma * arc.a.tangent[-1])
         fold = None
         if (arc.a.lam - value) * (arc.b.lam - value) >= 0.0 and FOLD[0] * expected < gap < FOLD[1] * expected:

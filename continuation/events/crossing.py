@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, dot, generic_vector
 from continuation.point.linearization import Linearization
 
 PRODUCTS = 40
@@ -63,7 +63,9 @@ def singular_places(
         Another one for another vector: one in a thousand has next to no part along an eigenvector.
     """
     right, left_end = 1.0 / ahead, -1.0 / behind if np.isfinite(behind) else -np.inf
-    start = np.roll(generic_vector(a.u.size), turned)
+    start = generic_vector(a.u.size)
+    if turned:
+        start = np.roll(start, turned)
     values, _ = _eigenvalues(a, apply, border, right, left_end, start, accuracy)
     return sorted(float(1.0 / value) for value in values)
 
@@ -107,23 +109,25 @@ def _eigenvalues(
     scale = np.sqrt(a.weights)
     n = min(PRODUCTS, a.u.size)
     Q, H = np.empty((n + 1, a.u.size)), np.zeros((n + 1, n))
-    Q[0] = start / math.sqrt(np.dot(start, start))
+    Q[0] = start / math.sqrt(dot(start, start))
     converged = False
     for k in range(n):
         q = Q[k] / scale
-        x = Q[k] - scale * a.solve(apply(q), float(np.dot(border, q)))
-        size = math.sqrt(np.dot(x, x))
-        for _ in range(2):
-            part = Q[: k + 1] @ x
-            H[: k + 1, k] += part
-            x = x - part @ Q[: k + 1]
-        H[k + 1, k] = left_over = math.sqrt(np.dot(x, x))
+        x = Q[k] - scale * a.approximate(apply(q), dot(border, q))
+        size = math.sqrt(dot(x, x))
+        space = Q[: k + 1]
+        first = space.dot(x)
+        x = x - first.dot(space)
+        second = space.dot(x)
+        x = x - second.dot(space)
+        H[: k + 1, k] = first + second
+        H[k + 1, k] = left_over = math.sqrt(dot(x, x))
         whole = k + 1 == a.u.size or left_over <= EXHAUSTED * size
-        if not whole and (k == 0 or (k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left))):
-            if k:
-                return np.empty(0), np.empty((a.u.size, 0))
+        if k == 0 and not whole:
             Q[1] = x / left_over
             continue
+        if k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left):
+            return np.empty(0), np.empty((a.u.size, 0))
         values, vectors = np.linalg.eig(H[: k + 1, : k + 1])
         error = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
         told = (values.real + error > right) | (values.real - error < left)

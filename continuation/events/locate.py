@@ -10,7 +10,7 @@ import numpy as np
 from attrs import evolve
 from scipy.optimize import minimize_scalar
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue
@@ -58,8 +58,8 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    sign = math.copysign(1.0, ga)
-    values = [sign * g for g in (ga, *(event.monitor(u, v) for u, v in arc.samples), gb)]
+    sign, monitor = math.copysign(1.0, ga), event.monitor
+    values = [sign * ga, *[sign * monitor(u, v) for u, v in arc.samples], sign * gb]
     places = (0.0, *arc.segment.inside, 1.0)
     return _least(places, values) < 0.5 * min(abs(ga), abs(gb))
 
@@ -70,9 +70,8 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
     For the parameter's component of a cubic's tangent that is the least of all.
     """
     least = min(values)
-    for i in range(len(values) - 2):
-        (p, q, r), (a, b, c) = places[i : i + 3], values[i : i + 3]
-        left, right = (b - a) / (q - p), (c - b) / (r - q)
+    slopes = [(b - a) / (q - p) for p, q, a, b in zip(places, places[1:], values, values[1:])]
+    for p, q, r, a, left, right in zip(places, places[1:], places[2:], values, slopes, slopes[1:]):
         bend = (right - left) / (r - p)
         if bend > 0.0:
             lowest = 0.5 * (p + q - left / bend)
@@ -83,7 +82,7 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
     """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
-    length = float(np.dot(arc.border, arc.b.u - arc.a.u))
+    length = dot(arc.border, arc.b.u - arc.a.u)
 
     def g(t: float) -> float:
         return sign * event.monitor(arc.segment.at(t), arc.segment.derivative(t) / length)
@@ -199,7 +198,7 @@ def _root(
     a, b = arc.a, arc.b
     best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
     scale = max(abs(ga), abs(gb))
-    width = first = float(np.dot(arc.border, b.u - a.u))
+    width = first = dot(arc.border, b.u - a.u)
     bisect, stalled, noise = False, 0, None
     for _ in range(PASSES):
         segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
@@ -216,7 +215,7 @@ def _root(
             a, ga = point, g
         else:
             b, gb = point, g
-        width = float(np.dot(arc.border, b.u - a.u))
+        width = dot(arc.border, b.u - a.u)
         stalled = stalled + 1 if bisect else 0
         if least <= AT_ROUND_OFF * scale or (stalled >= 2 and least <= NEARLY_ZERO * scale):
             break

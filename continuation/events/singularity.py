@@ -231,7 +231,7 @@ def branch_point_near(
         step[:-1] *= extent
         return step
 
-    def measure(step: Array, _: Array) -> float:
+    def measure(step: Array) -> float:
         return float(np.abs(step[:-1] / extent).max())
 
     def done(size: float) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 from numpy.typing import NDArray
+from scipy.linalg.blas import dgbmv
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import dia_array
 
@@ -62,6 +63,9 @@ class Banded:
         n = self.ab.shape[1]
         if len(other) != n:
             raise ValueError(f"the operand of Banded @ has shape {other.shape}; expected ({n},) or ({n}, k)")
+        if other.ndim == 1 and len(self.ab) <= n:
+            image: Array = dgbmv(n, n, self.lower, self.upper, 1.0, self.ab, other)
+            return image
         product = np.zeros(other.shape)
         for k, diagonal in enumerate(self.ab):
             below = k - self.upper  # the rows of this diagonal are its columns, shifted down by so many

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
+from scipy.linalg.blas import dtbmv
 from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 
 from continuation.arrays import Array, finite
@@ -48,7 +49,7 @@ class Dense:
 
     factor: LU
     scale: Array | None
-    """Powers of two, (N + 1,), by which the rows were multiplied; None for ones."""
+    """Powers of two, (1, N + 1), by which the rows were multiplied; None for ones."""
     columns: Array | None
     """The same for the columns."""
 
@@ -69,12 +70,11 @@ class Dense:
         z[:-1] = r
         z[-1] = rho
         if self.scale is not None:
-            with np.errstate(over="ignore"):
-                z *= self.scale
+            # By BLAS, which does not warn of overflow.
+            z = dtbmv(0, self.scale, z, overwrite_x=1)
         dgetrs(self.factor.lu, self.factor.pivots, z, overwrite_b=1)
         if self.columns is not None:
-            with np.errstate(over="ignore"):
-                z *= self.columns
+            z = dtbmv(0, self.columns, z, overwrite_x=1)
         if not finite(z):
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z
@@ -109,7 +109,7 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     lu, pivots, info = dgetrf(whole, overwrite_a=1)
     if info > 0:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: pivot {info - 1} is zero.")
-    return Dense(LU(lu, pivots), scale, columns)
+    return Dense(LU(lu, pivots), *(None if by is None else by[None] for by in (scale, columns)))
 
 
 def factor_lu(matrix: Array) -> LU | None:

@@ -74,8 +74,8 @@ class Followed:
             change = -step[-1] / self.turned[-1]
             return np.append(step[:-1] + change * self.turned[:-1], change)
 
-        def measure(step: Array, x: Array) -> float:
-            return float(abs(step[-1]) / abs(x[-1]))
+        def measure(step: Array) -> float:
+            return float(abs(step[-1]) / abs(pair.x[-1]))
 
         if not (pair.run(increment, measure, lambda size: size <= SETTLED) or pair.size <= NEARLY):
             raise ArithmeticError("an eigenvalue is not followed from one matrix to the other")

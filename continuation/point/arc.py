@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization
 from continuation.point.segment import Segment, hermite
@@ -28,25 +28,24 @@ class Arc:
     def samples(self) -> list[tuple[Array, Array]]:
         """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
         points, slopes = self.segment.sampled()
-        length = float(np.dot(self.border, self.b.u - self.a.u))
-        return [(u, slope / length) for u, slope in zip(points, slopes)]
+        return list(zip(points, np.asarray(slopes) / dot(self.border, self.b.u - self.a.u)))
 
     @property
     def just_after_start(self) -> tuple[Array, Array]:
         """The same just behind the beginning."""
-        length = float(np.dot(self.border, self.b.u - self.a.u))
+        length = dot(self.border, self.b.u - self.a.u)
         return self.segment.at(0.02), self.segment.derivative(0.02) / length
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:
     """The arc up to a point on it."""
-    sigma = float(np.dot(arc.border, end.u - arc.a.u))
+    sigma = dot(arc.border, end.u - arc.a.u)
     return Arc(arc.a, end, arc.border, arc.segment.until(sigma, end.u, end.tangent, arc.border))
 
 
 def position(arc: Arc, u: Array) -> float:
     """Pseudo-arclength of a point on the arc, from its beginning."""
-    return float(np.dot(arc.border, u - arc.a.u))
+    return dot(arc.border, u - arc.a.u)
 
 
 def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> Arc:
@@ -54,7 +53,7 @@ def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> A
     border = a.border
     # By name: an isinstance check of a Protocol costs more here than the rest of the function.
     if hasattr(prediction, "segment"):
-        return Arc(a, b, border, prediction.segment(float(np.dot(border, b.u - a.u)), b.u))
+        return Arc(a, b, border, prediction.segment(dot(border, b.u - a.u), b.u))
     return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 

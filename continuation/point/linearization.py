@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, generic_vector, largest
-from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration, magnitude
+from continuation.arrays import Array, dot, generic_vector, largest
+from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
 from continuation.metric import norm
@@ -97,12 +98,18 @@ class Linearization:
         no factorisation. The default border is W tangent: then z is the shortest solution when rho = 0, that is, the
         Moore-Penrose inverse applied to r.
         """
-        z = self.anchor.system.solve(r, 0.0)
+        return self._completed(self.anchor.system.solve(r, 0.0), rho, border)
+
+    def approximate(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
+        """The same for estimates, and for iterations that measure their own residual: see `CountedSystem`."""
+        return self._completed(self.anchor.system.approximate(r, 0.0), rho, border)
+
+    def _completed(self, z: Array, rho: float, border: Array | None) -> Array:
         row = self.border if border is None else border
-        along = float(np.dot(row, self.tangent))
+        along = dot(row, self.tangent)
         if along == 0.0:
             raise EvaluationError("the border is orthogonal to the tangent")
-        corrected: Array = z + ((rho - float(np.dot(row, z))) / along) * self.tangent
+        corrected: Array = z + ((rho - dot(row, z)) / along) * self.tangent
         return corrected
 
     def with_weights(self, weights: Array) -> Linearization:
@@ -145,31 +152,37 @@ def relinearize(
             guess = generic_vector(u.size) / np.sqrt(weights)
         else:
             guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
-        tangent = _refined(apply, anchor, guess, accuracy)
+        tangent = _refined(apply, anchor, guess, weights, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
-    flip = float(np.dot(along, tangent)) < 0.0
+    flip = dot(along, tangent) < 0.0
     sign = anchor.system.sign
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
 
 
-def _refined(apply: Callable[[Array], Array], anchor: Anchor, guess: Array, accuracy: float) -> Array | None:
-    """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails."""
+def _refined(
+    apply: Callable[[Array], Array], anchor: Anchor, guess: Array, weights: Array, accuracy: float
+) -> Array | None:
+    """The solution v of M v = e_{N+1} at the point of `apply`, to `accuracy`; None where refinement fails.
+
+    Measured in the metric: the largest component is that of the smallest unit, and knows nothing of the others.
+    """
     refinement = Iteration(guess, TANGENT_REFINEMENT)
+    solve, border, length = anchor.system.approximate, anchor.border, partial(norm, weights)
 
     def increment() -> Array:
         v = refinement.x
-        return anchor.system.approximate(-apply(v), 1.0 - float(np.dot(anchor.border, v)))
+        return solve(-apply(v), 1.0 - dot(border, v))
 
-    done = refinement.run(increment, magnitude, lambda size: size <= accuracy * largest(refinement.x))
-    if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * largest(refinement.x))):
+    done = refinement.run(increment, length, lambda size: size <= accuracy * length(refinement.x))
+    if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * length(refinement.x))):
         return None
     v = refinement.x
     if anchor.system.approximates:
         # Increments of a solver that is not exact may be small because it does not see what is left.
-        left = anchor.system.solve(-apply(v), 1.0 - float(np.dot(anchor.border, v)))
-        if largest(left) > UNSEEN * largest(v):
+        left = anchor.system.solve(-apply(v), 1.0 - dot(anchor.border, v))
+        if length(left) > UNSEEN * length(v):
             return None
     return v
 
@@ -193,9 +206,9 @@ class RefinedSystem:
 
         def increment() -> Array:
             z = refinement.x
-            return self.near.solve(r - self.apply(z), rho - float(np.dot(self.border, z)))
+            return self.near.solve(r - self.apply(z), rho - dot(self.border, z))
 
-        done = refinement.run(increment, magnitude, lambda size: size <= SOLVED * largest(refinement.x))
+        done = refinement.run(increment, largest, lambda size: size <= SOLVED * largest(refinement.x))
         if done or refinement.size <= NEARLY_SOLVED * largest(refinement.x):
             return refinement.x
         raise EvaluationError("a factorisation from nearby could not be refined")

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.evaluator import ULPS, CountedSystem, EvaluationError, Evaluator
 from continuation.metric import norm
@@ -87,7 +87,7 @@ class PathSolver:
             If nothing helps.
         """
         evaluator = self.evaluator
-        settled = self._chord_steps(guess, lambda r: near.solve(r, 0.0, border), near, AT_ROUND_OFF)
+        settled = self._chord_steps(guess, lambda r: near.approximate(r, 0.0, border), near, AT_ROUND_OFF)
         if settled is not None:
             return settled, near.anchor
         u = guess
@@ -108,7 +108,7 @@ class PathSolver:
         """
         chord, residual = Iteration(guess, CHORD_STEPS), self.evaluator.residual
 
-        def measure(step: Array, _: Array) -> float:
+        def measure(step: Array) -> float:
             return self.tolerance.measure(step, near.weights)
 
         if chord.run(lambda: solve(-residual(chord.x)), measure, lambda size: size <= NO_CHANGE):
@@ -137,7 +137,7 @@ class PathSolver:
             back = near.solve(evaluator.residual(u + moved) - evaluator.residual(u))
         except EvaluationError:
             return last_place
-        left = back - moved + near.tangent * float(np.dot(near.border, moved))
+        left = back - moved + near.tangent * dot(near.border, moved)
         noise: Array = NOISE_LOOKS * np.abs(left) + last_place
         return noise
 
@@ -167,7 +167,7 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> bool:
     length = norm(weights, arc.b.u - arc.a.u)
     allowed = min(SLACK * length, max(EVEN * length, MISSED * distance))
     for t in PLACES:
-        off = norm(weights, arc.a.solve(-solver.evaluator.residual(arc.segment.at(t))))
+        off = norm(weights, arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
         if off > allowed and off > NOISE * solver.tolerance.relative:
             return False
     return True

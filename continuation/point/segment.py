@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 
 
 class Segment(Protocol):
@@ -63,18 +64,15 @@ class HermiteSegment:
 
     def at(self, t: float) -> Array:
         """The cubic at t."""
-        chord = self.u1 - self.u0
-        a = self.d0 - chord
-        b = chord - self.d1
-        point: Array = self.u0 + t * chord + t * (1.0 - t) * ((1.0 - t) * a + t * b)
-        return point
+        # From the beginning, so that round-off is that of the way, not of a sum of large parts.
+        s = t * (1.0 - t)
+        onward: Array = (t * t * (3.0 - 2.0 * t)) * (self.u1 - self.u0) + (s * (1.0 - t)) * self.d0 - (s * t) * self.d1
+        return self.u0 + onward
 
     def derivative(self, t: float) -> Array:
         """Its derivative at t."""
-        chord = self.u1 - self.u0
-        a = self.d0 - chord
-        b = chord - self.d1
-        slope: Array = chord + (1.0 - t) * (1.0 - 3.0 * t) * a + t * (2.0 - 3.0 * t) * b
+        at_begin, at_end = (1.0 - t) * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)
+        slope: Array = (6.0 * t * (1.0 - t)) * (self.u1 - self.u0) + at_begin * self.d0 + at_end * self.d1
         return slope
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
@@ -149,8 +147,8 @@ def hermite(u0: Array, v0: Array, u1: Array, v1: Array, border: Array) -> Hermit
 
     The derivative of the path with respect to sigma is v / (border . v), which needs no estimate of the arclength.
     """
-    sigma = float(np.dot(border, u1 - u0))
-    return HermiteSegment(u0, u1, v0 * (sigma / float(np.dot(border, v0))), v1 * (sigma / float(np.dot(border, v1))))
+    sigma = dot(border, u1 - u0)
+    return HermiteSegment(u0, u1, v0 * (sigma / dot(border, v0)), v1 * (sigma / dot(border, v1)))
 
 
 _NODES, _WEIGHTS = (tuple(map(float, values)) for values in np.polynomial.legendre.leggauss(8))
@@ -168,7 +166,7 @@ def parameter_at(segment: Segment, weights: Array, fraction: float) -> float:
 
     def speed(t: float) -> float:
         slope = segment.derivative(t)
-        return float(np.sqrt(np.dot(weights * slope, slope)))
+        return math.sqrt(dot(weights * slope, slope))
 
     def behind(t: float) -> float:
         return 0.5 * t * sum(b * speed(0.5 * t * (a + 1.0)) for a, b in zip(_NODES, _WEIGHTS))

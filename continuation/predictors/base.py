@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
-import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
 from continuation.point.segment import Curve, Segment
@@ -99,8 +98,8 @@ def history_in_pseudo_arclength(point: Linearization, history: Sequence[Knot]) -
     border = point.border
     knots = [(0.0, point.u, point.tangent)]
     for knot in reversed(history[:-1]):
-        sigma = float(np.dot(border, knot.u - point.u))
-        along = float(np.dot(border, knot.tangent))
+        sigma = dot(border, knot.u - point.u)
+        along = dot(border, knot.tangent)
         if not (sigma < knots[-1][0] and along > 0.0):
             break
         knots.append((sigma, knot.u, knot.tangent / along))

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
 from attrs import field, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, dot
 from continuation.checks import integer
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
@@ -19,8 +18,8 @@ from continuation.predictors.base import Knot, history_in_pseudo_arclength
 class Interpolant:
     """Newton's form of the polynomial through the current point (h = 0) and past data, with coincident nodes."""
 
-    nodes: Array
-    coefficients: Array
+    nodes: Sequence[float]
+    coefficients: Sequence[Array]
     reach: float = math.inf
 
     def __call__(self, h: float) -> Array:
@@ -57,7 +56,7 @@ def interpolate(nodes: Sequence[float], values: Sequence[Array], slopes: Sequenc
                 following.append((table[i + 1] - table[i]) / (z[i + level] - z[i]))
         table = following
         coefficients.append(table[0])
-    return Interpolant(np.array(z), np.array(coefficients))
+    return Interpolant(z, coefficients)
 
 
 @frozen(eq=False)
@@ -118,8 +117,12 @@ class Hermite:
         knots = history_in_pseudo_arclength(point, history)
         if len(knots) < 2:
             return Line(point.u, point.tangent)
-        nodes, values, slopes = zip(*knots[:2])
-        return interpolate(nodes, values, slopes)
+        # The divided differences of `interpolate`, written out: every step makes one.
+        (_, u, v), (sigma, past, slope) = knots[:2]
+        chord = (past - u) / sigma
+        square = (chord - v) / sigma
+        cube = ((slope - chord) / sigma - square) / sigma
+        return Interpolant((0.0, 0.0, sigma, sigma), (u, v, square, cube))
 
 
 MOST_POINTS = 50
@@ -163,7 +166,7 @@ def _falling(full: Interpolant, step: float, weights: Array) -> int:
     for k, coefficient in enumerate(full.coefficients):
         if k:
             factor *= abs(step - full.nodes[k - 1])
-        size = factor * math.sqrt(float(np.dot(weights * coefficient, coefficient)))
+        size = factor * math.sqrt(dot(weights * coefficient, coefficient))
         if k > 1 and size >= previous:
             return k
         previous = size if k else math.inf

@@ -190,7 +190,7 @@ def _nonlinearity(
     """The correction at u + h v, without its part along v, and how nonlinear the path is so far."""
 
     def corrected(at: Array) -> Array:
-        z = point.solve(residual - evaluator.residual(at))
+        z = point.approximate(residual - evaluator.residual(at))
         along: Array = z - float(np.median(z[moving] / v[moving])) * v
         return along
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from typing import TypeAlias
 
-import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, finite
+from continuation.arrays import Array, dot, finite
 from continuation.correctors import Correction, Corrector
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.metric import inner
@@ -88,7 +87,7 @@ class Stepper:
         if rejected is not None:
             return rejected
         reason = None
-        if float(np.dot(border, correction.u - point.u)) <= 0.0:
+        if dot(border, correction.u - point.u) <= 0.0:
             reason = Rejection.BACKWARDS
         # Whatever the controller looks at: a correction longer than the step has left the path that was predicted.
         elif correction.distance > h:

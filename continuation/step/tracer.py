@@ -213,7 +213,7 @@ class Tracer:
 
     def _run(self) -> Iterator[Step]:
         try:
-            with np.errstate(all="ignore"):
+            with self._evaluator.quiet():
                 point = self._first() if self.state is None else self._restored(self.state)
         except StartError as error:
             self._end(refused_start(error))
@@ -327,7 +327,7 @@ class Tracer:
         state = self.state
         assert state is not None
         # Overflow is looked for where it counts: by a step that is not finite.
-        with np.errstate(all="ignore"):
+        with self._evaluator.quiet():
             found = self._advance.advance(point, state)
         end, verdict = None, found.verdict
         if isinstance(found, Stopped):

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from continuation.contraction import Contraction, Iteration, magnitude
+from continuation.arrays import largest
+from continuation.contraction import Contraction, Iteration
 
 
 def run(ratios, rule, enough=1.5e-6, first=1.0):
     """Increments of given ratios, as an iteration would make them."""
     sizes = iter(np.cumprod([first, *ratios]))
     iteration = Iteration(np.zeros(2), rule)
-    done = iteration.run(lambda: np.full(2, next(sizes)), magnitude, lambda size: size <= enough)
+    done = iteration.run(lambda: np.full(2, next(sizes)), largest, lambda size: size <= enough)
     return iteration, done
 
 
@@ -60,6 +61,6 @@ def test_what_it_has_come_to_survives_an_increment_that_raises():
         return np.array([next(sizes)])
 
     with pytest.raises(StopIteration):
-        iteration.run(increment, magnitude, lambda size: False)
+        iteration.run(increment, largest, lambda size: False)
     assert iteration.x == pytest.approx([1.25])
     assert iteration.count == 2

@@ -153,7 +153,8 @@ class Faces:
         self.kept[key] = face
         if len(self.kept) > KEPT:
             self.kept.pop(next(iter(self.kept)))
-        return evolve(face, problem=self.problem, q=self.problem.q)
+        same = face.problem is self.problem
+        return face if same else evolve(face, problem=self.problem, q=self.problem.q)
 
     def _made(self, state: State, shift: float, centre: Array | None, regular: bool) -> Face | None:
         problem = self.problem

@@ -49,8 +49,8 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
     else:
         # No array of the absolute values: at n = 300 that is most of the time.
         A = problem.A
-        both = np.concatenate([np.maximum(A.max(axis=k), -A.min(axis=k)) for k in (0, 1)])
-    return float(both.min()), float(both.max())
+        both = np.concatenate([np.maximum(np.maximum.reduce(A, k), -np.minimum.reduce(A, k)) for k in (0, 1)])
+    return float(np.minimum.reduce(both)), float(np.maximum.reduce(both))
 
 
 def far_apart(problem: MixedLCP) -> bool:
@@ -60,9 +60,9 @@ def far_apart(problem: MixedLCP) -> bool:
 
 
 def _sizes(problem: MixedLCP) -> Array:
-    values = problem.A.data if sp.issparse(problem.A) else problem.A
-    size = np.append(np.abs(values).ravel(), np.abs(problem.q))
-    return size[size > 0.0]
+    values = problem.A.data if sp.issparse(problem.A) else problem.A.ravel()
+    size: Array = np.abs(np.concatenate([values, problem.q]))
+    return size if size.all() else size[size > 0.0]
 
 
 def extreme(problem: MixedLCP) -> bool:

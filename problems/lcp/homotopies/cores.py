@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from typing import Generic, TypeVar
 
 import numpy as np
-from attrs import frozen
+from attrs import define, frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError
@@ -37,8 +38,31 @@ UNRELIABLE = 1e-3
 """Relative size of the first correction, in the units of the point, above which a core is not believed."""
 
 
+System = TypeVar("System")
+
 _silently = np.errstate(all="ignore")
 """A pair of zeros gives an inf here, which the factorisation of the core then reports."""
+
+
+@define(eq=False)
+class Recent(Generic[System]):
+    """The system at the last point that was asked for: the engine asks for many products there, one by one."""
+
+    found: tuple[bytes, float, System] | None = None
+
+    def at(self, y: Array, lam: float, make: Callable[[Array, float], System]) -> System:
+        """The system at a point, made of a copy of y.
+
+        Parameters
+        ----------
+        y : ndarray
+        lam : float
+        make : callable
+        """
+        found, entries = self.found, y.tobytes()
+        if found is None or found[:2] != (entries, lam):
+            self.found = found = entries, lam, make(y.copy(), lam)
+        return found[2]
 
 
 @frozen(eq=False)
@@ -70,6 +94,11 @@ class Pairs:
         """The pair (v, p)."""
         t = r + self.c * l
         return self.a * k + self.e * t, self.b * k + self.f * t
+
+    def partner(self, k: Array, r: Array, l: float) -> Array:
+        """P alone."""
+        p: Array = self.b * k + self.f * (r + self.c * l)
+        return p
 
 
 @_silently

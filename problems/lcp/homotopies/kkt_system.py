@@ -123,17 +123,18 @@ class Reduced:
         s, pairs, rows = self.system, self.pairs, self.system.rows
         mu, n = 1.0 - s.lam, s.column.size
         r1, r2, r3, r4 = rows.split(r)
-        _, b1, b2, b3 = rows.split(self.border[:-1])
+        _, b1, b2, b3 = rows.split(self.border)
         known = pairs.right(r3, r4)
         _, force, d1 = self.first.known(r2)
         d2, d3 = pairs.of(self.second.f * known, r4, 0.0)
         top = r1 + mu * (force + s.structure.transpose @ d2)
-        k = self.core.solve(top, rho - float(b1 @ d1) - float(b2 @ d2) - float(b3 @ d3))
+        rest = rho - b1.dot(d1) - b2.dot(d2)
+        k = self.core.solve(top, rest - b3[:-1].dot(d3) if d3.size else rest)
         z = np.empty(r.size + 1)
         dx, forces, second, third = rows.split(z[:-1])
         dx[:], z[-1] = k[:n], k[n]
-        forces[:] = self.first.of(k[:n], r2, k[n])[1]
-        inner = self.second.of(s.structure.problem.A @ k[:n] + s.rho * k[n], known, k[n])[1]
+        forces[:] = self.first.partner(k[:n], r2, k[n])
+        inner = self.second.partner(s.structure.problem.A @ k[:n] + s.rho * k[n], known, k[n])
         second[:], third[:] = pairs.of(inner, r4, k[n])
         return z
 

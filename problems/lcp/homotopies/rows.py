@@ -81,8 +81,13 @@ class Rows:
         ----------
         y : ndarray
         """
-        n, m = self.problem.n, self.problem.n + self.sides.index.size
-        return y[:n], y[n:m], y[m : m + n], y[m + n :]
+        n, m, k = self._ends
+        return y[:n], y[n:m], y[m:k], y[k:]
+
+    @cached_property
+    def _ends(self) -> tuple[int, int, int]:
+        n, m = self.problem.n, self.sides.index.size
+        return n, n + m, n + m + n
 
     @property
     def size(self) -> int:

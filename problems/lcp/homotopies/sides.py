@@ -139,3 +139,7 @@ class BoundPairs:
         v, _, dy = self.known(r + self.c * l)
         kept = self.sides.sign * k[self.sides.index]
         return self.a * k + v, dy + np.where(self.main, kept, -self.slope * self.sides.pull(self.a * k))
+
+    def partner(self, k: Array, r: Array, l: float) -> Array:
+        """The dy alone."""
+        return self.of(k, r, l)[1]

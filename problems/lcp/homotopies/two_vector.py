@@ -19,6 +19,7 @@ from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import references
+from problems.lcp.homotopies.cores import Recent
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.quadratics import exact_end, pairs_form
@@ -152,7 +153,11 @@ class TwoVectorHomotopy:
     @quiet
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """H' v, one shorter than v."""
-        return self._system(y, lam).apply(v)
+        return self._recent.at(y, lam, self._system).apply(v)
+
+    @cached_property
+    def _recent(self) -> Recent[PairSystem]:
+        return Recent()
 
     @quiet
     def taylor(self, point: Linearization, order: int) -> Array:

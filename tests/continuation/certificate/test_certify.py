@@ -291,3 +291,13 @@ def test_a_picture_and_the_radius(tmp_path):
     assert np.isnan(proof.radius(1e9)).all()
     assert "Proved" in repr(proof)
     assert folds.turns([]) == ([], [])
+
+
+def test_an_event_that_is_not_on_the_curve_is_a_gap_however_wide_the_tube():
+    # The tubes of the cusp are wide: a turning point moved within one was proved to be there.
+    path = continuation.trace(Cusp())
+    for k, event in enumerate(path.events):
+        for way in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (1.0, -1.0)]:
+            events = list(path.events)
+            events[k] = evolve(event, u=event.u + 0.02 * np.array(way) * np.ptp(path.u, axis=0))
+            assert not continuation.certify(Path(steps=path.steps, events=events, status=path.status), Cusp()).complete
