@@ -24,13 +24,7 @@ from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolve
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.quadratics import exact_end, pairs_form
 from problems.lcp.homotopies.sides import Sides
-from problems.lcp.homotopies.starts import (
-    feasible_start,
-    given_inside,
-    made_of_x0,
-    natural_units,
-    positive_vector,
-)
+from problems.lcp.homotopies.starts import feasible_start, given_inside, made_of_x0, natural_units, positive_vector
 from problems.options import quiet
 
 
@@ -335,8 +329,8 @@ def KojimaMegiddoMizunoHomotopy(
     x0, sides = given_inside(problem, x0), Sides(problem)
     if y0 is None:
         y0 = np.maximum(sides.pull(problem.w(x0)), 0.0) + np.maximum(1.0, np.abs(problem.q))[sides.index]
-    blend = Blend(sign=1, x=_on_free(sides), y=1, A=1)
-    return _made("Kojima-Megiddo-Mizuno", problem, blend, x0, y0, references.KOJIMA_MEGIDDO_MIZUNO, structure)
+    blend, source = Blend(sign=1, x=_on_free(sides), y=1, A=1), references.KOJIMA_MEGIDDO_MIZUNO
+    return _made("Kojima-Megiddo-Mizuno", problem, blend, x0, y0, source, structure)
 
 
 def _on_free(sides: Sides) -> int | Array:
@@ -347,6 +341,5 @@ def _on_free(sides: Sides) -> int | Array:
 def _made(
     name: str, problem: MixedLCP, blend: Blend, x0: Array, y0: Any, source: str, structure: Structure | None
 ) -> TwoVectorHomotopy:
-    y0 = positive_vector("y0", y0, Sides(problem).index.size)
-    shared = structure if structure is not None else Structure(problem)
-    return TwoVectorHomotopy(name, problem, blend, x0, y0, (source, references.DUTTA_DAS_JANA), shared)
+    y0, sources = positive_vector("y0", y0, Sides(problem).index.size), (source, references.DUTTA_DAS_JANA)
+    return TwoVectorHomotopy(name, problem, blend, x0, y0, sources, structure or Structure(problem))
