@@ -98,19 +98,25 @@ def piled(rows: Sequence[Row], error: str, work: str) -> bool:
 
 
 def _time_panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, work: str) -> None:
-    """Work against time, where the error is round-off whatever is done."""
-    failures = []
+    """Work against time, where the error is round-off whatever is done; rows of methods where time is the work."""
+    timed, failures = work == "seconds", []
     for k, name in enumerate(names):
         own = [row for row in rows if row.method == name]
-        placed = [(row.seconds, row.work(work)) for row in own if coordinates(row, error, work) is not None]
+        placed = [
+            (row.seconds, -k if timed else row.work(work)) for row in own if coordinates(row, error, work) is not None
+        ]
         if placed:
             axes.plot(*zip(*placed), **{**line_style(k), "linestyle": "none"})
-        failures += [(k, inf if row.spared else row.work(work)) for row in own if row.failed]
+        failures += [(k, -k if timed else inf if row.spared else row.work(work)) for row in own if row.failed]
     axes.set_xscale("log")
-    axes.set_yscale("log")
     axes.margins(x=0.08, y=0.08)
-    few_ticks(axes.xaxis)
-    few_ticks(axes.yaxis)
+    few_ticks(axes.xaxis, beside=True)
+    if timed:
+        axes.set_yticks([])
+        axes.set_ylabel("a row for each method")
+    else:
+        axes.set_yscale("log")
+        few_ticks(axes.yaxis)
     axes.set_xlabel("seconds (errors are round-off)", fontsize="small")
     _failures(axes, failures, len(names))
 

@@ -78,13 +78,17 @@ def label(axes: Sequence[Axes], across: str, up: str) -> None:
             panel.set_xlabel(across, fontsize="small")
 
 
-def few_ticks(axis: Any) -> None:
-    """Plain numbers at 1, 2 and 5 of each decade, or closer, where the axis spans little; the decades otherwise."""
+def few_ticks(axis: Any, beside: bool = False) -> None:
+    """Plain numbers at 1, 2 and 5 of each decade, or closer, where the axis spans little; the decades otherwise.
+
+    Numbers `beside` each other, and not above, need more room.
+    """
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
-    if high <= 300.0 * low:
-        subs = (1.0, 2.0, 5.0) if high > 10.0 * low else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+    if high <= (100.0 if beside else 300.0) * low:
+        near, far = ((1.0, 2.0, 5.0), (1.0, 3.0)) if beside else ((1.0, 1.5, 2.0, 3.0, 5.0, 7.0), (1.0, 2.0, 5.0))
+        subs = far if high > 10.0 * low else near
         axis.set_major_locator(LogLocator(subs=subs))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
