@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
-from continuation.evaluation.evaluator import Evaluator
+from continuation.arrays import Array, generic_vector
+from continuation.evaluation.evaluator import ULPS, EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
 
 Mask = NDArray[np.bool_]
@@ -166,11 +166,19 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
     """The tangent, with zeros for components that are round-off.
 
-    Which a component of 1e-17 is, that or one of another unit, one step of refinement tells: it replaces round-off by
-    other round-off, and leaves what is known.
+    Which a component of 1e-17 is, that or one of another unit, one step of refinement tells, with H' a few units in the
+    last places away: it replaces round-off, that of H' too, by other round-off, and leaves what is known.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
-    if not small.any() or (apply := evaluator.differential(point.u)) is None:
+    if not small.any():
+        return v
+    beside = point.u + ULPS * np.spacing(np.abs(point.u)) * generic_vector(v.size)
+    try:
+        apply = evaluator.differential(beside)
+    except EvaluationError:
+        # At the edge of a domain.
+        apply = evaluator.differential(point.u)
+    if apply is None:
         return v
     replaced = np.abs(point.solve(-apply(v))) > REPLACED * np.abs(v)
     return np.where(small & replaced, 0.0, v)
