@@ -95,6 +95,11 @@ def members_in_sentences(app, what, name, obj, options, lines):
             lines += [f"``{member.name}`` = {member.value}", f"    {member.__doc__}", ""]
 
 
+def listed_already(app, what, name, obj, skip, options):
+    """Members of an enumeration are in its own description."""
+    return True if isinstance(obj, Described) else None
+
+
 def whole_sentences(app, what, name, obj, options, lines):
     """Napoleon takes what precedes a colon for a type, and the first of two names as well: neither is meant here."""
     for number, line in enumerate(lines):
@@ -151,6 +156,7 @@ def setup(app):
     """Connect the functions above; Sphinx calls it."""
     app.add_html_math_renderer("mathml", (formula, None), (displayed_formula, None))
     app.connect("source-read", show_results)
+    app.connect("autodoc-skip-member", listed_already)
     app.connect("autodoc-process-docstring", members_in_sentences)
     app.connect("autodoc-process-docstring", whole_sentences, priority=800)
     app.connect("autodoc-process-docstring", plain_signs, priority=900)

@@ -176,7 +176,7 @@ class InteriorHomotopy:
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
-        """H."""
+        """The homotopy, shape (n + number of finite bounds,)."""
         n, sides = self.problem.n, self.sides
         x, forces = y[:n], y[n:]
         goal, origin = self._ends(x, forces)
