@@ -131,6 +131,26 @@ def sound_sparse(name: str, value: Any) -> Any:
     return matrix
 
 
+def check_finite(name: str, value: Any) -> None:
+    """A ValueError that says which entry of an array, or sparse matrix, is not finite, if there is one.
+
+    Parameters
+    ----------
+    name : str
+        The argument, for the message.
+    value : ndarray or sparse array
+    """
+    entries = value.data if sp.issparse(value) else value
+    if np.isfinite(entries).all():
+        return
+    at = np.argwhere(~np.isfinite(entries))[0]
+    if sp.issparse(value):
+        value = value.tocoo()
+        at = np.array([value.coords[0][at[0]], value.coords[1][at[0]]])
+    index = int(at[0]) if at.size == 1 else tuple(map(int, at))
+    raise ValueError(f"{name}: expected finite numbers, found {entries[~np.isfinite(entries)][0]} at index {index}")
+
+
 def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
     """A copy of `value` as a vector of finite floats, of the given size if there is one, or ValueError naming it."""
     try:
@@ -142,6 +162,5 @@ def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
         raise ValueError(f"{name}: expected a vector of real numbers, found shape {vector.shape}, dtype {kind}")
     if size is not None and vector.size != size:
         raise ValueError(f"{name}: expected {size} numbers, found {vector.size}")
-    if not np.isfinite(vector).all():
-        raise ValueError(f"{name}: expected finite numbers, found {vector[~np.isfinite(vector)][0]}")
+    check_finite(name, vector)
     return vector

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, Matrix
 from continuation.checks import integer
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
-from problems.options import finite_vector, real_array, sound_sparse
+from problems.options import check_finite, finite_vector, real_array, sound_sparse
 
 State = NDArray[np.int8]
 """Of each index: `LOWER`, `BETWEEN` or `UPPER`. Between the bounds w_i = 0 is asked for."""
@@ -33,15 +33,10 @@ def _q(value: Any) -> Array:
 
 def square_matrix(value: Any) -> Matrix:
     """A finite square float matrix, dense or CSR."""
-    if sp.issparse(value):
-        matrix = sound_sparse("A", value)
-        entries: Array = matrix.data
-    else:
-        matrix = entries = real_array("A", value)
+    matrix = sound_sparse("A", value) if sp.issparse(value) else real_array("A", value)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
-    if not np.isfinite(entries).all():
-        raise ValueError(f"A: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
+    check_finite("A", matrix)
     return matrix
 
 

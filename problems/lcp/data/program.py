@@ -15,7 +15,7 @@ from continuation.arrays import Array, Matrix
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.lcp.data.matrix_structure import semidefinite
 from problems.lcp.data.problem import MixedLCP
-from problems.options import finite_vector, real_array, sound_sparse
+from problems.options import check_finite, finite_vector, real_array, sound_sparse
 
 
 @frozen(eq=False, slots=False)
@@ -230,9 +230,7 @@ def _matrix(name: str, value: Any, columns: int) -> Matrix:
     matrix = sound_sparse(name, value) if sp.issparse(value) else real_array(name, value)
     if matrix.ndim != 2 or matrix.shape[1] != columns:
         raise ValueError(f"{name}: expected {columns} columns, one a number of c, found shape {matrix.shape}")
-    entries = np.asarray(matrix.data if sp.issparse(matrix) else matrix)
-    if not np.isfinite(entries).all():
-        raise ValueError(f"{name}: expected finite numbers, found {entries[~np.isfinite(entries)].flat[0]}")
+    check_finite(name, matrix)
     return matrix
 
 

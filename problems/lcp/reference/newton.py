@@ -11,6 +11,7 @@ from scipy.sparse.linalg import lsmr, splu
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved
+from problems.options import check_finite
 
 _DECREASE = 2e-4
 """Twice Armijo's 1e-4 (Nocedal and Wright, 2006, p. 33), as the merit |min(x, w)|^2 is a square: factor 1 - 2e-4 t."""
@@ -44,8 +45,7 @@ def min_newton(problem: LCP, x0: Array | None = None, max_iterations: int = 300)
     x = np.zeros(problem.n) if x0 is None else np.array(x0, dtype=float)
     if x.shape != (problem.n,):
         raise ValueError(f"x0: expected shape ({problem.n},), found {x.shape}")
-    if not np.isfinite(x).all():
-        raise ValueError(f"x0: expected finite numbers, found {x[~np.isfinite(x)][0]}")
+    check_finite("x0", x)
     for iteration in range(max_iterations):
         w = problem.w(x)
         trial = _line_search(problem, x, _newton_step(problem.A, x > w, -np.minimum(x, w)))

@@ -19,7 +19,7 @@ from problems.lcp.pivoting.lockstep import lemke_bases
 from problems.lcp.proof.stacked import all_faces, faces_in_doubt, judged
 from problems.lcp.search.outcome import Outcome
 from problems.lcp.search.solver import solve
-from problems.options import real_array
+from problems.options import check_finite, real_array
 
 LARGEST_TOGETHER = 20
 """Order up to which problems are pivoted together: at n = 20 a tenth of `solve`'s time each, at n = 50 half."""
@@ -134,8 +134,7 @@ def _stacks(A: Any, q: Any) -> tuple[Array, Array]:
     if matrices.shape not in ((n, n), (k, n, n)):
         raise ValueError(f"A: expected an array of shape {(k, n, n)} or {(n, n)}, found shape {matrices.shape}")
     for name, entries in (("q", constants), ("A", matrices)):
-        if not np.isfinite(entries).all():
-            raise ValueError(f"{name}: expected finite numbers, found {entries[~np.isfinite(entries)][0]}")
+        check_finite(name, entries)
     return np.broadcast_to(matrices, (k, n, n)), constants
 
 

@@ -178,7 +178,7 @@ def test_vectors_are_checked_under_their_name(tmp_path):
     with pytest.raises(InputError, match=r"x0: expected 4 numbers, found 3, in"):
         read_vector("x0", tmp_path / "x0.npy", 4)
     np.save(tmp_path / "x0.npy", [1.0, np.nan])
-    with pytest.raises(InputError, match=r"x0: expected finite numbers, found nan, in"):
+    with pytest.raises(InputError, match=r"x0: expected finite numbers, found nan at index 1, in"):
         read_vector("x0", tmp_path / "x0.npy", 2)
     np.savez(tmp_path / "x0.npz", y=Q)
     with pytest.raises(InputError, match=r"x0: expected an array x0, found y in"):
