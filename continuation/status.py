@@ -15,6 +15,11 @@ class Described(IntEnum):
         member.__doc__ = sentence
         return member
 
+    @property
+    def flag(self) -> str:
+        """The name in lower case, as CF flag_meanings want it."""
+        return self.name.lower()
+
 
 class Status(Described):
     """The end of a path. Numbers are stored in archives: they are added to, never renumbered."""
@@ -48,11 +53,6 @@ class Status(Described):
         """Whether the path came to an end that was asked for: the target, a terminal event, or its own start."""
         return self in (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED)
 
-    @property
-    def flag(self) -> str:
-        """The name in lower case, as CF flag_meanings want it."""
-        return self.name.lower()
-
 
 class Kind(Described):
     """What a stored point is. Numbers are stored in archives: they are added to, never renumbered."""
@@ -69,8 +69,3 @@ class Kind(Described):
 
     def __repr__(self) -> str:
         return f"Kind.{self.name}"
-
-    @property
-    def flag(self) -> str:
-        """The name in lower case, as CF flag_meanings want it."""
-        return self.name.lower()
