@@ -170,7 +170,9 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     if status not in RESUMABLE:
         raise ArchiveError(f"{source.file}: path {last} has ended ({status.name}), there is nothing to resume")
     if status is Status.BUDGET_EXHAUSTED and "budget" not in options:
-        raise ArchiveError(f"{source.file}: the budget of path {last} is used up; pass budget=, a larger one")
+        raise ArchiveError(
+            f"{source.file}: the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
+        )
     checkpoint = source.checkpoint()
     if checkpoint is None or checkpoint.path != last:
         raise ArchiveError(f"{source.file}: path {last} has no state to resume from; trace it again")
