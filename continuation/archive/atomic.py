@@ -141,10 +141,6 @@ def as_file(argument: str, value: Any) -> File:
 def check_new(file: File) -> None:
     """Whether a file can be made there, asked before any work is done.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-
     Raises
     ------
     ArchiveError

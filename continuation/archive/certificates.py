@@ -77,11 +77,6 @@ def _write(group: Any, proof: Proof) -> None:
 def read_cells(archive: Archive, path: int) -> Cells | None:
     """The cells of a stored proof; None where the path has none.
 
-    Parameters
-    ----------
-    archive : Archive
-    path : int
-
     Raises
     ------
     ArchiveError

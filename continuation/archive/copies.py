@@ -45,12 +45,7 @@ class Share:
 
 
 def check_level(compression: Any) -> None:
-    """Raise unless gzip knows the level.
-
-    Parameters
-    ----------
-    compression : int
-    """
+    """Raise unless gzip knows the level."""
     if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
         raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
 

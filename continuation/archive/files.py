@@ -114,10 +114,6 @@ def _check_schema(name: File, opened: Any) -> None:
 def check_writable(file: File) -> None:
     """Whether a file may be replaced.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-
     Raises
     ------
     ArchiveError

@@ -27,10 +27,6 @@ _HEAP = b"GCOL"
 class Image:
     """A file opened for reading, as it would be if its writer had closed it.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-
     Attributes
     ----------
     closed_by_writer : bool

@@ -12,10 +12,6 @@ from continuation.archive.store import Store
 def create(target: File, *arguments: Any, **options: Any) -> Store:
     """A new file, live from the moment on at which it has its name; arguments as for `Store`.
 
-    Parameters
-    ----------
-    target : pathlib.Path
-
     Raises
     ------
     ArchiveError

@@ -20,10 +20,6 @@ _TAKEN = (errno.EAGAIN, errno.EACCES)
 class Lock:
     """A lock on a file, held until `close`, or until the process is gone.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-
     Attributes
     ----------
     taken : bool

@@ -70,12 +70,7 @@ def _tables(path: Path) -> tuple[Layout, dict[str, Any], dict[str, Any], list[st
 
 
 def dataset_of(path: Path) -> Any:
-    """The path as an `xarray.Dataset`.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """The path as an `xarray.Dataset`."""
     layout, points, paths, names, attributes = _tables(path)
     return frames.dataset(
         Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]),
@@ -87,12 +82,7 @@ def dataset_of(path: Path) -> Any:
 
 
 def dataframe_of(path: Path) -> Any:
-    """The path as a `pandas.DataFrame`, with the homotopy's names where it has any, and the events' names.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """The path as a `pandas.DataFrame`, with the homotopy's names where it has any, and the events' names."""
     layout, points, _, names, _ = _tables(path)
     frame = frames.dataframe(Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]))
     frame["event"] = [names[k] if k >= 0 else "" for k in points.get("event_index", ())]

@@ -46,10 +46,6 @@ class Opener(Protocol):
 def kept_every(keep: str) -> int:
     """How many steps apart those lie that stay in memory: 1 for ``"all"``, 0 for ``"ends"``, k for ``"every k"``.
 
-    Parameters
-    ----------
-    keep : str
-
     Raises
     ------
     ValueError

@@ -21,12 +21,7 @@ DOOR = (
 
 
 def importable(name: str) -> None:
-    """Let ``module:object`` be found in the working directory, which a program started by its script does not see.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """Let ``module:object`` be found in the working directory, which a program started by its script does not see."""
     if ":" in name and os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
 

@@ -21,11 +21,6 @@ from problems.scenes.scene import Quantities, Rival, Unknown, positive
 def radial(n: int, width: float) -> tuple[Array, Any]:
     """Radii 0, h, ..., (n - 1) h and -(r u')' on them, by finite volumes, for u = 0 at the width.
 
-    Parameters
-    ----------
-    n : int
-    width : float
-
     Returns
     -------
     r : ndarray, shape (n,)

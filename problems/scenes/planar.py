@@ -81,12 +81,7 @@ def impulses(x: Array) -> Array:
 
 
 def contact_unknowns(contacts: int) -> tuple[Unknown, ...]:
-    """Those of a time step.
-
-    Parameters
-    ----------
-    contacts : int
-    """
+    """Those of a time step."""
     return (
         Unknown("normal impulses", contacts, "what keeps bodies apart"),
         Unknown("tangential impulses", 2 * contacts, "friction, one for each of the two directions of an edge"),

@@ -53,24 +53,14 @@ def _arrived(x: Any, well: bool, message: object) -> Array:
 
 
 def by_quantecon(problem: Any) -> Array:
-    """Lemke's method on tables, compiled.
-
-    Parameters
-    ----------
-    problem : LCP
-    """
+    """Lemke's method on tables, compiled."""
     found = conditions(problem)
     result = import_module("quantecon.optimize").lcp_lemke(_dense(found.A), found.q, max_iter=100 * found.n)
     return _arrived(result.z, result.success, f"status {result.status}")
 
 
 def by_tables(problem: Any) -> Array:
-    """Lemke's method on tables of numpy.
-
-    Parameters
-    ----------
-    problem : LCP
-    """
+    """Lemke's method on tables of numpy."""
     result = lemke(conditions(problem))
     return _arrived(result.x, result.solved, result.message)
 
@@ -111,12 +101,7 @@ def _gauss_seidel(problem: Any) -> Array:
 
 
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
-    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a symmetric problem with bounds.
-
-    Parameters
-    ----------
-    problem : Program or MixedLCP
-    """
+    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a symmetric problem with bounds."""
     found = conditions(problem)
     if not isinstance(problem, Program):
         none = sp.csr_array((0, found.n))

@@ -222,13 +222,7 @@ def positive(default: float) -> Any:
 
 
 def mismatch(scene: Any, solution: Any) -> float:
-    """How far an answer is from the exact one, relative to each quantity; NaN where none is known.
-
-    Parameters
-    ----------
-    scene : Scene
-    solution : Solution, Path or other
-    """
+    """How far an answer is from the exact one, relative to each quantity; NaN where none is known."""
     return error(scene.answer(solution), scene.exact())
 
 

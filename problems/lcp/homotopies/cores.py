@@ -51,14 +51,7 @@ class Recent(Generic[System]):
     found: tuple[bytes, float, System] | None = None
 
     def at(self, y: Array, lam: float, make: Callable[[Array, float], System]) -> System:
-        """The system at a point, made of a copy of y.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        make : callable
-        """
+        """The system at a point, made of a copy of y."""
         found, entries = self.found, y.tobytes()
         if found is None or found[:2] != (entries, lam):
             self.found = found = entries, lam, make(y.copy(), lam)
@@ -142,12 +135,7 @@ def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
 
 
 def parity(count: int | np.intp) -> int:
-    """1 for an even number of changes of sign, else -1.
-
-    Parameters
-    ----------
-    count : int
-    """
+    """1 for an even number of changes of sign, else -1."""
     return -1 if count % 2 else 1
 
 

@@ -39,10 +39,6 @@ def kkt_form(homotopy: Any) -> Quadratic:
 
     With bounds x stands for the distances from them, and ``(width - z2) t - lam c3`` is added for boxes; the row of an
     index without bounds is ``A x + q + lam (rho - give z0) + (lam) (give z2)``.
-
-    Parameters
-    ----------
-    homotopy : KKTHomotopy
     """
     problem, rows, n, N = homotopy.problem, homotopy.rows, homotopy.n, homotopy.rows.size
     A, q, sides = _dense(problem.A), problem.q, rows.sides
@@ -84,12 +80,7 @@ def kkt_form(homotopy: Any) -> Quadratic:
 
 
 def pairs_form(homotopy: Any) -> Quadratic:
-    """``sign (goal + lam (origin - goal))`` and ``gap y - lam c``, for the homotopies in (x, y).
-
-    Parameters
-    ----------
-    homotopy : TwoVectorHomotopy
-    """
+    """``sign (goal + lam (origin - goal))`` and ``gap y - lam c``, for the homotopies in (x, y)."""
     problem, blend, sides, n = homotopy.problem, homotopy.blend, homotopy.sides, homotopy.n
     A, count = _dense(problem.A), sides.index.size
     pull = sides.sign[:, None] * np.eye(n)[sides.index]

@@ -116,13 +116,7 @@ def inside_vector(name: str, value: Any, problem: MixedLCP, bounds: tuple[Array,
 
 
 def inside_start(problem: MixedLCP, distance: float = 1.0) -> Array:
-    """The point nearest to zero at a distance from all bounds, or in the middle between two that are nearer.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    distance : float
-    """
+    """The point nearest to zero at a distance from all bounds, or in the middle between two that are nearer."""
     if problem.standard:
         return np.full(problem.n, distance)
     # Halves, as the difference of two bounds may overflow.
@@ -251,11 +245,6 @@ def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, 
 
 def kkt_start(problem: MixedLCP, x0: Any, z1: Any, z2: Any, w0: Any) -> Start:
     """The given vectors, checked, with the defaults of `KKTHomotopy` for the others.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x0, z1, z2, w0 : array_like or None
 
     Raises
     ------
