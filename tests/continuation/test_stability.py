@@ -311,10 +311,3 @@ def test_a_scalar_of_the_homotopy_with_the_same_name_is_refused():
 
     with pytest.raises(ValueError, match="observe: expected each name once, found 'unstable' of an event too"):
         trace(Counting(), observers=[Stability()])
-
-
-@pytest.mark.parametrize("options", [{"side": 0}, {"side": 2}, {"k": 0}, {"terminal": -1}])
-def test_bad_options_are_refused(options):
-    for part in (Stability, HopfPoint):
-        with pytest.raises(ValueError, match=next(iter(options))):
-            part(**options)

@@ -65,8 +65,3 @@ def test_a_path_of_another_problem_is_not_proved():
     steps = [path.steps[0], *path.steps[2:]]
     with pytest.raises(UnprovenError, match="path: "):
         prove_path(problem, np.ones(3), evolve(path, steps=steps, events=[]))
-
-
-def test_bad_input_is_refused():
-    with pytest.raises(ValueError, match="path: expected two points of 3 unknowns"):
-        prove_path(murty(3), np.ones(3), along(murty(2), np.ones(2), (np.inf, 0.0)))
