@@ -29,10 +29,6 @@ _ABANDONED = 60.0
 def beside(target: File) -> Iterator[File]:
     """A new name beside `target`, to be written and then published; what is left under it in the end is removed.
 
-    Parameters
-    ----------
-    target : pathlib.Path
-
     Raises
     ------
     ArchiveError

@@ -86,12 +86,7 @@ def _literal(text: str) -> Any:
 
 @contextmanager
 def unknown(name: str) -> Iterator[None]:
-    """Report a name that no homotopy has.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """Report a name that no homotopy has."""
     try:
         yield
     except plugins.PluginError as error:

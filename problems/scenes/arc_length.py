@@ -51,11 +51,6 @@ def follow(problem: NormalMap, load: float) -> Turns:
 
     A step that leaves the set is made shorter, to end where it does; from there the next set goes on.
 
-    Parameters
-    ----------
-    problem : NormalMap
-    load : float
-
     Raises
     ------
     ArithmeticError

@@ -150,12 +150,7 @@ def solve(scene: Any) -> Any:
 
 
 def conditions(problem: Any) -> Any:
-    """The complementarity problem that is solved: of a program its optimality conditions, else the problem itself.
-
-    Parameters
-    ----------
-    problem : LCP, MixedLCP, Program or homotopy
-    """
+    """The complementarity problem that is solved: of a program its optimality conditions, else the problem itself."""
     return problem.problem if isinstance(problem, Program) else problem
 
 
@@ -212,12 +207,7 @@ def numbers(name: str, default: tuple[float, ...]) -> Any:
 
 
 def positive(default: float) -> Any:
-    """A field with a positive number.
-
-    Parameters
-    ----------
-    default : float
-    """
+    """A field with a positive number."""
     return field(default=default, validator=POSITIVE_FINITE)
 
 

@@ -22,12 +22,7 @@ _NONE = np.zeros(0)
 
 @frozen(eq=False, slots=False)
 class Rows:
-    """What the rows of a problem ask for.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    """
+    """What the rows of a problem ask for."""
 
     problem: MixedLCP | LCP
 
@@ -75,12 +70,7 @@ class Rows:
         return lower, upper
 
     def split(self, y: Array) -> tuple[Array, Array, Array, Array]:
-        """The blocks x, z1, z2 and t of y, or of increments of it, as views.
-
-        Parameters
-        ----------
-        y : ndarray
-        """
+        """The blocks x, z1, z2 and t of y, or of increments of it, as views."""
         n, m, k = self._ends
         return y[:n], y[n:m], y[m:k], y[k:]
 
