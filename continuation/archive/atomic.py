@@ -29,10 +29,7 @@ _ABANDONED = 60.0
 def beside(target: File) -> Iterator[File]:
     """A new name beside `target`, to be written and then published; what is left under it in the end is removed.
 
-    Raises
-    ------
-    ArchiveError
-        For whatever the operating system says while it is written.
+    Raises `ArchiveError` for whatever the operating system says while it is written.
     """
     _tidy(target)
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
@@ -122,13 +119,7 @@ def _tidy(target: File) -> None:
 
 
 def as_file(argument: str, value: Any) -> File:
-    """The path that an argument is.
-
-    Raises
-    ------
-    TypeError
-        If it is no name of a file.
-    """
+    """The path that an argument is; `TypeError` if it is no name of a file."""
     if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
         raise complain(TypeError, argument, "the name of a file", value)
     return File(value)
@@ -137,10 +128,7 @@ def as_file(argument: str, value: Any) -> File:
 def check_new(file: File) -> None:
     """Whether a file can be made there, asked before any work is done.
 
-    Raises
-    ------
-    ArchiveError
-        If it exists, or its directory does not, or may not be written.
+    Raises `ArchiveError` if it exists, or its directory does not, or may not be written.
     """
     try:
         if "\0" in str(file):

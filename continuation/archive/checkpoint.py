@@ -90,10 +90,7 @@ class _Arrays:
 def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> np.ndarray[Any, Any]:
     """The first bytes as an array of numbers, not copied: never larger than they are.
 
-    Raises
-    ------
-    ValueError
-        If it is to hold something else than numbers, or more than the bytes do.
+    Raises `ValueError` if it is to hold something else than numbers, or more than the bytes do.
     """
     kind = np.dtype(dtype)
     count = math.prod(shape)

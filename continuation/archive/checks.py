@@ -67,13 +67,7 @@ def blank() -> Array:
 
 
 def latest(records: Array) -> Committed:
-    """The last commit that was completed.
-
-    Raises
-    ------
-    DamageError
-        If the records do not tell.
-    """
+    """The last commit that was completed; `DamageError` if the records do not tell."""
     found = [_unpack(record.tobytes()) for record in records]
     commits = [commit for commit in found[PLACES:] if commit is not None]
     if not commits:
@@ -154,10 +148,7 @@ class Ledger:
     def read(self, name: str, rows: slice, fetch: Callable[[slice], Array]) -> Array:
         """Rows of a column, checked; `fetch` reads them.
 
-        Raises
-        ------
-        DamageError
-            If some of their blocks are not what was written.
+        Raises `DamageError` if some of their blocks are not what was written.
         """
         whole = self.covering(rows)
         values = fetch(whole)

@@ -102,10 +102,7 @@ def write_copy(
 ) -> Store:
     """Concatenate shares into a new file, which is still open.
 
-    Raises
-    ------
-    ArchiveError
-        If the archives differ in the number of unknowns, or the file cannot be written.
+    Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
     """
     sources = [share.source for share in shares]
     problem = leading(sources).problem()

@@ -31,10 +31,7 @@ class StructureError(ValueError):
 def member(group: Any, name: str) -> Any:
     """A group or dataset in a group, by a hard link.
 
-    Raises
-    ------
-    StructureError
-        If there is none of that name, or it is a link to somewhere else.
+    Raises `StructureError` if there is none of that name, or it is a link to somewhere else.
     """
     raw = name.encode()
     if raw not in group.id:
@@ -52,13 +49,7 @@ def names(group: Any) -> list[str]:
 
 
 def subgroup(group: Any, name: str) -> Any:
-    """A group in a group.
-
-    Raises
-    ------
-    StructureError
-        If it is anything else.
-    """
+    """A group in a group; `StructureError` if it is anything else."""
     found = member(group, name)
     if not isinstance(found, h5py.Group):
         raise StructureError(f"{name} is no group")
@@ -115,10 +106,7 @@ def dataset(
 def check_size(found: Any, claimed: int, limit: int = LIMIT) -> None:
     """Whether so many bytes may be read of a dataset.
 
-    Raises
-    ------
-    StructureError
-        If less is stored, or more than the limit would unfold from what is.
+    Raises `StructureError` if less is stored, or more than the limit would unfold from what is.
     """
     stored = found.id.get_storage_size()
     if claimed <= stored:

@@ -112,13 +112,7 @@ def _check_schema(name: File, opened: Any) -> None:
 
 
 def check_writable(file: File) -> None:
-    """Whether a file may be replaced.
-
-    Raises
-    ------
-    ArchiveError
-        If it is read-only, or its directory is.
-    """
+    """Whether a file may be replaced; `ArchiveError` if it is read-only, or its directory is."""
     # The mode too, since root may write everything: who took the right away meant it.
     if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
         raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")

@@ -242,10 +242,7 @@ def _check(file: File, head: bytes) -> None:
 def _check_heap(heap: memoryview) -> None:
     """Whether the objects of a global heap, which has no checksum, fill it: HDF5 goes round for ever in one of zeros.
 
-    Raises
-    ------
-    OSError
-        If they do not.
+    Raises `OSError` if they do not.
     """
     (size,) = struct.unpack_from("<Q", heap, 8)
     at = 16

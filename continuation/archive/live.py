@@ -12,10 +12,7 @@ from continuation.archive.store import Store
 def create(target: File, *arguments: Any, **options: Any) -> Store:
     """A new file, live from the moment on at which it has its name; arguments as for `Store`.
 
-    Raises
-    ------
-    ArchiveError
-        If the file exists or cannot be made.
+    Raises `ArchiveError` if the file exists or cannot be made.
     """
     check_new(target)
     with beside(target) as part:

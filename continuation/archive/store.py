@@ -121,13 +121,7 @@ class Store:
         self._h5.swmr_mode = True
 
     def finish(self, *, sync: bool = True) -> None:
-        """Close the file, on the disk when this returns.
-
-        Raises
-        ------
-        OSError
-            If some of it could not be written.
-        """
+        """Close the file, on the disk when this returns; `OSError` if some of it could not be written."""
         sink = self._sink
         assert sink is not None
         try:

@@ -46,10 +46,7 @@ class Opener(Protocol):
 def kept_every(keep: str) -> int:
     """How many steps apart those lie that stay in memory: 1 for ``"all"``, 0 for ``"ends"``, k for ``"every k"``.
 
-    Raises
-    ------
-    ValueError
-        For anything else.
+    Raises `ValueError` for anything else.
     """
     if keep in ("all", "ends"):
         return int(keep == "all")
