@@ -46,21 +46,9 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Give a complete file its name, in one step.
+    """Give a complete file its name in the same directory, in one step; `replace` takes the place of an old one.
 
-    Parameters
-    ----------
-    part, target : pathlib.Path
-        In the same directory.
-    replace : bool
-        Take the place of an old file of that name; else there must be none.
-
-    Raises
-    ------
-    ArchiveExistsError
-        If there is one.
-    OSError
-        For anything else.
+    Raises `ArchiveExistsError` if there is one and it is not to be replaced, `OSError` for anything else.
     """
     if replace:
         os.replace(part, target)

@@ -102,13 +102,7 @@ def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F
 def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Options and homotopy of a tracer as JSON; what cannot be stored is said in its place, under "unstorable".
 
-    Parameters
-    ----------
-    tracer : Tracer
-    member : int or None
-        Index of the homotopy in its sweep.
-    homotopy : mapping, optional
-        The homotopy's description, where its arrays are in the file's own problem group.
+    `member` is the index in a sweep; `homotopy` describes one whose arrays are in the file's own problem group.
     """
     options = {name: _described(value) for name, value in _options(tracer).items()}
     return {"options": options, "homotopy": homotopy or _described(tracer.homotopy), "member": member}

@@ -61,21 +61,9 @@ def dataset(
 ) -> Any:
     """A dataset in a group, its storage checked.
 
-    Parameters
-    ----------
-    group : h5py.Group
-    name : str
-    kind : dtype, optional
-        What it holds; any numbers without it.
-    shape : sequence of int or None, optional
-        Its shape; None for a length that is checked when rows are read.
-    limit : int
-        Bytes that it may unfold to where it is compressed.
-
-    Raises
-    ------
-    StructureError
-        If it is something else, or could be larger than what is stored of it.
+    Without a `kind` it holds any numbers; a length of None is checked when rows are read; `limit` counts the bytes that
+    it may unfold to where it is compressed. Raises `StructureError` if it is something else, or could be larger than
+    what is stored of it.
     """
     found = member(group, name)
     if not isinstance(found, h5py.Dataset):

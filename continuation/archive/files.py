@@ -29,18 +29,9 @@ FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError
 
 
 def open_for_reading(file: str | PathLike[str], *, truncated: bool = False) -> tuple[Any, Image]:
-    """The open HDF5 file, and the bytes under it.
+    """The open HDF5 file, and the bytes under it; where the end is missing, with zeros there if `truncated`.
 
-    Parameters
-    ----------
-    file : path
-    truncated : bool
-        Whether a file whose end is missing is read all the same, with zeros there.
-
-    Raises
-    ------
-    ArchiveError
-        For a file that is missing, unreadable, not HDF5, truncated, foreign, or of a newer schema.
+    Raises `ArchiveError` for a file that is missing, unreadable, not HDF5, truncated, foreign, or of a newer schema.
     """
     name = File(file)
     image = Image(name)

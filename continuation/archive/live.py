@@ -20,15 +20,7 @@ def create(target: File, *arguments: Any, **options: Any) -> Store:
 
 
 def publish_live(store: Store, target: File, *, replace: bool = False) -> Store:
-    """Let a file written beside go live, and give it its name.
-
-    Parameters
-    ----------
-    store : Store
-    target : pathlib.Path
-    replace : bool
-        As for `publish`.
-    """
+    """Let a file written beside go live, and give it its name, as `publish` does."""
     part = store.file
     try:
         store.go_live()

@@ -86,19 +86,8 @@ def is_held(file: File) -> bool:
 def locked(file: File, descriptor: int, writer: str, *, force: bool = False) -> Lock:
     """The lock on a file that is to be replaced; by force also where another has it.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-    descriptor : int
-        Of the file as it was read.
-    writer : str
-        Who wrote it last, for the message.
-    force : bool
-
-    Raises
-    ------
-    ArchiveError
-        If its writer is at work, or the file was replaced this very moment.
+    `descriptor` is of the file as it was read, `writer` who wrote it last. Raises `ArchiveError` if its writer is at
+    work, or the file was replaced this very moment.
     """
     lock = Lock(file)
     if not force and not lock.taken:

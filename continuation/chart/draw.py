@@ -85,14 +85,7 @@ class Precision:
 
 
 def piled(rows: Sequence[Row], error: str, work: str) -> bool:
-    """Whether nearly all errors of a panel are round-off.
-
-    Parameters
-    ----------
-    rows : sequence of Row
-    error, work : str
-        Names in `Row.errors` and `WORK`.
-    """
+    """Whether nearly all errors of a panel are round-off."""
     found = [point[0] for row in rows if (point := coordinates(row, error, work)) is not None]
     return bool(found) and sum(e <= FLOOR for e in found) >= PILED * len(found)
 

@@ -67,15 +67,7 @@ class Subparsers(Protocol):
 
 
 def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
-    """A word in green or red on a terminal; as it is elsewhere, and where NO_COLOR is set (https://no-color.org).
-
-    Parameters
-    ----------
-    text : str
-    good : bool
-    stream : text stream, optional
-        stdout by default.
-    """
+    """A word in green or red on a terminal; as it is elsewhere, and where NO_COLOR is set (https://no-color.org)."""
     stream = sys.stdout if stream is None else stream
     if not stream.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return text

@@ -24,15 +24,7 @@ SWEEPS = 200_000
 
 
 def of_problem(name: str, module: str, method: Callable[[Any], Array]) -> Rival:
-    """A rival that takes the problem of a scene and returns its unknowns, or the first of them.
-
-    Parameters
-    ----------
-    name, module : str
-        As for `Rival`.
-    method : callable
-        The problem to a vector.
-    """
+    """A rival that takes the problem of a scene and returns its unknowns, or the first of them."""
 
     def run(scene: Any) -> Quantities:
         found: Quantities = scene.answer(Point(np.asarray(method(scene.problem()), dtype=float)))

@@ -191,14 +191,7 @@ def memory(problem: Any) -> int:
 
 
 def numbers(name: str, default: tuple[float, ...]) -> Any:
-    """A field with a tuple of finite numbers, so that a scene is a value that can be compared.
-
-    Parameters
-    ----------
-    name : str
-        Of the field, for the message.
-    default : tuple of float
-    """
+    """A field with a tuple of finite numbers, so that a scene is a value that can be compared."""
 
     def convert(value: Any) -> tuple[float, ...]:
         return tuple(finite_vector(name, value).tolist())

@@ -16,15 +16,9 @@ from problems.scenes.scene import Quantities, Rival, Unknown, numbers, positive
 
 
 def trade(supply: tuple[Array, Array], demand: tuple[Array, Array], freight: Array) -> LCP:
-    """The flows from m places of supply to k of demand, by rows, with linear prices and costs of freight.
+    """The flows from m places of supply to k of demand, by rows, with linear prices and costs of freight, shape (m, k).
 
-    Parameters
-    ----------
-    supply : (ndarray, ndarray)
-        Prices at no supply, and by how much they rise with each unit; shape (m,).
-    demand : (ndarray, ndarray)
-        Prices at no demand, and by how much they fall; shape (k,).
-    freight : ndarray, shape (m, k)
+    Supply and demand are the prices at no supply or demand, and by how much they rise or fall with each unit.
     """
     (a, b), (c, e) = supply, demand
     out, to = np.kron(np.eye(a.size), np.ones((1, c.size))), np.kron(np.ones((1, a.size)), np.eye(c.size))

@@ -77,15 +77,7 @@ def plain(homotopy: Any) -> Rescaled:
 
 
 def rescaled(homotopy: Any, extent: Array, generator: np.random.Generator) -> Rescaled:
-    """In random units, with zero at a random place.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    extent : ndarray, shape (N + 1,)
-        Of the path, by which shifts are measured.
-    generator : numpy.random.Generator
-    """
+    """In random units, with zero at a random place; shifts are measured by the path's extent."""
     n = extent.size - 1
     D, E = (10.0 ** generator.uniform(-DECADES, DECADES, n) for _ in range(2))
     a = float(10.0 ** generator.uniform(-DECADES, DECADES))

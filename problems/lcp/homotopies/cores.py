@@ -96,13 +96,7 @@ class Pairs:
 
 @_silently
 def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate every p: what is left keeps the symmetry of the core.
-
-    Parameters
-    ----------
-    s, x, c : Array of shape (n,)
-        Of the pairs ``s v + x p - c l = r``.
-    """
+    """Eliminate every p of the pairs ``s v + x p - c l = r``: what is left keeps the symmetry of the core."""
     f = 1.0 / x
     ones, zeros = np.ones_like(x), np.zeros_like(x)
     return Pairs(ones, -s * f, zeros, f, c, parity(np.count_nonzero(x < 0.0)))
@@ -110,12 +104,9 @@ def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
 
 @_silently
 def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate the unknown with the larger coefficient: no cancellation, and either coefficient may be zero.
+    """Eliminate of ``s v + x p - c l = r`` the unknown with the larger coefficient.
 
-    Parameters
-    ----------
-    s, x, c : Array of shape (n,)
-        Of the pairs ``s v + x p - c l = r``.
+    There is no cancellation, and either coefficient may be zero.
     """
     swapped = np.abs(x) < np.abs(s)
     pivot = np.where(swapped, s, x)
@@ -284,21 +275,10 @@ class CoreSystem:
 def core_system(
     full: Full, quick: BorderedSystem | None, make_robust: Callable[[], BorderedSystem], refine: bool
 ) -> BorderedSystem:
-    """The system to solve with: the quick core alone, or both, corrected.
+    """The system to solve with: the quick core alone, or both, corrected; without `refine` the quick core as it is.
 
-    Parameters
-    ----------
-    full : Full
-    quick : BorderedSystem or None
-    make_robust : callable
-        Called only where the quick core fails.
-    refine : bool
-        Whether solutions are corrected in full; without it a quick core is taken as it is.
-
-    Raises
-    ------
-    SingularError
-        If there is no quick core and the robust one has no factorisation: said here, not at the first solve.
+    Raises `SingularError` if there is no quick core and the robust one has no factorisation: said here, not at the
+    first solve.
     """
     if quick is not None and not refine:
         return quick

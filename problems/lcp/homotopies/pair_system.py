@@ -108,19 +108,8 @@ def factor_pairs(system: PairSystem, border: Array, refine: bool = True) -> Bord
 
     With y eliminated the core is alpha A + beta I + gamma diag(y/x), with s/(x-l) + t/(u-x) for y/x: Cholesky if A is
     symmetric positive semidefinite and alpha, beta, gamma >= 0. Else of each index the unknown with the larger
-    coefficient is kept, for LU.
-
-    Parameters
-    ----------
-    system : PairSystem
-    border : Array
-    refine : bool
-        Whether solutions are corrected in full. Without it they are those of the definite core, where there is one.
-
-    Raises
-    ------
-    SingularError
-        If no core has a factorisation.
+    coefficient is kept, for LU. Without `refine` solutions are those of the definite core, where there is one. Raises
+    `SingularError` if no core has a factorisation.
     """
     full = Full(system.apply, border, (system.sizes, system.y))
 

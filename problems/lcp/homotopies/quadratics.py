@@ -16,13 +16,7 @@ AWAY = 1e-6
 
 
 def exact_end(problem: MixedLCP, x: Array) -> str:
-    """What is proved of the end x of a path, in rational arithmetic; empty where nothing is.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x : ndarray, shape (n,)
-    """
+    """What is proved of the end x of a path, in rational arithmetic; empty where nothing is."""
     found = certify_exactly(problem, x)
     if not found.solves:
         return ""

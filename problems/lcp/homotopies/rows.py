@@ -85,13 +85,7 @@ class Rows:
         return 2 * self.problem.n + self.sides.index.size + self.boxed.size
 
     def raised(self, w: Array, t: Array) -> Array:
-        """What z is complementary to: w, and s = w + t in a box.
-
-        Parameters
-        ----------
-        w : ndarray, shape (n,)
-        t : ndarray, one a box
-        """
+        """What z is complementary to: w, and s = w + t in a box."""
         if not self.boxed.size:
             return w
         raised = w.copy()
@@ -99,26 +93,14 @@ class Rows:
         return raised
 
     def inside(self, z: Array, s: Array, t: Array) -> Array:
-        """What has to be positive: s, z and, in boxes, t and u - l - z.
-
-        Parameters
-        ----------
-        z, s : ndarray, shape (n,)
-        t : ndarray, one a box
-        """
+        """What has to be positive: s, z and, in boxes, t and u - l - z."""
         inside = self.moved(z, s, t)
         if self.boxed.size:
             inside[-self.boxed.size :] += self.width
         return inside
 
     def moved(self, z: Array, s: Array, t: Array) -> Array:
-        """How `inside` changes with increments of z, s and t.
-
-        Parameters
-        ----------
-        z, s : ndarray, shape (n,)
-        t : ndarray, one a box
-        """
+        """How `inside` changes with increments of z, s and t."""
         if self.problem.standard:
             return np.concatenate([s, z])
         bounded = ~self.free
@@ -192,14 +174,8 @@ class RowPairs:
 def row_pairs(rows: Rows, factor: Array, rest: Array, c: Array, z: Array, t: Array, c3: Array) -> RowPairs:
     """Solve the equations of boxes for the unknown with the larger coefficient.
 
-    Parameters
-    ----------
-    rows : Rows
-    factor, rest, c : ndarray, shape (n,)
-        Of ``factor (dw + dt) + rest dz - c l``, with dt in boxes.
-    z : ndarray, shape (n,)
-        The multipliers.
-    t, c3 : ndarray, one a box
+    The rows are ``factor (dw + dt) + rest dz - c l``, with dt in boxes, z their multipliers; t and c3 have one number a
+    box.
     """
     boxed = rows.boxed
     if not boxed.size:
