@@ -1,5 +1,10 @@
 """What tests of several rooms have in common."""
 
+import importlib.util
+import sys
+from functools import cache
+from pathlib import Path
+
 import pytest
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES
@@ -8,6 +13,25 @@ from continuation.archive import ArchiveError
 
 def by_preset(*presets):
     return pytest.mark.parametrize("preset", presets, ids=lambda preset: preset.name)
+
+
+@cache
+def load(file):
+    """A module by its file, which may import from its own folder."""
+    name = "_".join(file.with_suffix("").parts[-2:])
+    spec = importlib.util.spec_from_file_location(name, file)
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    sys.path.insert(0, str(file.parent))
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(file.parent))
+    return module
+
+
+def benchmark(name):
+    """A module of the benchmarks, by its path below them."""
+    return load(Path(__file__).parents[1] / "examples" / "benchmarks" / name)
 
 
 every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE)

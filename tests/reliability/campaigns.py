@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import importlib.util
 import io
 import os
 import resource
@@ -27,7 +26,8 @@ from continuation.controllers import Bounds, Fixed
 from problems import lcp
 from problems.bifurcation import Cusp, ExponentialCosine
 
-BENCHMARKS = Path(__file__).parents[2] / "examples" / "benchmarks"
+from ..util import benchmark
+
 HOMOTOPY = ExponentialCosine(3)
 OPTIONS: dict[str, Any] = {"controller": Fixed(bounds=Bounds(initial=0.02))}
 
@@ -46,19 +46,6 @@ class Found:
     done: int
     wrong: int
     text: str
-
-
-def benchmark(name: str) -> Any:
-    """A module of the benchmarks, by its path below them."""
-    file = BENCHMARKS / name
-    sys.path.insert(0, str(file.parent))
-    spec = importlib.util.spec_from_file_location(file.stem, file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[file.stem] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 def printed(run: Callable[[], Any]) -> tuple[Any, list[str]]:

@@ -1,8 +1,6 @@
 """`solve_many`: the answers of `solve`, of many problems at once; nothing is accepted that `solve` would not accept."""
 
-import runpy
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,8 +13,10 @@ from problems.lcp.proof.stacked import faces_in_doubt, judged
 from problems.lcp.reference.enumeration import solve_by_enumeration
 from problems.lcp.search import many
 
-BENCHMARK = runpy.run_path(str(Path(__file__).parents[4] / "examples" / "benchmarks" / "size" / "run.py"))
-KINDS = {kind.__name__: kind for kind in BENCHMARK["KINDS"]}
+from ....util import benchmark
+
+campaign = benchmark("size/run.py")
+KINDS = {kind.__name__: kind for kind in campaign.KINDS}
 
 
 @pytest.fixture
@@ -152,6 +152,6 @@ def test_bad_input_is_refused_by_name(A, q, message):
 
 @pytest.mark.parametrize("name", ["together", "agreement"])
 def test_a_table_of_the_benchmark(name, capsys):
-    BENCHMARK[name]({"together": 100, "agreement": 1000}[name])
+    getattr(campaign, name)({"together": 100, "agreement": 1000}[name])
     said = capsys.readouterr().out
     assert {"together": "100 certified", "agreement": "p_matrices: 0 differ"}[name] in said
