@@ -188,9 +188,6 @@ def test_steps_are_no_longer_than_asked():
     path = continuation.trace(FreudensteinRoth(), max_step=0.1)
     assert max(step.step_length for step in path.steps) <= 0.1
     assert path.status is Status.REACHED_TARGET
-    for wrong in (0.0, -1.0, "a", 1e-30):
-        with pytest.raises(ValueError, match="max_step: expected"):
-            continuation.trace(FreudensteinRoth(), max_step=wrong)
 
 
 def test_a_budget_of_arclength():
