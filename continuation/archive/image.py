@@ -149,7 +149,7 @@ class Sink:
         return bytes(buffer)
 
     def readinto(self, buffer: bytearray) -> int:
-        """Fill the buffer; what could not be written is read all the same, so that HDF5 can close in peace."""
+        """Fill the buffer; what could not be written is read all the same, so that HDF5 can close the file."""
         view = memoryview(buffer).cast("B")
         got = os.pread(self.descriptor, len(view), self._at)
         view[: len(got)] = got
@@ -196,7 +196,7 @@ class Sink:
 
 
 def to_nowhere(descriptor: int) -> None:
-    """Let the descriptor of a file stand for another one, which nobody sees."""
+    """Let the descriptor of a file stand for another file, which is thrown away."""
     # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
     limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
     if limited or not hasattr(os, "memfd_create"):
@@ -240,7 +240,7 @@ def _check(file: File, head: bytes) -> None:
 
 
 def _check_heap(heap: memoryview) -> None:
-    """Whether the objects of a global heap, which has no checksum, fill it: HDF5 goes round for ever in one of zeros.
+    """Whether the objects of a global heap, which has no checksum, fill it: in one of zeros HDF5 loops without end.
 
     Raises `OSError` if they do not.
     """

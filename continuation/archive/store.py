@@ -45,7 +45,7 @@ Block = Mapping[str, np.ndarray[Any, Any]]
 
 
 class Store:
-    """A file being written. It is made by Python's hand (`Sink`), and either finished so, or goes live under SWMR.
+    """A file being written. HDF5 writes it through `Sink`; it is finished so, or goes live under SWMR.
 
     Parameters
     ----------

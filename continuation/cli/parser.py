@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Callable
@@ -83,6 +84,11 @@ def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], ex
     except ValueError:
         pass
     raise argparse.ArgumentTypeError(f"expected {expected}, found {text!r}")
+
+
+def above_zero(text: str) -> float:
+    """A positive number, for the `type` of an argument."""
+    return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
 
 
 def positive(text: str) -> int:

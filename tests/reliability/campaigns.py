@@ -26,7 +26,7 @@ from continuation.controllers import Bounds, Fixed
 from problems import lcp
 from problems.bifurcation import Cusp, ExponentialCosine
 
-from ..util import benchmark
+from ..util import benchmark, in_child
 
 HOMOTOPY = ExponentialCosine(3)
 OPTIONS: dict[str, Any] = {"controller": Fixed(bounds=Bounds(initial=0.02))}
@@ -97,23 +97,6 @@ def bad_input(folder: Path, size: int) -> Found:
     wrong = sum(seen.values()) - seen["refused"]
     others = "; ".join(what for what in seen if what != "refused")
     return Found(sum(seen.values()), wrong, f"{seen['refused']} refused by name in one line; {others or 'no other'}")
-
-
-def in_child(work: Callable[[], object]) -> int:
-    """The exit status of a process that does it: 0, 7 for an ArchiveError of one line, 8 for anything else."""
-    process = os.fork()
-    if process:
-        return os.waitpid(process, 0)[1]
-    status = 0
-    try:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        work()
-    except ArchiveError as error:
-        status = 7 if "\n" not in str(error) else 8
-    except BaseException:
-        status = 8
-    finally:
-        os._exit(status)
 
 
 def _prefix(file: Path, whole: Any, least: int = 0) -> bool:
