@@ -78,7 +78,7 @@ class SpatialPrices:
         return trade(supply, (np.array(self.bids), np.full(k, self.fall)), self._costs)
 
     def answer(self, solution: Any) -> Quantities:
-        """Flows, and prices at both ends. Flows on ways of equal cost may be exchanged, prices and the trade may not."""
+        """Flows, and prices at both ends. Flows on ways of equal cost may be exchanged; prices and the trade not."""
         flows = np.asarray(solution.x).reshape(len(self.offers), len(self.bids))
         return {
             "flows": flows, "offers": np.array(self.offers) + self.rise * flows.sum(axis=1),
