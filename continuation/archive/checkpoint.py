@@ -32,19 +32,8 @@ _INLINE_BYTES = 1 << 16
 class Checkpoint:
     """A point from which a path continues exactly.
 
-    Attributes
-    ----------
-    sequence : int
-        Grows with each checkpoint written.
-    path, rows : int
-        The path's number, and how many of its rows come before the state.
-    state : State
-    counts : mapping
-        The counters at that point.
-    seconds : float
-        Wall-clock time spent so far.
-    run : mapping
-        Options, homotopy and index in a sweep, described.
+    `sequence` grows with each checkpoint written; `rows` of the path come before the state; `counts` and `seconds` are
+    what it has cost so far; `run` describes options, homotopy and index in a sweep.
     """
 
     sequence: int

@@ -105,20 +105,9 @@ def width(columns: Sequence[str]) -> int:
 
 
 class Ledger:
-    """The checksums of one table, as read from a file.
+    """The checksums of one table of `size` rows, as read from a file: what `seal` returned, one row a block.
 
-    Parameters
-    ----------
-    rows : ndarray of u4
-        What `seal` returned, one row a block.
-    columns : sequence of str
-    size : int
-        Rows of the table.
-
-    Raises
-    ------
-    DamageError
-        If the blocks are not those of so many rows.
+    Raises `DamageError` if the blocks are not those of so many rows.
     """
 
     def __init__(self, rows: Array, columns: Sequence[str], size: int) -> None:

@@ -25,17 +25,9 @@ _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
 
 @frozen(eq=False)
 class Share:
-    """What is copied of one archive.
+    """What is copied of one archive: the rows of its paths from number `first` on, by column, and of their points.
 
-    Attributes
-    ----------
-    source : Contents
-    paths : mapping of str to ndarray
-        The rows of the paths, column by column.
-    points : slice
-        The rows of their points; of the last path perhaps the first ones only.
-    first : int
-        The number of the first path in the source.
+    Of the last path it may be the first points only.
     """
 
     source: Contents

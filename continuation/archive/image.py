@@ -27,16 +27,8 @@ _HEAP = b"GCOL"
 class Image:
     """A file opened for reading, as it would be if its writer had closed it.
 
-    Attributes
-    ----------
-    closed_by_writer : bool
-    missing : int
-        Bytes that the file should have at its end and has not; they read as zeros.
-
-    Raises
-    ------
-    ArchiveError
-        If it is no regular file, may not be read, or is not HDF5 as far as its first bytes tell.
+    `missing` bytes, which the file should have at its end and has not, read as zeros. Raises `ArchiveError` if it is no
+    regular file, may not be read, or is not HDF5 as far as its first bytes tell.
     """
 
     def __init__(self, file: File) -> None:
@@ -114,13 +106,7 @@ class Image:
 
 
 class Sink:
-    """A new file that HDF5 writes to through Python: a write that fails is kept in memory, and told by `check`.
-
-    Parameters
-    ----------
-    file : pathlib.Path
-        Must not exist.
-    """
+    """A new file that HDF5 writes to through Python: a write that fails is kept in memory, and told by `check`."""
 
     def __init__(self, file: File) -> None:
         self.file, self._at, self._length = file, 0, 0

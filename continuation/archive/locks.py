@@ -18,17 +18,10 @@ _TAKEN = (errno.EAGAIN, errno.EACCES)
 
 
 class Lock:
-    """A lock on a file, held until `close`, or until the process is gone.
+    """A lock on a file, held until `close`, or until the process is gone; `taken` is False where somebody else has it.
 
-    Attributes
-    ----------
-    taken : bool
-        False where somebody else has it. Where the file system knows no locks it counts as taken.
-
-    Raises
-    ------
-    ArchiveError
-        If the file cannot be opened for writing.
+    Where the file system knows no locks it counts as taken. Raises `ArchiveError` if the file cannot be opened for
+    writing.
     """
 
     def __init__(self, file: File) -> None:

@@ -60,16 +60,8 @@ class StoredSteps(Sequence[Step]):
     """The steps of a path as a sequence: some in memory, the others read from the file.
 
     While the path is traced, `append` adds to it, and what is not yet committed is in memory. A step that is read has
-    the segment to the step before only if the archive holds tangents.
-
-    Parameters
-    ----------
-    opener : callable
-    file : pathlib.Path
-    path : int
-        Its number in the file.
-    every : int
-        As `kept_every` has it; 0 keeps the first and the last.
+    the segment to the step before only if the archive holds tangents. `every` is as `kept_every` has it; 0 keeps the
+    first and the last.
     """
 
     def __init__(self, opener: Opener, file: File, path: int, every: int) -> None:

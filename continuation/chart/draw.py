@@ -140,14 +140,8 @@ def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, wo
 class _Band:
     """The left part of a panel, where errors are round-off: there a point's x is the column of its method.
 
-    Attributes
-    ----------
-    smallest, largest : float
-        Error in the panel.
-    count : int
-        Methods.
-    fraction : float
-        Of the points that are in the band; where there are none, there is no band.
+    Smallest and largest are errors in the panel, `count` its methods, `fraction` what part of the points is in the
+    band; where that is 0 there is no band.
     """
 
     smallest: float

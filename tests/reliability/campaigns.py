@@ -34,14 +34,7 @@ OPTIONS: dict[str, Any] = {"controller": Fixed(bounds=Bounds(initial=0.02))}
 
 @frozen
 class Found:
-    """What a campaign came to.
-
-    Attributes
-    ----------
-    done, wrong : int
-    text : str
-        The figures, in one line.
-    """
+    """What a campaign came to: how many were done, how many were wrong, and the figures in one line."""
 
     done: int
     wrong: int

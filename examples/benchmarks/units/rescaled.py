@@ -20,17 +20,7 @@ SHIFTS = -2.0, 6.0
 
 @frozen(eq=False)
 class Rescaled:
-    """The same path in other units.
-
-    Attributes
-    ----------
-    homotopy : Homotopy
-        With a Jacobian.
-    D, c, E : ndarray, shape (N,)
-        y = D y0 + c, and the equations are multiplied by E.
-    a, b : float
-        lam = a lam0 + b.
-    """
+    """The same path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
 
     homotopy: Any
     D: Array

@@ -17,14 +17,7 @@ Bound = tuple[int | None, int | None]
 
 @frozen
 class FacePoint:
-    """A solution found on one face.
-
-    Parameters
-    ----------
-    x, w : tuple of Fraction, length n
-    only : bool
-        Whether the face holds no other solution.
-    """
+    """A solution found on one face, and whether that holds no other."""
 
     x: Point
     w: Point

@@ -132,18 +132,9 @@ def parity(count: int | np.intp) -> int:
 
 @frozen(eq=False, slots=False)
 class Full:
-    """The full bordered system, known by its products.
+    """The full bordered system, known by its products: `apply` takes z to H' z, ``(N + 1,) -> (N,)``.
 
-    Attributes
-    ----------
-    apply : callable
-        z -> H' z, ``(N + 1,) -> (N,)``.
-    border : Array
-        (N + 1,).
-    point : tuple of Array
-        The unknowns, block by block.
-    coefficients : tuple of Array
-        More of what stands in the pairs.
+    The point has the unknowns, block by block; the coefficients are more of what stands in the pairs.
     """
 
     apply: Callable[[Array], Array]

@@ -224,15 +224,7 @@ def _reduced(system: KKTSystem, border: Array) -> Reduced | None:
 class WithoutActivities:
     """A core without the activities of rows with two sides: their block is diagonal, as only a row of mu has one.
 
-    Attributes
-    ----------
-    kept, gone : ndarray of int
-    diagonal : Array
-        Of that block.
-    matrix, column, row
-        With the activities, and its borders.
-    core : BorderedSystem
-        Of the Schur complement.
+    The matrix and its borders are those with the activities; the core is of the Schur complement.
     """
 
     kept: NDArray[np.intp]

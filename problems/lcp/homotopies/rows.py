@@ -112,16 +112,7 @@ class RowPairs:
     """The linearised rows, ``factor dw + rest k - c l = r``, for an unknown k of each, once those of boxes are solved.
 
     In a box ``(u - l - z) dt - t dz - c3 l = r3`` gives dz = a k + e (r3 + c3 l) and dt = b k + f (r3 + c3 l); where
-    there is none, k = dz.
-
-    Attributes
-    ----------
-    rows : Rows
-    factor, rest, c : ndarray, shape (n,)
-    inner : Pairs or None
-        The a, b, e, f of boxes; None where there are none.
-    taken : ndarray
-        What r3 takes from r in a box.
+    there is none, k = dz. `inner` has the a, b, e, f of boxes, `taken` what r3 takes from r in a box.
     """
 
     rows: Rows
