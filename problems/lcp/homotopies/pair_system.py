@@ -140,9 +140,9 @@ def _definite(system: PairSystem, border: Array) -> ReducedPairs | None:
 class WithoutActivities:
     """A core without the activities of rows with two sides: of r and mu one unknown k is kept, order n + 1 - m.
 
-    The row of r, ``d dr + e dmu = rho``, is solved for the unknown with the larger coefficient: dr = p k + pr rho, dmu
-    = q k + qr rho. So no number is divided by a small one, and no entry fills. `times` is the product with the matrix,
-    `sign` that of the whole determinant.
+    The row of r, ``d dr + e dmu = rho``, is solved for the unknown with the larger coefficient: dr = p k + pr rho and
+    dmu = q k + qr rho. So no number is divided by a small one, and no entry fills. `times` is the product with the
+    matrix, `sign` that of the whole determinant.
     """
 
     ranges: Ranges
