@@ -89,7 +89,9 @@ def _zero(case: Case) -> bool:
 
 
 def _from_coarser_problems(case: Case) -> bool:
-    return case.search.settle(case.problem.states(guess(case.problem), np.zeros(case.problem.n)), FIRST)
+    finish = case.search.finish
+    assert finish is not None
+    return case.search.settle(guess(case.problem, finish.faces.factoring, case.search.counts), FIRST)
 
 
 def _proximally_from_zero(case: Case) -> bool:
@@ -205,7 +207,7 @@ def _always(case: Case) -> bool:
 
 
 def _has_coarser_problems(case: Case) -> bool:
-    return suitable(case.search.structure)
+    return case.search.finish is not None and suitable(case.search.structure)
 
 
 def _monotone(case: Case) -> bool:
