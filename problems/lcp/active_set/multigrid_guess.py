@@ -42,9 +42,10 @@ SWEEPS, DAMPING = 3, 0.8
 the contact set, and so they mend. On 316 x 316 points the finest level needs 2 faces, 3 without sweeps, 2 with 6."""
 
 
-SMOOTHINGS = 10
+SMOOTHINGS = 60
 """Of the damped Jacobi method on A d = 0 from ones, where their rows sum to less than zero: units that differ from one
-unknown to its neighbours do so on few lines, as those that make a torsion's diagonal alike."""
+unknown to its neighbours do so on few lines, as those that make a torsion's diagonal alike. Of one with n = 97,020 the
+cascade then takes 17 factorisations with 30 sweeps or more, as in the units given, and 31 with 10."""
 
 
 def suitable(structure: Structure) -> bool:

@@ -89,9 +89,7 @@ def _zero(case: Case) -> bool:
 
 
 def _from_coarser_problems(case: Case) -> bool:
-    finish = case.search.finish
-    assert finish is not None
-    return case.search.settle(guess(case.problem, finish.faces.factoring, case.search.counts), FIRST)
+    return case.search.settle(guess(case.problem, case.factoring, case.search.counts), FIRST)
 
 
 def _proximally_from_zero(case: Case) -> bool:
