@@ -181,7 +181,7 @@ def solver(w: World) -> Iterator[Call]:
     limits = {"seed": "from 0", "budget": "budget", "tolerance": "tolerance of a solution"}
     search = {"homotopy": "name of a homotopy", "guess": "guess", "finish": "truth", "path": "truth",
               "restarts": "count or None", "archive": "name of a new file", "progress": "truth",
-              "executor": "executor", "x0": "start of an LCP"}  # fmt: skip
+              "executor": "executor", "x0": "start of an LCP", "sparse": "name of a factorisation"}  # fmt: skip
     yield Call(lcp.solve, right, {**kinds, **search, **limits, **OPTIONS})
     yield Call(
         lcp.solve_many, {"A": np.eye(2), "q": -np.ones((3, 2))},
