@@ -19,7 +19,7 @@ from continuation.linear.look import ROUNDING
 from problems.lcp.active_set.face import Faces, Mask
 from problems.lcp.active_set.iteration import Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, MixedLCP, State
+from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
 SMALL = 200
 """A problem of this order is not made coarser: its faces cost less than the interpolation."""
@@ -86,7 +86,7 @@ def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Cou
     """The pieces that the next coarser problem says, and how long they are corrected."""
     P, kept = (None, None) if problem.n <= SMALL else _interpolation(problem.A, d)
     if P is None or P.shape[1] > SLOW * problem.n:
-        return problem.states(problem.near_zero, problem.w(problem.near_zero)), COARSEST if P is None else UNGUESSED
+        return _states(problem, problem.near_zero), COARSEST if P is None else UNGUESSED
     A, q = sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q
     coarse = LCP(A, q) if problem.standard else MixedLCP(A, q, problem.lower[kept], problem.upper[kept])
     state, policy = _interpolated(coarse, d[kept], factoring, counts)
@@ -94,7 +94,13 @@ def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Cou
     x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
     for _ in range(SWEEPS):
         x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
-    return problem.states(x, problem.w(x) / diagonal), ELSEWHERE
+    return _states(problem, x), ELSEWHERE
+
+
+def _states(problem: MixedLCP, x: Array) -> State:
+    """The pieces at a point; where w = 0, far from all that pushes, between the bounds: else they join one by one."""
+    w = problem.w(x)
+    return np.where(w == 0.0, BETWEEN, problem.states(x, w / problem.A.diagonal()))
 
 
 def _smooth(A: Matrix) -> Array:
