@@ -5,9 +5,9 @@ from __future__ import annotations
 from importlib.util import find_spec
 from typing import Protocol
 
-from attrs import define, field
+from attrs import define, field, frozen
 
-from continuation.arrays import Matrix
+from continuation.arrays import Array, Matrix
 from continuation.linear.cholmod import CholmodMethod
 from continuation.linear.look import Look
 from continuation.linear.multigrid import MultigridMethod
@@ -99,6 +99,40 @@ def installed(method: SparseMethod) -> bool:
     return find_spec(method.needs) is not None
 
 
+@frozen(eq=False)
+class Negative:
+    """A matrix of which the negative was factored.
+
+    Attributes
+    ----------
+    factor : SparseFactor
+    n : int
+        The order.
+    """
+
+    factor: SparseFactor
+    n: int
+
+    @property
+    def name(self) -> str:
+        """As of the factors."""
+        return self.factor.name
+
+    @property
+    def fill(self) -> int:
+        """As of the factors."""
+        return self.factor.fill
+
+    @property
+    def sign(self) -> int:
+        """Of det A = (-1)^n det(-A)."""
+        return -self.factor.sign if self.n % 2 else self.factor.sign
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution of A x = rhs, shape (N,)."""
+        return -self.factor.solve(rhs)
+
+
 @define(eq=False)
 class Factoring:
     """Factors sparse matrices, and keeps account of what did it.
@@ -134,20 +168,27 @@ class Factoring:
             In canonical format.
         """
         look = Look(matrix)
-        factor: SparseFactor | None = None
-        for one in (*(one for one in self.extras if self._chosen(one, look)), self.direct):
-            factor = one.factor(look)
-            if factor is not None:
-                count, fill = self.used.get(factor.name, (0, 0))
-                self.used[factor.name] = count + 1, max(fill, factor.fill)
-                break
+        factor = self._by_extras(look) or self.direct.factor(look)
+        if factor is not None:
+            count, fill = self.used.get(factor.name, (0, 0))
+            self.used[factor.name] = count + 1, max(fill, factor.fill)
         return factor
 
-    def _chosen(self, one: SparseMethod, look: Look) -> bool:
+    def _by_extras(self, look: Look) -> SparseFactor | None:
+        asked = [one for one in self.extras if self._asked(one, look.n)]
+        # A discretised Laplacian is negative definite.
+        negative = bool(asked) and bool((look.diagonal < 0.0).all())
+        positive = Look(-look.matrix) if negative else look
+        for one in asked:
+            factor = one.factor(positive) if one.suits(positive) else None
+            if factor is not None:
+                return Negative(factor, look.n) if negative else factor
+        return None
+
+    def _asked(self, one: SparseMethod, n: int) -> bool:
         if self.signed and not one.signed:
             return False
-        asked = one.name == self.method if self.method != "auto" else look.n >= one.least and installed(one)
-        return asked and one.suits(look)
+        return one.name == self.method if self.method != "auto" else n >= one.least and installed(one)
 
     def __str__(self) -> str:
         parts = []

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
 from scipy.sparse.linalg import LinearOperator
 
 from continuation.linear import factor_bordered
@@ -42,12 +42,15 @@ class DenseMethod:
     needs: str = "numpy"
     signed: bool = True
     least: float = 10
+    fails: bool = False
+    tried: list = field(factory=list)
 
     def suits(self, look):
         return look.definite_perhaps
 
     def factor(self, look):
-        factor = factor_cholesky(np.asfortranarray(look.matrix.toarray()))
+        self.tried.append(self.name)
+        factor = None if self.fails else factor_cholesky(np.asfortranarray(look.matrix.toarray()))
         return None if factor is None else Dense(factor, look.n**2)
 
 
@@ -79,15 +82,26 @@ def test_a_method_is_chosen_that_suits_and_is_installed():
 
 
 def test_of_two_methods_the_first_is_taken_and_one_asked_for_before_it():
-    first, second = DenseMethod(name="first", least=20), DenseMethod(name="second")
-    used = Factoring(extras=(evolve(first, signed=False), second))
-    assert [one.name for one in used.extras if used._chosen(one, Look(laplacian(5)))] == ["first", "second"]
-    assert [one.name for one in used.extras if used._chosen(one, Look(laplacian(4)))] == ["second"]
-    signs = evolve(used, signed=True)
-    assert [one.name for one in signs.extras if signs._chosen(one, Look(laplacian(5)))] == ["second"]
-    named = evolve(used, method="first")
-    assert [one.name for one in named.extras if named._chosen(one, Look(laplacian(2)))] == ["first"]
-    assert not any(evolve(used, method="superlu")._chosen(one, Look(laplacian(5))) for one in used.extras)
+    first, second = DenseMethod(name="first", least=20, signed=False), DenseMethod(name="second", fails=True)
+    tried = []
+
+    def who(m, **options):
+        tried.clear()
+        made(laplacian(m), evolve(second, tried=tried), evolve(first, tried=tried), **options)
+        return tried
+
+    assert who(5) == ["second", "first"]
+    assert who(4) == ["second"]
+    assert who(5, signed=True) == ["second"]
+    assert who(3, method="first") == ["first"]
+    assert who(5, method="superlu") == []
+
+
+@pytest.mark.parametrize("m", [5, 6])
+def test_a_negative_definite_matrix_is_factored_with_its_sign_changed(m):
+    A = -laplacian(m)
+    assert made(A, DenseMethod())[0] == "dense"
+    assert Factoring(extras=(DenseMethod(),)).factor(sp.csc_array(A)).sign == (-1) ** m
 
 
 def test_what_a_method_cannot_do_is_left_to_superlu():
