@@ -3,7 +3,7 @@
 from continuation.linear.banded import Banded
 from continuation.linear.dispatch import factor_bordered
 from continuation.linear.operator import Operator
-from continuation.linear.sparse import permutation_sign
+from continuation.linear.superlu import permutation_sign
 from continuation.linear.symmetric import Symmetric
 from continuation.linear.system import BorderedSystem, SingularError
 

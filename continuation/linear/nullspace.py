@@ -13,7 +13,7 @@ from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import lu_sign
-from continuation.linear.sparse import SuperLU
+from continuation.linear.superlu import SuperLU
 from continuation.linear.system import SingularError
 
 LONG = 10.0

@@ -1,53 +1,15 @@
-"""Sparse H_y: SuperLU of H_y bordered by elimination, or of the whole matrix at a fold."""
+"""Sparse H_y: factors of H_y bordered by elimination, or of the whole matrix at a fold."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from attrs import frozen
-from numpy.typing import NDArray
-from scipy.sparse import block_array, coo_array, csc_array
-from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import splu
+from scipy.sparse import block_array, csc_array
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.factoring import Factoring, SparseFactor
 from continuation.linear.refine import BorderedMatrix, eliminate, join, refined
 from continuation.linear.system import BorderedSystem, SingularError
-
-
-def permutation_sign(permutation: NDArray[np.integer]) -> int:
-    """Sign of a permutation of 0..n-1: (-1)^(n - cycles), in O(n).
-
-    The cycles are the connected components of the graph that joins i with permutation[i].
-
-    Parameters
-    ----------
-    permutation : ndarray of int
-    """
-    n = len(permutation)
-    edges = coo_array((np.ones(n, dtype=np.int8), (np.arange(n), permutation)), shape=(n, n))
-    cycles: int = connected_components(edges, directed=False, return_labels=False)
-    return -1 if (n - cycles) % 2 else 1
-
-
-@frozen(eq=False)
-class SuperLU:
-    """``P_r A P_c = L U``, by SuperLU with partial pivoting."""
-
-    lu: Matrix
-
-    @property
-    def sign(self) -> int:
-        """Sign of det A, from the pivots and the parity of both permutations."""
-        negative = np.count_nonzero(self.lu.U.diagonal() < 0)
-        exchanges = permutation_sign(self.lu.perm_r) * permutation_sign(self.lu.perm_c)
-        return -exchanges if negative % 2 else exchanges
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        x: Array = self.lu.solve(rhs)
-        return x
 
 
 @frozen(eq=False)
@@ -55,7 +17,7 @@ class SparseWhole:
     """The bordered matrix factored as one sparse matrix with scaled rows."""
 
     bordered: BorderedMatrix
-    factor: SuperLU
+    factor: SparseFactor
     scale: Array
     """Factors of the rows, (N + 1,)."""
 
@@ -129,34 +91,11 @@ def _measured(matrix: Matrix, column: Array, row: Array) -> BorderedMatrix:
         return BorderedMatrix(matrix, column, row, abs(matrix) @ np.ones(len(column)))
 
 
-def factor_square(matrix: Matrix) -> SuperLU | None:
-    """Factor by SuperLU; None where a pivot is exactly zero."""
-    # On a symmetric pattern, diagonal pivots keep the ordering's fill; a weak one is left to refinement.
-    symmetric = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 1e-3, "options": {"SymmetricMode": True}}
-    return factor_superlu(matrix, **(symmetric if _structurally_symmetric(matrix) else {"permc_spec": "COLAMD"}))
-
-
-def factor_superlu(matrix: Matrix, **how: Any) -> SuperLU | None:
-    """Factors of a sparse (CSC) matrix by itself, with SuperLU's options; None where a pivot is exactly zero.
+def factor_square(matrix: Matrix) -> SparseFactor | None:
+    """Factor a sparse matrix by itself, by what suits it and is installed; None where a pivot is exactly zero.
 
     Parameters
     ----------
     matrix : csc_array of shape (N, N)
-    **how
-        As for `scipy.sparse.linalg.splu`.
     """
-    try:
-        return SuperLU(splu(matrix, **how))
-    except RuntimeError as error:
-        if "singular" not in str(error):
-            raise
-        return None
-
-
-def _structurally_symmetric(matrix: Matrix) -> bool:
-    """Whether the pattern is symmetric with a full diagonal; minimum degree then halves the fill of COLAMD."""
-    if not matrix.diagonal().all():
-        return False
-    rows = matrix.tocsr()
-    matrix.sort_indices()
-    return np.array_equal(rows.indptr, matrix.indptr) and np.array_equal(rows.indices, matrix.indices)
+    return Factoring(signed=True).factor(matrix)

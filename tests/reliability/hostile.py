@@ -190,7 +190,7 @@ def solver(w: World) -> Iterator[Call]:
     limits = {"seed": "from 0", "budget": "budget", "tolerance": "tolerance of a solution"}
     search = {"homotopy": "name of a homotopy", "guess": "guess", "finish": "truth", "path": "truth",
               "restarts": "count or None", "archive": "name of a new file", "progress": "truth",
-              "executor": "executor", "x0": "start of an LCP"}  # fmt: skip
+              "executor": "executor", "x0": "start of an LCP", "sparse": "name of a factorisation"}  # fmt: skip
     yield Call(lcp.solve, right, {**kinds, **search, **limits, **OPTIONS})
     by_path = {"problem": w.problem, "homotopy": "kkt"}
     yield Call(lcp.solve, by_path, {**search, **limits, **OPTIONS, "target": "target", "direction": "sign"})

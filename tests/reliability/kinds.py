@@ -125,6 +125,7 @@ KINDS: Mapping[str, tuple[Any, ...]] = {
     "problem": ((np.eye(2), np.ones(2)), None, 3, "a", np.eye(2), lcp.LCP, [], {}, len),
     "guess": (3, "a", np.ones(2), lcp.Solution, [], {}, len),
     "name of a homotopy": ("simplex", None, 3, "KKT", ["kkt"], lcp.KKTHomotopy, {}, b"kkt"),
+    "name of a factorisation": ("umfpack", "cholesky", None, 3, "AMG", ["amg"], {}, b"amg"),
     "start of an LCP": (*optional(vectors(2)), [-1.0, 1.0], [True, True], np.ones(1)),
     "positive start": (*optional(vectors(2)), [-1.0, 1.0], [0.0, 1.0], [True, True], np.ones(1)),
     "generator": (None, 3, "a", [], {}, len),

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
-from continuation.linear.sparse import factor_superlu
+from continuation.linear.factoring import Factoring
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 from problems.lcp.data.ranges import ranges
@@ -180,7 +180,9 @@ class Penalised:
         return at - slope / curvature if curvature > 0.0 else at
 
 
-def guesses(saddle: Saddle, below: float, x: Array, counts: Counts) -> Iterator[tuple[State, Array]]:
+def guesses(
+    saddle: Saddle, below: float, x: Array, counts: Counts, factoring: Factoring
+) -> Iterator[tuple[State, Array]]:
     """Active sets, and points near which their solutions are sought, one after each change of the multipliers.
 
     Parameters
@@ -192,6 +194,8 @@ def guesses(saddle: Saddle, below: float, x: Array, counts: Counts) -> Iterator[
         Where it begins.
     counts : Counts
         Where factorisations are added up.
+    factoring : Factoring
+        Of sparse matrices.
     """
     problem, n, m = saddle.problem, x.size, saddle.multiplier.size
     low, high = np.append(saddle.low, problem.lower[:n]), np.append(saddle.high, problem.upper[:n])
@@ -204,7 +208,7 @@ def guesses(saddle: Saddle, below: float, x: Array, counts: Counts) -> Iterator[
     accurate, centre, before = 1.0, x, np.full(m + n, np.inf)
     for _ in range(ROUNDS):
         one = Penalised(saddle, low, high, sigma, weight)
-        found = _minimised(one, x, y, centre, accurate, counts)
+        found = _minimised(one, x, y, centre, accurate, counts, factoring)
         if found is None:
             return
         x, t = found
@@ -224,7 +228,7 @@ def guesses(saddle: Saddle, below: float, x: Array, counts: Counts) -> Iterator[
 
 
 def _minimised(
-    one: Penalised, x: Array, y: Array, centre: Array, accurate: float, counts: Counts
+    one: Penalised, x: Array, y: Array, centre: Array, accurate: float, counts: Counts, factoring: Factoring
 ) -> tuple[Array, Array] | None:
     """The minimum by Newton's method, and the shifted values there; None where a factorisation fails."""
     saddle, pieces = one.saddle, b""
@@ -242,7 +246,7 @@ def _minimised(
         if factor is None or key != pieces:
             counts.factorizations += 1
             hessian = one.hessian(active)
-            factor = factor_superlu(hessian) if sp.issparse(hessian) else factor_cholesky(hessian)
+            factor = factoring.factor(hessian) if sp.issparse(hessian) else factor_cholesky(hessian)
             pieces = key
         if factor is None:
             return None

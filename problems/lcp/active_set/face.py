@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon
 from scipy.sparse.csgraph import structural_rank
@@ -14,8 +14,9 @@ from scipy.sparse.csgraph import structural_rank
 from continuation.arrays import Array, Matrix, finite
 from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
+from continuation.linear.factoring import Factoring
 from continuation.linear.refine import Factored
-from continuation.linear.sparse import factor_superlu
+from continuation.linear.superlu import SuperLUMethod
 from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
@@ -108,6 +109,17 @@ class Face:
         return corrected
 
 
+def exchanging(method: str = "auto") -> Factoring:
+    """Factorisations of faces, by SuperLU with its exchanges of rows where by nothing else.
+
+    Parameters
+    ----------
+    method : str
+        As for `Factoring`.
+    """
+    return Factoring(method, SuperLUMethod(weak_pivots=False))
+
+
 @frozen(eq=False)
 class Faces:
     """The faces of one problem.
@@ -120,11 +132,14 @@ class Faces:
         The problem, where it has another q than that of the structure.
     kept : dict, optional
         Where the last `KEPT` faces stay, by their active sets, for other q.
+    factoring : Factoring
+        Of sparse equations.
     """
 
     structure: Structure
     current: MixedLCP | None = None
     kept: dict[bytes, Face] | None = None
+    factoring: Factoring = field(factory=exchanging)
 
     @property
     def problem(self) -> MixedLCP:
@@ -169,7 +184,7 @@ class Faces:
             inverse, exact = self._banded(active, shift), True
         else:
             block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
-            factor, exact = _sparse(block, shift) if problem.sparse else self._dense(block, shift, regular)
+            factor, exact = self._sparse(block, shift) if problem.sparse else self._dense(block, shift, regular)
             inverse = None if factor is None else factor.solve
         if inverse is None:
             return None
@@ -193,6 +208,16 @@ class Faces:
             return None, False
         block[np.diag_indices(len(block))] += SINGULAR_SHIFT * max(_norm(block), 1e-300)
         return (_cholesky if definite else _lu)(block), False
+
+    def _sparse(self, block: Matrix, shift: float) -> tuple[Factored | None, bool]:
+        eye = sp.eye_array(block.shape[0])
+        block = sp.csc_array(block + shift * eye if shift else block)
+        # On a structurally singular matrix SuperLU prints, and raises what it does not raise for a zero pivot.
+        full = bool(block.diagonal().all()) or structural_rank(block) == block.shape[0]
+        factor = self.factoring.factor(block) if full else None
+        if factor is not None:
+            return factor, True
+        return self.factoring.factor(sp.csc_array(block + SINGULAR_SHIFT * max(_norm(block), 1e-300) * eye)), False
 
     def _banded(self, active: Mask, shift: float) -> Callable[[Array], Array] | None:
         """In the band of the whole matrix, with unit rows off the face: no index is moved."""
@@ -236,16 +261,3 @@ def _lu(block: Array) -> Factored | None:
     # The condition is estimated only where the pivots make it doubtful: at these orders it costs half a factorisation.
     doubtful = pivots.min() < DOUBTFUL_PIVOTS * pivots.max()
     return None if doubtful and dgecon(factor.lu, _norm(block))[0] < SINGULAR_CONDITION else factor
-
-
-def _sparse(block: Matrix, shift: float) -> tuple[Factored | None, bool]:
-    # On a face of a symmetric pattern this ordering fills half as much as the default one.
-    ordering = {"permc_spec": "MMD_AT_PLUS_A"}
-    eye = sp.eye_array(block.shape[0])
-    block = sp.csc_array(block + shift * eye if shift else block)
-    # On a structurally singular matrix SuperLU prints, and raises what it does not raise for a zero pivot.
-    full = bool(block.diagonal().all()) or structural_rank(block) == block.shape[0]
-    factor = factor_superlu(block, **ordering) if full else None
-    if factor is not None:
-        return factor, True
-    return factor_superlu(sp.csc_array(block + SINGULAR_SHIFT * max(_norm(block), 1e-300) * eye), **ordering), False

@@ -186,7 +186,8 @@ class Finish:
         if saddle is None:
             return None
         start, since, best = self.counts.factorizations, 0, np.inf
-        for state, point in guesses(saddle, below, self.problem.near_zero[: self.problem.primal], self.counts):
+        x, factoring = self.problem.near_zero[: self.problem.primal], self.faces.factoring
+        for state, point in guesses(saddle, below, x, self.counts, factoring):
             solved = self.settle(state, AFTER_MULTIPLIERS, point)
             if solved is not None:
                 return solved

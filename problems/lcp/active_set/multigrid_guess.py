@@ -10,12 +10,16 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix
+from continuation.counts import Counts
+from continuation.linear.factoring import Factoring
+from continuation.linear.look import ROUNDING
 from problems.lcp.active_set.face import Faces, Mask
 from problems.lcp.active_set.iteration import Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.problem import LCP, MixedLCP, State
+from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
 SMALL = 200
 """A problem of this order is not made coarser: its faces cost less than the interpolation."""
@@ -26,12 +30,26 @@ COARSEST = Policy(steps=SMALL - 1)
 SLOW = 0.8
 """Coarsening that keeps more than this share of the unknowns, where a grid keeps half of them, is given up."""
 
-ELSEWHERE = Policy(steps=11)
-"""On every other level: interpolation puts the boundary within a few lines of its place."""
+ELSEWHERE = Policy(steps=1)
+"""On every other level, where what is still wrong is mended on the next: on 316 x 316 points two faces of each leave
+two of the finest, of which one of each leaves three."""
+
+UNGUESSED = Policy(steps=11)
+"""Where coarsening was given up, and nothing is known."""
+
+SWEEPS, DAMPING = 3, 0.8
+"""Of the damped Jacobi method, projected, on what was interpolated: it is wrong by a few lines about the boundary of
+the contact set, and so they mend. Each level solved, 316 x 316 points need 3 faces without sweeps, 2 with 2 or 5."""
+
+
+SMOOTHINGS = 60
+"""Of the damped Jacobi method on A d = 0 from ones, where their rows sum to less than zero: units that differ from one
+unknown to its neighbours do so on few lines, as those that make a torsion's diagonal alike. Of one with n = 97,020 the
+cascade then takes 17 factorisations with 30 sweeps or more, as in the units given, and 31 with 10."""
 
 
 def suitable(structure: Structure) -> bool:
-    """Whether it is an LCP, A is large and sparse, with a positive diagonal, and nearly all else is nonpositive.
+    """Whether A is large and sparse, with a positive diagonal, and nearly all else is nonpositive.
 
     Parameters
     ----------
@@ -39,50 +57,82 @@ def suitable(structure: Structure) -> bool:
         Of the problem.
     """
     problem = structure.problem
-    if not (problem.standard and problem.sparse) or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
+    if not problem.sparse or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
         return False
-    return int(np.count_nonzero(problem.A.data > 0.0)) <= 1.5 * problem.n
+    few = int(np.count_nonzero(problem.A.data > 0.0)) <= 1.5 * problem.n
+    return few and (problem.standard or structure.ranges is None)
 
 
-def guess(problem: MixedLCP) -> Array:
-    """An approximate solution, shape (n,), from the coarser problems; its support is the guess of the active set.
+def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
+    """The pieces on which a solution may be, from the coarser problems.
 
     Parameters
     ----------
     problem : MixedLCP
         One that is `suitable`.
+    factoring : Factoring
+    counts : Counts
+        Where factorisations are added up, those of coarser problems too.
     """
-    if problem.n <= SMALL:
-        return _corrected(problem, problem.states(problem.near_zero, problem.q), COARSEST)
-    P = _interpolation(problem.A)
-    if P.shape[1] > SLOW * problem.n:
-        return _corrected(problem, problem.states(problem.near_zero, problem.q), ELSEWHERE)
-    coarse = LCP(sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q)
-    return _corrected(problem, problem.states(P @ guess(coarse), np.zeros(problem.n)), ELSEWHERE)
+    if not problem.standard:
+        # What is zero at a bound is zero there after interpolation.
+        low, high = problem.lower, problem.upper
+        at = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high, 0.0))
+        problem = MixedLCP(problem.A, problem.w(at), low - at, high - at)
+    return _interpolated(problem, _smooth(problem.A), factoring, counts)[0]
 
 
-def _corrected(problem: MixedLCP, state: State, policy: Policy) -> Array:
-    """The last point of a few active-set steps, clipped at zero."""
-    return np.maximum(iterate(Faces(Structure(problem)), state, policy).x, 0.0)
+def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -> tuple[State, Policy]:
+    """The pieces that the next coarser problem says, and how long they are corrected."""
+    P, kept = (None, None) if problem.n <= SMALL else _interpolation(problem.A, d)
+    if P is None or P.shape[1] > SLOW * problem.n:
+        return _states(problem, problem.near_zero), COARSEST if P is None else UNGUESSED
+    A, q = sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q
+    coarse = LCP(A, q) if problem.standard else MixedLCP(A, q, problem.lower[kept], problem.upper[kept])
+    state, policy = _interpolated(coarse, d[kept], factoring, counts)
+    found = iterate(Faces(Structure(coarse), factoring=factoring), state, policy, counts=counts)
+    x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
+    for _ in range(SWEEPS):
+        x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
+    return _states(problem, x), ELSEWHERE
 
 
-def _interpolation(A: Matrix) -> Matrix:
-    """Direct interpolation from an independent set of unknowns, taken greedily in the given order."""
+def _states(problem: MixedLCP, x: Array) -> State:
+    """The pieces at a point; where w = 0, far from all that pushes, between the bounds: else they join one by one."""
+    w = problem.w(x)
+    return np.where(w == 0.0, BETWEEN, problem.states(x, w / problem.A.diagonal()))
+
+
+def _smooth(A: Matrix) -> Array:
+    """What interpolation is to reproduce, d > 0 with A d of about zero: ones, but for the units of the unknowns."""
+    d, diagonal = np.ones(A.shape[0]), A.diagonal()
+    for _ in range(SMOOTHINGS):
+        off = (A @ d) / diagonal
+        if (off >= -ROUNDING * d).all():
+            break
+        d = np.maximum(d - DAMPING * off, 0.1 * d)
+    return d
+
+
+def _interpolation(A: Matrix, d: Array) -> tuple[Matrix, NDArray[np.intp]]:
+    """Direct interpolation from an independent set of unknowns, taken greedily in the given order, and that set."""
     n = A.shape[0]
     coarse = _independent(A)
     column = np.cumsum(coarse) - 1
     entries = A.tocoo()
     i, j, a = entries.row, entries.col, entries.data
     off = (i != j) & (a < 0.0)
-    every = np.bincount(i[off], -a[off], minlength=n)
+    d_a = -a * d[j]
+    every = np.bincount(i[off], d_a[off], minlength=n)
     chosen = off & ~coarse[i] & coarse[j]
-    own = np.bincount(i[chosen], -a[chosen], minlength=n)
+    own = np.bincount(i[chosen], d_a[chosen], minlength=n)
     diagonal = A.diagonal()
     weight = -a[chosen] * (every / diagonal)[i[chosen]] / own[i[chosen]]
     kept = np.flatnonzero(coarse)
     rows = np.concatenate([i[chosen], kept])
     columns = np.concatenate([column[j[chosen]], column[kept]])
-    return sp.csr_array((np.concatenate([weight, np.ones(kept.size)]), (rows, columns)), shape=(n, kept.size))
+    values = np.concatenate([weight, np.ones(kept.size)])
+    return sp.csr_array((values, (rows, columns)), shape=(n, kept.size)), kept
 
 
 def _independent(A: Matrix) -> Mask:

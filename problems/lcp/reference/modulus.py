@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array
+from continuation.linear.superlu import factor_superlu
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved, without_point
 
@@ -64,12 +64,8 @@ def modulus(problem: LCP, omega: float = 1.0, z: Array | None = None, max_iterat
 def _factored(problem: LCP, omega: float) -> Callable[[Array], Array] | None:
     """The solver of (omega I + A), or None if that is singular."""
     if problem.sparse:
-        shifted = sp.csc_array(problem.A + omega * sp.eye_array(problem.n))
-        try:
-            factored: Callable[[Array], Array] = splu(shifted).solve
-        except RuntimeError:  # SuperLU's word for an exact zero pivot
-            return None
-        return factored
+        factored = factor_superlu(sp.csc_array(problem.A + omega * sp.eye_array(problem.n)))
+        return None if factored is None else factored.solve
     factors, swaps, info = scipy.linalg.lapack.dgetrf(problem.A + omega * np.eye(problem.n))
     if info != 0:
         return None

@@ -6,9 +6,10 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import lsmr, splu
+from scipy.sparse.linalg import lsmr
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.superlu import factor_superlu
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved
 from problems.options import check_finite
@@ -85,11 +86,9 @@ def _solve_dense(block: Array, right: Array) -> Array | None:
 
 
 def _solve_sparse(block: Matrix, right: Array) -> Array | None:
-    try:
-        solution: Array = splu(sp.csc_array(block)).solve(right)
-    except RuntimeError:  # SuperLU's word for an exact zero pivot
-        return None
-    return solution if np.isfinite(solution).all() else None
+    factored = factor_superlu(sp.csc_array(block))
+    solution = None if factored is None else factored.solve(right)
+    return solution if solution is not None and np.isfinite(solution).all() else None
 
 
 def _least_squares(matrix: Matrix, active: NDArray[np.bool_], right: Array) -> Array:

@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from attrs import define, field
 
 from continuation.arrays import Array
+from continuation.linear.factoring import Factoring
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import MixedLCP, State, active_state
@@ -62,6 +63,12 @@ class Case:
     def problem(self) -> MixedLCP:
         """The problem in the units of the search."""
         return self.search.problem
+
+    @property
+    def factoring(self) -> Factoring:
+        """Of sparse faces, with its account."""
+        assert self.search.finish is not None
+        return self.search.finish.faces.factoring
 
     @property
     def known(self) -> MatrixFacts:

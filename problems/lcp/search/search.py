@@ -148,7 +148,7 @@ class Search:
     def _change(self, problem: MixedLCP) -> None:
         self.structure = Structure(problem)
         if self.finish is not None:
-            self.finish.faces = Faces(self.structure)
+            self.finish.faces = Faces(self.structure, factoring=self.finish.faces.factoring)
 
     def accept(self, certificate: Certificate) -> None:
         """Take a point that no path led to into account."""

@@ -21,10 +21,11 @@ from continuation.arrays import Array, largest
 from continuation.budget import Budget
 from continuation.checks import check_flag, instance_with
 from continuation.counts import Counts
+from continuation.linear.factoring import check_method
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
-from problems.lcp.active_set.face import Face, Faces
+from problems.lcp.active_set.face import Face, Faces, exchanging
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
@@ -71,6 +72,7 @@ def solve(
     archive: str | PathLike[str] | None = None,
     progress: bool = False,
     executor: Executor | None = None,
+    sparse: str = "auto",
     **options: Unpack[PartOptions],
 ) -> Solution:
     """Solve an LCP(q, A), a problem with bounds, or a quadratic program.
@@ -112,6 +114,9 @@ def solve(
         A progress bar a path (needs tqdm).
     executor : concurrent.futures.Executor, optional
         For the restarts.
+    sparse : str
+        What factors the equations of sparse active sets: "superlu", or if installed "cholmod" (cvxopt), "amg" (pyamg)
+        or "pardiso" (pypardiso); "auto" takes what suits the matrix and is there. The message says what did it.
     {parts}
 
     Returns
@@ -122,6 +127,8 @@ def solve(
     ------
     TypeError, ValueError
         For bad input, naming the argument.
+    ImportError
+        If what `sparse` asks for is not installed.
 
     References
     ----------
@@ -130,7 +137,8 @@ def solve(
     if isinstance(problem, Program):
         found = solve(
             problem.problem, homotopy, x0=x0, guess=guess, finish=finish, path=path, restarts=restarts, seed=seed,
-            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
+            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor,
+            sparse=sparse, **options,
         )  # fmt: skip
         return of_program(problem, found)
     require_problem(problem)
@@ -143,6 +151,7 @@ def solve(
     if not automatic and not problem.standard and not HOMOTOPIES[homotopy].bounds:
         known = ", ".join(name for name, one in HOMOTOPIES.items() if one.bounds)
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
+    check_method("sparse", sparse)
     _check_arguments(tolerance, restarts, seed, budget, executor, options, finish=finish, path=path, progress=progress)
     if restarts is None:
         restarts = MOST_RESTARTS if automatic else 0
@@ -157,7 +166,8 @@ def solve(
         near = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
         rest = None if small.problem is None else solve(
             small.problem, homotopy, x0=start, guess=near, finish=finish, path=path, restarts=restarts, seed=seed,
-            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor, **options,
+            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor,
+            sparse=sparse, **options,
         )  # fmt: skip
         return with_fixed(small, rest, tolerance)
     # A homotopy by name is traced in the units given, while floats can hold what it is made of.
@@ -189,7 +199,7 @@ def solve(
     structure = Structure(problem if scaled is None else scaled.problem)
     search = Search(
         structure,
-        Finish(Faces(structure, kept=kept), tolerance) if finish else None,
+        Finish(Faces(structure, kept=kept, factoring=exchanging(sparse)), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
         None if archive is None else PathLog(as_file("archive", archive), title=_title(problem)),
@@ -285,17 +295,17 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
 
 def _account(case: Case, settled: Attempt | None) -> str:
     """What was done: what settled the problem, or what the paths came to and how many there were."""
-    parts = [f"A is {case.facts}."] if case.facts is not None else []
+    parts, search = [f"A is {case.facts}."] if case.facts is not None else [], case.search
+    factored = "" if search.finish is None else str(case.factoring)
     if settled is not None:
-        return " ".join([*parts, settled.said.format(case=case)])
-    search = case.search
+        return " ".join(part for part in (*parts, settled.said.format(case=case), factored) if part)
     if search.paths:
         parts.append(f"The first path: {search.paths[0].message}")
     tried = f"Restarts from random starts: {case.tried} (seed {case.seed})."
     parts.append(tried if case.tried else "No restarts were tried.")
     if search.exhausted:
         parts.append(f"The budget is used up: {search.exhausted}.")
-    return " ".join(parts)
+    return " ".join([*parts, factored]).rstrip()
 
 
 def _archive_without_path(search: Search, found: Solution) -> None:

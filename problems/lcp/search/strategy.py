@@ -89,7 +89,7 @@ def _zero(case: Case) -> bool:
 
 
 def _from_coarser_problems(case: Case) -> bool:
-    return case.search.settle(case.problem.states(guess(case.problem), np.zeros(case.problem.n)), FIRST)
+    return case.search.settle(guess(case.problem, case.factoring, case.search.counts), FIRST)
 
 
 def _proximally_from_zero(case: Case) -> bool:
@@ -205,7 +205,7 @@ def _always(case: Case) -> bool:
 
 
 def _has_coarser_problems(case: Case) -> bool:
-    return suitable(case.search.structure)
+    return case.search.finish is not None and suitable(case.search.structure)
 
 
 def _monotone(case: Case) -> bool:

@@ -11,6 +11,7 @@ from continuation.counts import Counts
 from problems import lcp
 from problems.lcp import Outcome
 from problems.lcp.active_set.augmented import Penalised, Saddle, guesses
+from problems.lcp.active_set.face import exchanging
 from problems.lcp.proof.verdict import to_precision
 
 INF = np.inf
@@ -92,7 +93,7 @@ def test_the_multipliers_converge_to_those_of_the_program():
     made = program(np.random.default_rng(3))
     wanted = lcp.solve(made)
     counts = Counts()
-    found = guesses(Saddle.of(made.problem), 0.0, np.zeros(made.n), counts)
+    found = guesses(Saddle.of(made.problem), 0.0, np.zeros(made.n), counts, exchanging())
     _, point = next(islice(found, 15, None))
     np.testing.assert_allclose(point[: made.n], wanted.x[: made.n], atol=1e-8)
     assert counts.factorizations < 60

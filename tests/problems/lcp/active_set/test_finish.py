@@ -8,8 +8,9 @@ import scipy.sparse as sp
 
 import continuation
 from continuation.archive import open_archive, resume
+from continuation.counts import Counts
 from problems.lcp import LCP, KKTHomotopy, Structure, WangHomotopy, certify
-from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.face import Faces, exchanging
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.active_set.multigrid_guess import guess, suitable
@@ -103,7 +104,7 @@ def test_a_face_whose_signs_depend_on_round_off_is_corrected():
     A = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), dtype=float) * (n + 1.0) ** 2
     problem = LCP(A, A @ np.maximum(0.15 - 16 * (t - 0.35) ** 2, 0.1 - 16 * (t - 0.7) ** 2) + 0.5)
     finish = Finish(Faces(Structure(problem)), 1e-12)
-    x = finish.settle(state_of(guess(problem) > 0.0), Policy(10))
+    x = finish.settle(guess(problem, exchanging(), Counts()), Policy(10))
     assert certify(problem, x).solves(1e-12)
     assert finish.counts.factorizations <= 6
 
@@ -118,7 +119,7 @@ def test_the_cascade_guesses_the_contact_set_of_a_membrane():
     problem = LCP(A, A @ bump + 5.0 / (m + 1) ** 2)
     assert suitable(Structure(problem))
     near = Finish(Faces(Structure(problem)), 1e-12)
-    assert near.settle(state_of(guess(problem) > 0.0), Policy(20)) is not None
+    assert near.settle(guess(problem, exchanging(), Counts()), Policy(20)) is not None
     far = Finish(Faces(Structure(problem)), 1e-12)
     assert far.settle(state_of(problem.q < 0.0), Policy(100)) is not None
     assert 2 * near.counts.factorizations < far.counts.factorizations

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from continuation.linear.factoring import Factoring
 from problems.lcp import MixedLCP
 from problems.lcp.active_set import face
 from problems.lcp.homotopies import kkt_system, pair_system
@@ -14,14 +15,16 @@ def orders(monkeypatch):
     def spy(module, name):
         real = getattr(module, name)
 
-        def counted(matrix, *rest, **given):
-            found.append(getattr(matrix, "matrix", matrix).shape[0])
-            return real(matrix, *rest, **given)
+        def counted(*arguments, **given):
+            matrix = next(one for one in arguments if hasattr(one, "shape"))
+            found.append(matrix.shape[0])
+            return real(*arguments, **given)
 
         monkeypatch.setattr(module, name, counted)
 
-    for name in ("factor_lu", "factor_cholesky", "factor_superlu", "factor_band"):
+    for name in ("factor_lu", "factor_cholesky", "factor_band"):
         spy(face, name)
+    spy(Factoring, "factor")
     for module in (pair_system, kkt_system):
         spy(module, "factor_bordered")
     return found

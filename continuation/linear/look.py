@@ -1,0 +1,83 @@
+"""What a look at the entries of a sparse matrix tells of it; a method of factorisation is chosen by that."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array, Matrix
+
+POSITIVE_SHARE = 0.25
+"""Of the entries off the diagonal so many may be positive in a matrix of the diffusion kind: coarser problems that
+Galerkin's way makes of one have a few."""
+
+ROUNDING = 16 * float(np.finfo(float).eps)
+"""Of what should be alike or cancel, a_ij and a_ji or a row that sums to zero, relative to the diagonal."""
+
+
+@frozen(eq=False, slots=False)
+class Look:
+    """What the entries of a matrix tell, each found out when it is asked for.
+
+    Attributes
+    ----------
+    matrix : csc_array of shape (N, N)
+        In canonical format.
+    """
+
+    matrix: Matrix
+
+    @property
+    def n(self) -> int:
+        """The order."""
+        return int(self.matrix.shape[0])
+
+    @cached_property
+    def _rows(self) -> Matrix:
+        return self.matrix.tocsr()
+
+    @cached_property
+    def diagonal(self) -> Array:
+        """The diagonal, shape (N,)."""
+        entries: Array = self.matrix.diagonal()
+        return entries
+
+    @cached_property
+    def symmetric_pattern(self) -> bool:
+        """Whether the pattern is symmetric with a full diagonal; minimum degree then halves the fill of COLAMD."""
+        if not self.diagonal.all():
+            return False
+        rows, columns = self._rows, self.matrix
+        columns.sort_indices()
+        return np.array_equal(rows.indptr, columns.indptr) and np.array_equal(rows.indices, columns.indices)
+
+    @cached_property
+    def definite_perhaps(self) -> bool:
+        """Whether it is symmetric, but for rounding, with a positive diagonal: Cholesky's method decides."""
+        if not (self.diagonal > 0.0).all() or not self.symmetric_pattern:
+            return False
+        here, across = self.matrix.data, self._rows.data
+        if np.array_equal(here, across):
+            return True
+        root = np.sqrt(self.diagonal)
+        size = root[self.matrix.indices] * np.repeat(root, np.diff(self.matrix.indptr))
+        return bool((np.abs(here - across) <= ROUNDING * size).all())
+
+    @cached_property
+    def diffusion(self) -> bool:
+        """Whether it is also, about, a Z-matrix: what multigrid by coefficients is made for."""
+        positive = np.count_nonzero(self.matrix.data > 0.0) - self.n
+        return self.definite_perhaps and positive <= POSITIVE_SHARE * (self.matrix.nnz - self.n)
+
+    @cached_property
+    def row_sums(self) -> Array:
+        """Of magnitudes, shape (N,)."""
+        sums: Array = abs(self.matrix) @ np.ones(self.n)
+        return sums
+
+    @cached_property
+    def dominant(self) -> bool:
+        """Whether its diagonal is positive and dominates the rows: with symmetry, no eigenvalue is negative."""
+        return bool((self.row_sums <= 2.0 * self.diagonal * (1.0 + ROUNDING)).all())

@@ -1,0 +1,75 @@
+"""PARDISO of the MKL by way of pypardiso: factors of any sparse matrix."""
+
+from __future__ import annotations
+
+import weakref
+from typing import Any, ClassVar
+
+import numpy as np
+from attrs import frozen
+from scipy.sparse import csr_matrix
+
+from continuation.arrays import Array, Matrix
+from continuation.linear.look import Look
+
+UNSYMMETRIC = 11
+"""PARDISO's word for real matrices without symmetry, which are all that pypardiso tests."""
+
+ENTRIES, PERTURBED = 18, 14
+"""Where PARDISO counts entries of the factors, and pivots that it moved away from zero."""
+
+
+@frozen(eq=False)
+class Pardiso:
+    """Factors with static pivots, whose sign is not told."""
+
+    name: ClassVar[str] = "PARDISO"
+    sign: ClassVar[int] = 0
+    solver: Any
+    matrix: Matrix
+
+    @property
+    def fill(self) -> int:
+        """Entries of the factors."""
+        return int(self.solver.get_iparm(ENTRIES))
+
+    def solve(self, rhs: Array) -> Array:
+        """The solution of A x = rhs, shape (N,)."""
+        x: Array = self.solver.solve(self.matrix, rhs)
+        return x.ravel()
+
+
+@frozen
+class PardisoMethod:
+    """Factorisations by PARDISO.
+
+    References
+    ----------
+    Schenk and Gartner, "Solving Unsymmetric Sparse Systems of Linear Equations with PARDISO", Future Gener. Comput.
+    Syst. 20 (2004).
+    """
+
+    name: ClassVar[str] = "pardiso"
+    needs: ClassVar[str] = "pypardiso"
+    signed: ClassVar[bool] = False
+    least: ClassVar[float] = np.inf
+    """Only by name: on one thread it took SuperLU's time at n = 1e5 and more above, 30 ms at any order; several threads
+    are what it is for."""
+
+    def suits(self, look: Look) -> bool:
+        """Whether no diagonal entry is zero: a pivot that is gets another value in place of an exchange."""
+        return bool(look.diagonal.all())
+
+    def factor(self, look: Look) -> Pardiso | None:
+        """The factors; None where a pivot was zero, about."""
+        from pypardiso import PyPardisoSolver
+        from pypardiso.pardiso_wrapper import PyPardisoError
+
+        solver, matrix = PyPardisoSolver(mtype=UNSYMMETRIC), csr_matrix(look.matrix)
+        try:
+            solver.factorize(matrix)
+        except PyPardisoError:
+            return None
+        factors = Pardiso(solver, matrix)
+        weakref.finalize(factors, solver.free_memory, everything=True)
+        return None if solver.get_iparm(PERTURBED) else factors
