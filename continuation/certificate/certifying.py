@@ -13,9 +13,10 @@ from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.folds import Piece, Signs, pieces
+from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.proof import Gap, Proof
-from continuation.certificate.quadratic import ByProducts, SupportsQuadratic
+from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
@@ -33,9 +34,6 @@ NEXT_TO_END = 1e-6
 """Where a path has a singular end, in lengths of the parameter's way there, it is proved up to there."""
 
 TAIL_STEPS = 300
-
-FINE = 4
-"""Slabs of a halved cell to begin with: its misfit is of third order in their length, and thin tubes tell more."""
 
 DEPTH = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
@@ -176,7 +174,7 @@ class Search:
                 break
             trial = joined([_cell(a, b) for a, b in pending])
             if depth:
-                trial = trial.with_tubes(trial.radius, np.full(len(trial), FINE))
+                trial = trial.with_tubes(trial.radius, np.full(len(trial), self.engine.fine))
             found = search(self.engine, trial)
             proved = found.cells.take(found.proved)
             known = [one for one in found.signs if one is not None]

@@ -19,6 +19,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Index, Slabs, expansion
+from continuation.certificate.inverse import inverses, times
 from continuation.intervals.array import Interval, UndecidedError, as_interval
 from continuation.intervals.calculus import along_curve, derivatives, with_gradient
 from continuation.intervals.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
@@ -56,9 +57,18 @@ class Engine(Protocol):
     ----------
     exact : bool
         Whether bounds hold for all radii, and smaller ones need no new judgement.
+    order : int
+        To which power of a slab's length |I - Y(s) G'(p(s))| falls.
+    most : int
+        Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more.
+    fine : int
+        Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more.
     """
 
     exact: ClassVar[bool]
+    order: ClassVar[int]
+    most: ClassVar[int]
+    fine: ClassVar[int]
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
@@ -71,28 +81,10 @@ def up_by(x: Array, count: int) -> Array:
     return bound
 
 
-def times(matrix: Array, x: Array) -> Array:
-    """Matrices times vectors, slab by slab."""
-    product: Array = np.matmul(matrix, x[..., None])[..., 0]
-    return product
-
-
 def applied(Y: Array, v: Ends) -> Ends:
     """The range of matrices times interval vectors, slab by slab."""
     image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
     return Ends(image.lo[..., 0], image.hi[..., 0])
-
-
-def inverses(matrices: Array) -> Array:
-    """Approximate inverses of a stack; nan for a singular one."""
-    try:
-        return np.asarray(np.linalg.inv(matrices), dtype=float)
-    except np.linalg.LinAlgError:
-        out = np.full_like(matrices, np.nan)
-        for k, matrix in enumerate(matrices):
-            if np.isfinite(matrix).all() and np.linalg.matrix_rank(matrix) == len(matrix):
-                out[k] = np.linalg.inv(matrix)
-        return out
 
 
 @frozen(eq=False)
@@ -107,6 +99,9 @@ class ByIntervals:
 
     residual: Callable[[Any, Any], Any]
     exact: ClassVar[bool] = False
+    order: ClassVar[int] = 1
+    most: ClassVar[int] = 16
+    fine: ClassVar[int] = 4
 
     def image(self, u: Interval) -> Interval:
         """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""

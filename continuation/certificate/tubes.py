@@ -31,11 +31,8 @@ ROUNDS, RADII = 6, 12
 """Tests of a cell, and radii that are tried with the bounds of one of them."""
 
 CONTRACTING = 0.6
-"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls in proportion to their
-length; at half of it a test holds at once."""
-
-MOST_SLABS = 16
-"""Beyond so many a new point of the path is worth more."""
+"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
+power that is the engine's order; at half of it a test holds at once."""
 
 
 def sizes(cells: Cells) -> Array:
@@ -142,17 +139,19 @@ def search(engine: Engine, cells: Cells) -> Found:
         undefined[pending] = ~np.isfinite(off)
         radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
-        more = ~good & ~(kappa < CONTRACTING)
+        # Bounds that hold for all radii are the same again; the others are not.
+        more = ~good & (engine.exact | ~(kappa < CONTRACTING))
         with np.errstate(all="ignore"):
-            factor = np.where(np.isfinite(kappa), np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0)), 4.0)
+            least = np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0) ** (1.0 / engine.order))
+            factor = np.where(np.isfinite(kappa), least, 4.0)
         grown = np.where(more, np.maximum(2, factor) * slabs[pending], slabs[pending]).astype(np.intp)
-        slabs[pending] = np.minimum(grown, MOST_SLABS + 1)
+        slabs[pending] = np.minimum(grown, engine.most + 1)
         again = more | ~np.asarray(np.isfinite(wanted).all(axis=1))
         radius[pending] = np.where(
             (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
         )
-        pending = pending[~good & (slabs[pending] <= MOST_SLABS)]
-    return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, undefined, told)
+        pending = pending[~good & (slabs[pending] <= engine.most)]
+    return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, told)
 
 
 def _fixed_point(
