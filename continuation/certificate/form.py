@@ -70,8 +70,8 @@ class Quadratic:
     @cached_property
     def pivots(self) -> tuple[Index, Index]:
         """Rows and columns of H' where it is diagonal, whatever u is: multipliers, each in an equation of its own."""
-        there: Mask = np.stack([part.matrix != 0.0 for part in (self.plain, self.first, self.second)]).any(axis=0)
-        free_rows, free_columns = (there.any(axis=axis) for axis in (1, 0))
+        there: Mask = (self.plain.matrix != 0.0) | (self.first.matrix != 0.0) | (self.second.matrix != 0.0)
+        free_rows, free_columns = np.ones_like(there[:, 0]), np.ones_like(there[0])
         per_row, found = there.sum(axis=1), []
         for j in np.argsort(there[:, :-1].sum(axis=0), kind="stable").tolist():
             rows = np.flatnonzero(there[:, j] & free_rows)
