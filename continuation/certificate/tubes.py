@@ -6,7 +6,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
+from continuation.certificate.cells import Cells, Index, Slabs, expansion, sizes, slabs_of
 from continuation.certificate.folds import Signs, signs
 from continuation.certificate.krawczyk import Engine, Judged
 from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
@@ -33,19 +33,6 @@ ROUNDS, RADII = 6, 12
 CONTRACTING = 0.6
 """A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
 power that is the engine's order; at half of it a test holds at once."""
-
-
-def sizes(cells: Cells) -> Array:
-    """How far a cell goes in each component; where that is little, a share of what its metric counts as much."""
-    far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
-    with np.errstate(all="ignore"):
-        # chart = weights * chord up to a factor: the square root of chord over chart is a length of that metric.
-        unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
-        length = np.sqrt(np.sum(np.abs(cells.chart * (cells.end - cells.begin)), axis=1, keepdims=True))
-        alike = 1e-6 * length * unit
-    alike = np.where(np.isfinite(alike), alike, 0.0)
-    out: Array = np.maximum(far, alike)
-    return out + 64.0 * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end)) + np.finfo(float).tiny
 
 
 def holds(slabs: Slabs, judged: Judged, radius: Array) -> Mask:

@@ -9,12 +9,12 @@ import numpy as np
 from attrs import evolve
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined, sizes
 from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.tubes import along, check, sizes
+from continuation.certificate.tubes import along, check
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
