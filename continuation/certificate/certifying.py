@@ -51,11 +51,12 @@ def engines(homotopy: Any) -> tuple[Engine, ByIntervals]:
     TypeError
         If the residual does not run on interval arrays; the message names the operation.
     """
-    plain = ByIntervals(homotopy.residual)
+    y, lam = homotopy.start()
+    start = np.append(np.asarray(y, dtype=float), float(lam))
+    plain = ByIntervals(homotopy.residual, len(start) - 1)
     if isinstance(homotopy, SupportsQuadratic):
         return ByProducts(homotopy.quadratic()), plain
-    y, lam = homotopy.start()
-    plain.probe(np.append(np.asarray(y, dtype=float), float(lam)))
+    plain.probe(start)
     return plain, plain
 
 
@@ -228,7 +229,8 @@ class Search:
         if lam == goal or (lam - near) * (near - goal) <= 0.0:
             return []
         start = (before.u, before.tangent)
-        traced = Tracer(self.homotopy, start=start, target=near, finish=_never, budget=Budget(steps=TAIL_STEPS))
+        budget = Budget(steps=TAIL_STEPS)
+        traced = Tracer(self.homotopy, start=start, target=near, finish=_never, examine=False, budget=budget)
         with suppress(EvaluationError):
             for _ in traced:
                 pass

@@ -16,7 +16,7 @@ from continuation.intervals.ends import EPS, Ends, thin
 DEPTH = 3
 """A slab without a sign is cut so often at most: where that does not help the tube is too wide."""
 
-PARTS = {2: 2, 3: 2}
+PARTS = {1: 4, 2: 2, 3: 2}
 """Into how many parts, by the engine's order: with either what it leaves of the derivative is a quarter at most."""
 
 

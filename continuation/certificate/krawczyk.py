@@ -28,7 +28,11 @@ ENTRIES = 2_000_000
 """Numbers of one array while many slabs go through a residual together: 16 MB."""
 
 
-PARTS = 8
+FEW = 16
+"""Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
+Bratu's equation with 30 none, and its proof took eight times as long."""
+
+PARTS = 4
 """Into so many parts a slab is cut to bound H along the cubic: what Taylor's formula leaves of it is of third order."""
 
 
@@ -61,18 +65,24 @@ class Engine(Protocol):
     ----------
     exact : bool
         Whether bounds hold for all radii, and smaller ones need no new judgement.
-    order : int
-        To which power of a slab's length |I - Y(s) G'(p(s))| falls.
-    most : int
-        Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more.
-    fine : int
-        Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more.
     """
 
     exact: ClassVar[bool]
-    order: ClassVar[int]
-    most: ClassVar[int]
-    fine: ClassVar[int]
+
+    @property
+    def order(self) -> int:
+        """To which power of a slab's length |I - Y(s) G'(p(s))| falls."""
+        ...
+
+    @property
+    def most(self) -> int:
+        """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
+        ...
+
+    @property
+    def fine(self) -> int:
+        """Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more."""
+        ...
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
@@ -99,13 +109,33 @@ class ByIntervals:
     ----------
     residual : callable
         ``residual(y, lam)``, of the homotopy.
+    unknowns : int
+        N. Up to `FEW` the preconditioner follows the path.
     """
 
     residual: Callable[[Any, Any], Any]
+    unknowns: int
     exact: ClassVar[bool] = False
-    order: ClassVar[int] = 2
-    most: ClassVar[int] = 8
-    fine: ClassVar[int] = 1
+
+    @property
+    def moving(self) -> bool:
+        """Whether the preconditioner follows the path."""
+        return self.unknowns <= FEW
+
+    @property
+    def order(self) -> int:
+        """One more than that of the preconditioner."""
+        return 2 if self.moving else 1
+
+    @property
+    def most(self) -> int:
+        """See `Engine`."""
+        return 8 if self.moving else 16
+
+    @property
+    def fine(self) -> int:
+        """See `Engine`."""
+        return 1 if self.moving else 4
 
     def image(self, u: Interval) -> Interval:
         """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""
@@ -137,7 +167,7 @@ class ByIntervals:
         some, tube = slabs.take(place), radius[place]
         x = some.offset[:, None]
         over = expansion(some).over(Ends(-x, x))
-        if not x.any():
+        if not (self.moving and x.any()):
             return [(place, self._still(some, tube, over))]
         moving = self._moving(some, tube, over)
         smooth = np.isfinite(moving.off).all(axis=(1, 2))
@@ -196,7 +226,7 @@ class ByIntervals:
         The lengths of the e_j are those of the cell, which makes both of a size.
         """
         count, m = unit.shape
-        step = 2.0 ** np.round(np.log2(unit))
+        step: Array = np.exp2(np.round(np.log2(unit)))
         along = np.zeros((2, m, count, m))
         for sign, part in zip((1.0, -1.0), along):
             part[np.arange(m), :, np.arange(m)] = sign * step.T
@@ -212,7 +242,7 @@ class ByIntervals:
 
     def _misfit(self, slabs: Slabs, Y: Array) -> Array:
         """|Y H(p(s))| by Taylor's formula about the middle of each part, to second order; to first at kinks."""
-        parts = PARTS if slabs.half.any() else 1
+        parts = PARTS if self.moving and slabs.half.any() else 1
         fine = slabs.halved(parts)
         curve, x, left = expansion(fine), fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0)
         over, count = curve.over(Ends(-x, x)), len(fine)
@@ -225,7 +255,7 @@ class ByIntervals:
             linear = size_of(left, at[1]) * x + size_of(left, along[2]) * x * x
             blunt = size_of(left, along[1]) * x
             bound = up_by(size_of(left, at[0]) + np.fmin(linear, blunt), 4)
-            return bound.reshape(len(slabs), parts, -1).max(axis=1)
+            return np.asarray(bound.reshape(len(slabs), parts, -1).max(axis=1))
 
 
 def size_of(Y: Array, v: Ends) -> Array:
