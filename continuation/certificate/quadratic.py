@@ -8,6 +8,7 @@ of third order is formed.
 
 from __future__ import annotations
 
+from functools import cached_property
 from math import comb
 from typing import ClassVar
 
@@ -174,7 +175,7 @@ class Derivative:
         return up_by(crossed * (1.0 + ROUNDED) ** 2, 2 * x.shape[1])
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Polynomial:
     """The bounds as polynomials in the offset: what is left of I - Y(s) G'(p(s) + d), applied to vectors."""
 
@@ -189,6 +190,16 @@ class Polynomial:
     C: Array
     third: Array
     offset: Array
+
+    @cached_property
+    def size_E(self) -> Array:
+        """|E|."""
+        return np.abs(self.E)
+
+    @cached_property
+    def size_C(self) -> Array:
+        """|C|."""
+        return np.abs(self.C)
 
     @classmethod
     def of(cls, derivative: Derivative, chart: Array, H: Ends, offset: Array, radius: Array) -> Polynomial:
@@ -243,7 +254,7 @@ class Polynomial:
                 return up_by(base + quadratic, 4 * m + 16)
             # |Y_0 G_k - E, F, H| x: rounding of the products.
             first, second, last = (gamma * size[..., k] + error[..., k] for k in (1, 2, 3))
-            size_E, size_C = np.abs(self.E), np.abs(self.C)
+            size_E, size_C = self.size_E, self.size_C
             by_F, by_H = times(self.size_F, x), size[..., 3] + error[..., 3]
             by_E = np.matmul(size_E, np.stack([x, base, first, by_F, second, by_H, quadratic], axis=-1))
             inner = [base, by_E[..., 0], first, by_F + second, by_H, quadratic]

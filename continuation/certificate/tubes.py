@@ -30,6 +30,9 @@ WIDE = 10.0
 ROUNDS, RADII = 6, 12
 """Tests of a cell, and radii that are tried with the bounds of one of them."""
 
+SOON, HOPELESS = 3, 1.3
+"""After so many radii their shape has settled; where the image is then wider than they are by so much, it stays so."""
+
 CONTRACTING = 0.6
 """A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
 power that is the engine's order; at half of it a test holds at once."""
@@ -152,12 +155,13 @@ def _fixed_point(
         radius = np.minimum(np.maximum(2.0 * off, least), bounded)
         radius = np.where(np.isfinite(radius), radius, cells.radius)
         kappa = np.full(count, np.inf)
-        for _ in range(RADII):
+        for k in range(RADII):
             image = _largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, count)
             kappa = (image / radius).max(axis=1)
             total = off + image
             inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
-            if (inside | ~(radius <= WIDE * scale).all(axis=1)).all():
+            hopeless = ~(radius <= WIDE * scale).all(axis=1) | (k >= SOON) & (kappa > HOPELESS)
+            if (inside | hopeless).all():
                 break
             radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
         return radius, kappa, (off / scale).max(axis=1)
