@@ -105,6 +105,19 @@ def between(
     return Cells(begin[None], end[None], first, last, chart[None], nothing, one, np.array([place]))
 
 
+def sizes(cells: Cells) -> Array:
+    """How far a cell goes in each component; where that is little, a share of what its metric counts as much."""
+    far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
+    with np.errstate(all="ignore"):
+        # chart = weights * chord up to a factor: the square root of chord over chart is a length of that metric.
+        unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
+        length = np.sqrt(np.sum(np.abs(cells.chart * (cells.end - cells.begin)), axis=1, keepdims=True))
+        alike = 1e-6 * length * unit
+    alike = np.where(np.isfinite(alike), alike, 0.0)
+    out: Array = np.maximum(far, alike)
+    return out + 64.0 * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end)) + np.finfo(float).tiny
+
+
 @frozen(eq=False)
 class Slabs:
     """Parts of cells: the parameter within `half` of `middle`; arrays of shape (slabs,) and of cells, one a slab.

@@ -13,9 +13,10 @@ from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.folds import Piece, Signs, pieces
+from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.proof import Gap, Proof
-from continuation.certificate.quadratic import ByProducts, SupportsQuadratic
+from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
@@ -34,9 +35,6 @@ NEXT_TO_END = 1e-6
 
 TAIL_STEPS = 300
 
-FINE = 4
-"""Slabs of a halved cell to begin with: its misfit is of third order in their length, and thin tubes tell more."""
-
 DEPTH = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
 
@@ -53,11 +51,12 @@ def engines(homotopy: Any) -> tuple[Engine, ByIntervals]:
     TypeError
         If the residual does not run on interval arrays; the message names the operation.
     """
-    plain = ByIntervals(homotopy.residual)
+    y, lam = homotopy.start()
+    start = np.append(np.asarray(y, dtype=float), float(lam))
+    plain = ByIntervals(homotopy.residual, len(start) - 1)
     if isinstance(homotopy, SupportsQuadratic):
         return ByProducts(homotopy.quadratic()), plain
-    y, lam = homotopy.start()
-    plain.probe(np.append(np.asarray(y, dtype=float), float(lam)))
+    plain.probe(start)
     return plain, plain
 
 
@@ -176,7 +175,7 @@ class Search:
                 break
             trial = joined([_cell(a, b) for a, b in pending])
             if depth:
-                trial = trial.with_tubes(trial.radius, np.full(len(trial), FINE))
+                trial = trial.with_tubes(trial.radius, np.full(len(trial), self.engine.fine))
             found = search(self.engine, trial)
             proved = found.cells.take(found.proved)
             known = [one for one in found.signs if one is not None]
@@ -230,7 +229,8 @@ class Search:
         if lam == goal or (lam - near) * (near - goal) <= 0.0:
             return []
         start = (before.u, before.tangent)
-        traced = Tracer(self.homotopy, start=start, target=near, finish=_never, budget=Budget(steps=TAIL_STEPS))
+        budget = Budget(steps=TAIL_STEPS)
+        traced = Tracer(self.homotopy, start=start, target=near, finish=_never, examine=False, budget=budget)
         with suppress(EvaluationError):
             for _ in traced:
                 pass

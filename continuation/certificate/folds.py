@@ -13,8 +13,11 @@ from continuation.certificate.krawczyk import ByIntervals, Engine, Judged, solve
 from continuation.intervals.calculus import along_curve
 from continuation.intervals.ends import EPS, Ends, thin
 
-PARTS, DEPTH = 4, 3
-"""A slab without a sign is cut in four, three times at most: where that does not help the tube is too wide."""
+DEPTH = 3
+"""A slab without a sign is cut so often at most: where that does not help the tube is too wide."""
+
+PARTS = {1: 4, 2: 2, 3: 2}
+"""Into how many parts, by the engine's order: with either what it leaves of the derivative is a quarter at most."""
 
 
 NARROWER = 3
@@ -73,6 +76,7 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Sig
     slabs = slabs_of(cells)
     radius = slabs.cells.radius
     found: list[Piece] = []
+    parts = PARTS[engine.order]
     for depth in range(DEPTH + 1):
         bend = np.zeros(len(slabs), dtype=np.intp)
         if known and not depth:
@@ -91,7 +95,7 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Sig
         if keep.all():
             break
         # The curve in a part lies where that in the whole does: radii that were found are kept.
-        slabs, radius = slabs.take(~keep).halved(PARTS), np.repeat(radius[~keep], PARTS, axis=0)
+        slabs, radius = slabs.take(~keep).halved(parts), np.repeat(radius[~keep], parts, axis=0)
     return sorted(found, key=lambda piece: (piece.cell, piece.lo))
 
 

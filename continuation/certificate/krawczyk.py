@@ -18,13 +18,22 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Index, Slabs, expansion
+from continuation.certificate.cells import Index, Slabs, expansion, sizes
+from continuation.certificate.inverse import inverses, times
 from continuation.intervals.array import Interval, UndecidedError, as_interval
 from continuation.intervals.calculus import along_curve, derivatives, with_gradient
 from continuation.intervals.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
 
 ENTRIES = 2_000_000
 """Numbers of one array while many slabs go through a residual together: 16 MB."""
+
+
+FEW = 16
+"""Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
+Bratu's equation with 30 none, and its proof took eight times as long."""
+
+PARTS = 4
+"""Into so many parts a slab is cut to bound H along the cubic: what Taylor's formula leaves of it is of third order."""
 
 
 class Judged(Protocol):
@@ -60,6 +69,21 @@ class Engine(Protocol):
 
     exact: ClassVar[bool]
 
+    @property
+    def order(self) -> int:
+        """To which power of a slab's length |I - Y(s) G'(p(s))| falls."""
+        ...
+
+    @property
+    def most(self) -> int:
+        """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
+        ...
+
+    @property
+    def fine(self) -> int:
+        """Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more."""
+        ...
+
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
         ...
@@ -71,28 +95,10 @@ def up_by(x: Array, count: int) -> Array:
     return bound
 
 
-def times(matrix: Array, x: Array) -> Array:
-    """Matrices times vectors, slab by slab."""
-    product: Array = np.matmul(matrix, x[..., None])[..., 0]
-    return product
-
-
 def applied(Y: Array, v: Ends) -> Ends:
     """The range of matrices times interval vectors, slab by slab."""
     image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
     return Ends(image.lo[..., 0], image.hi[..., 0])
-
-
-def inverses(matrices: Array) -> Array:
-    """Approximate inverses of a stack; nan for a singular one."""
-    try:
-        return np.asarray(np.linalg.inv(matrices), dtype=float)
-    except np.linalg.LinAlgError:
-        out = np.full_like(matrices, np.nan)
-        for k, matrix in enumerate(matrices):
-            if np.isfinite(matrix).all() and np.linalg.matrix_rank(matrix) == len(matrix):
-                out[k] = np.linalg.inv(matrix)
-        return out
 
 
 @frozen(eq=False)
@@ -103,10 +109,33 @@ class ByIntervals:
     ----------
     residual : callable
         ``residual(y, lam)``, of the homotopy.
+    unknowns : int
+        N. Up to `FEW` the preconditioner follows the path.
     """
 
     residual: Callable[[Any, Any], Any]
+    unknowns: int
     exact: ClassVar[bool] = False
+
+    @property
+    def moving(self) -> bool:
+        """Whether the preconditioner follows the path."""
+        return self.unknowns <= FEW
+
+    @property
+    def order(self) -> int:
+        """One more than that of the preconditioner."""
+        return 2 if self.moving else 1
+
+    @property
+    def most(self) -> int:
+        """See `Engine`."""
+        return 8 if self.moving else 16
+
+    @property
+    def fine(self) -> int:
+        """See `Engine`."""
+        return 1 if self.moving else 4
 
     def image(self, u: Interval) -> Interval:
         """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""
@@ -129,41 +158,104 @@ class ByIntervals:
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`."""
         m = radius.shape[1]
-        size = max(1, ENTRIES // (m * (m + 1)))
+        size = max(1, ENTRIES // (6 * m * (m + 1)))
         places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
-        return Several.of([(place, self._judge(slabs.take(place), radius[place])) for place in places])
+        return Several.of([part for place in places for part in self._judge(slabs, radius, place)])
 
-    def _judge(self, slabs: Slabs, radius: Array) -> Bounded:
-        curve, x = expansion(slabs), slabs.offset[:, None]
-        value, first, bend = curve.over(Ends(-x, x))
-        box = value + Ends(-radius, radius)
-        lo, hi = derivatives(self.image(with_gradient(box.lo, box.hi)), radius.shape[1])
+    def _judge(self, slabs: Slabs, radius: Array, place: Index) -> list[tuple[Index, Any]]:
+        """With a preconditioner that follows the path; one that stands still where H' has no derivative, at kinks."""
+        some, tube = slabs.take(place), radius[place]
+        x = some.offset[:, None]
+        over = expansion(some).over(Ends(-x, x))
+        if not (self.moving and x.any()):
+            return [(place, self._still(some, tube, over))]
+        moving = self._moving(some, tube, over)
+        smooth = np.isfinite(moving.off).all(axis=(1, 2))
+        if smooth.all():
+            return [(place, moving)]
+        rough = np.flatnonzero(~smooth)
+        still = self._still(some.take(rough), tube[rough], tuple(u[rough] for u in over))
+        if not smooth.any():
+            return [(place, still)]
+        return [(place[smooth], moving.take(smooth)), (place[rough], still)]
+
+    def _still(self, slabs: Slabs, radius: Array, over: Any) -> Bounded:
+        Y, off = self._inverse(slabs, over[0] + Ends(-radius, radius))
+        return Bounded(self._misfit(slabs, Y), Y, up_by(off, 1), radius, np.zeros_like(Y), slabs.offset[:, None])
+
+    def _moving(self, slabs: Slabs, radius: Array, over: Any) -> Bounded:
+        """With Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W for x = s - middle.
+
+        G_0 is the range of G' over the box around the middle alone, W that of H''(p'(s), .) over the whole. With
+        R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D).
+        """
+        q, m, x = expansion(slabs).q, radius.shape[1], slabs.offset[:, None, None]
+        room = Ends(-radius, radius)
+        Y, R = self._inverse(slabs, q[0] + room)
+        left = Y[:, :, :-1]
+        with np.errstate(all="ignore"):
+            W = self._change(over[0] + room, over[1], sizes(slabs.cells))
+            middle = W.middle()
+            E = np.matmul(left, middle)
+            size_E = np.abs(E)
+            D = np.matmul(np.abs(left), W.radius(middle) + accumulated(m) * np.abs(middle))
+            square = np.abs(np.matmul(E, E)) + np.matmul(size_E, accumulated(m) * size_E + D)
+            off = up_by(R + x * (D + np.matmul(size_E, R) + x * square), 4 * m)
+            misfit = self._misfit(slabs, Y)
+            misfit = up_by(misfit + x[:, 0] * times(size_E, misfit), m + 2)
+        return Bounded(misfit, Y, off, radius, E, x[:, 0])
+
+    def _inverse(self, slabs: Slabs, box: Ends) -> tuple[Array, Array]:
+        """An inverse Y of the middle of G' over a box, and a bound of |I - Y G'| entry by entry."""
+        m = box.shape[1]
+        lo, hi = derivatives(self.image(with_gradient(box.lo, box.hi)), m)
         middle = 0.5 * lo + 0.5 * hi
-        chart = slabs.cells.chart[:, None, :]
-        full = np.concatenate([middle, chart], axis=1)
+        full = np.concatenate([middle, slabs.cells.chart[:, None, :]], axis=1)
         with np.errstate(all="ignore"):
             Y = inverses(full)
             width = Ends(lo, hi).radius(middle)
-            size_Y, m = np.abs(Y), radius.shape[1]
+            size_Y = np.abs(Y)
             off = np.abs(np.eye(m) - np.matmul(Y, full))
             # Rounding of Y times the middle, of the subtraction, and the width of the derivative.
             off = up_by(off + accumulated(m) * (np.matmul(size_Y, np.abs(full)) + np.eye(m)), 2)
-            off = off + up_by(np.matmul(size_Y[:, :, :-1], width), m)
-            misfit = self._misfit(curve, (value, first, bend), Y[:, :, :-1], x)
-        return Bounded(misfit, Y, up_by(off, 1), radius)
+            return Y, off + up_by(np.matmul(size_Y[:, :, :-1], width), m)
 
-    def _misfit(self, curve: Any, over: tuple[Ends, Ends, Ends], Y: Array, x: Array) -> Array:
-        """|Y H(p(s))| by Taylor's formula about the middle, to second order; to first order where H has kinks."""
-        q0, q1, q2, _ = curve.q
-        count = len(x)
-        both = [Ends(np.concatenate([p.lo, q.lo]), np.concatenate([p.hi, q.hi])) for p, q in zip((q0, q1, q2), over)]
+    def _change(self, box: Ends, velocity: Ends, unit: Array) -> Ends:
+        """The range of H''(p', e_j), shape (slabs, N, m): H''(a, b) is a difference of H'' along a + b and a - b.
+
+        The lengths of the e_j are those of the cell, which makes both of a size.
+        """
+        count, m = unit.shape
+        step: Array = np.exp2(np.round(np.log2(unit)))
+        along = np.zeros((2, m, count, m))
+        for sign, part in zip((1.0, -1.0), along):
+            part[np.arange(m), :, np.arange(m)] = sign * step.T
+        shape = (2 * m * count, m)
+        direction = thin(along.reshape(shape)) + Ends(*(np.tile(v, (2 * m, 1)) for v in (velocity.lo, velocity.hi)))
+        boxes = Ends(*(np.tile(v, (2 * m, 1)) for v in (box.lo, box.hi)))
+        image = self.image(along_curve(boxes, direction, thin(np.zeros(shape)))).ends
+        if len(image.lo) < 3:  # constant along every line
+            return thin(np.zeros((count, m - 1, m)))
+        both = Ends(*(v[2].reshape(2, m, count, m - 1) for v in (image.lo, image.hi)))
+        change = (both[0] - both[1]) * thin(0.5 / step.T[:, :, None])
+        return Ends(*(v.transpose(1, 2, 0) for v in (change.lo, change.hi)))
+
+    def _misfit(self, slabs: Slabs, Y: Array) -> Array:
+        """|Y H(p(s))| by Taylor's formula about the middle of each part, to second order; to first at kinks."""
+        parts = PARTS if self.moving and slabs.half.any() else 1
+        fine = slabs.halved(parts)
+        curve, x, left = expansion(fine), fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0)
+        over, count = curve.over(Ends(-x, x)), len(fine)
+        both = [Ends(np.concatenate([p.lo, q.lo]), np.concatenate([p.hi, q.hi])) for p, q in zip(curve.q, over)]
         image = self.image(along_curve(*both)).ends
         if len(image.lo) == 1:  # constant along the curve
             image = Ends(*(np.concatenate([e, np.zeros((2, *e.shape[1:]))]) for e in (image.lo, image.hi)))
         at, along = image[:, :count], image[:, count:]
-        linear = size_of(Y, at[1]) * x + size_of(Y, along[2]) * x * x
-        blunt = size_of(Y, along[1]) * x
-        return up_by(size_of(Y, at[0]) + np.fmin(linear, blunt), 4)
+        with np.errstate(all="ignore"):
+            linear = size_of(left, at[1]) * x + size_of(left, along[2]) * x * x
+            blunt = size_of(left, along[1]) * x
+            bound = up_by(size_of(left, at[0]) + np.fmin(linear, blunt), 4)
+            return np.asarray(bound.reshape(len(slabs), parts, -1).max(axis=1))
 
 
 def size_of(Y: Array, v: Ends) -> Array:
@@ -180,15 +272,24 @@ class Bounded:
     Y: Array
     off: Array
     largest: Array
+    E: Array
+    offset: Array
+
+    def take(self, index: Any) -> Bounded:
+        """Those of some slabs."""
+        return Bounded(*(x[index] for x in (self.misfit, self.Y, self.off, self.largest, self.E, self.offset)))
 
     @property
     def across(self) -> Ends:
-        """Y is the same all over the slab."""
-        return thin(self.Y[:, :, -1])
+        """Y(s) = (I - x E) Y_0."""
+        return self._moved(thin(self.Y[:, :, -1]))
 
     def applied(self, v: Ends) -> Ends:
-        """Y is the same all over the slab."""
-        return applied(self.Y, v)
+        """Y(s) = (I - x E) Y_0."""
+        return self._moved(applied(self.Y, v))
+
+    def _moved(self, image: Ends) -> Ends:
+        return image + Ends(-self.offset, self.offset) * applied(self.E, image)
 
     def spread(self, x: Array, radius: Array) -> Array:
         """Nothing is known (nan) beyond the largest radii."""

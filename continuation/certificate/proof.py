@@ -72,6 +72,8 @@ class Proof:
         What is known of the end, in words.
     end_radius : ndarray or None
         Where the end is proved to lie on the curve, exactly at the target: how far from the stored one it is at most.
+    kinks : tuple of tuple of float
+        Of a homotopy in pieces, ranges of arclength with exactly one zero of a switch each; elsewhere none vanishes.
     """
 
     cells: Cells
@@ -80,6 +82,7 @@ class Proof:
     turning_points: tuple[tuple[float, float], ...]
     end: str
     end_radius: Array | None = None
+    kinks: tuple[tuple[float, float], ...] = ()
 
     @classmethod
     def empty(cls, width: int, gap: Gap) -> Proof:

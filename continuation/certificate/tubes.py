@@ -6,7 +6,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
+from continuation.certificate.cells import Cells, Index, Slabs, expansion, sizes, slabs_of
 from continuation.certificate.folds import Signs, signs
 from continuation.certificate.krawczyk import Engine, Judged
 from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
@@ -30,25 +30,12 @@ WIDE = 10.0
 ROUNDS, RADII = 6, 12
 """Tests of a cell, and radii that are tried with the bounds of one of them."""
 
+SOON, HOPELESS = 3, 1.3
+"""After so many radii their shape has settled; where the image is then wider than they are by so much, it stays so."""
+
 CONTRACTING = 0.6
-"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls in proportion to their
-length; at half of it a test holds at once."""
-
-MOST_SLABS = 16
-"""Beyond so many a new point of the path is worth more."""
-
-
-def sizes(cells: Cells) -> Array:
-    """How far a cell goes in each component; where that is little, a share of what its metric counts as much."""
-    far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
-    with np.errstate(all="ignore"):
-        # chart = weights * chord up to a factor: the square root of chord over chart is a length of that metric.
-        unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
-        length = np.sqrt(np.sum(np.abs(cells.chart * (cells.end - cells.begin)), axis=1, keepdims=True))
-        alike = 1e-6 * length * unit
-    alike = np.where(np.isfinite(alike), alike, 0.0)
-    out: Array = np.maximum(far, alike)
-    return out + 64.0 * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end)) + np.finfo(float).tiny
+"""A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
+power that is the engine's order; at half of it a test holds at once."""
 
 
 def holds(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
@@ -142,17 +129,19 @@ def search(engine: Engine, cells: Cells) -> Found:
         undefined[pending] = ~np.isfinite(off)
         radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
-        more = ~good & ~(kappa < CONTRACTING)
+        # Bounds that hold for all radii are the same again; the others are not.
+        more = ~good & (engine.exact | ~(kappa < CONTRACTING))
         with np.errstate(all="ignore"):
-            factor = np.where(np.isfinite(kappa), np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0)), 4.0)
+            least = np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0) ** (1.0 / engine.order))
+            factor = np.where(np.isfinite(kappa), least, 4.0)
         grown = np.where(more, np.maximum(2, factor) * slabs[pending], slabs[pending]).astype(np.intp)
-        slabs[pending] = np.minimum(grown, MOST_SLABS + 1)
+        slabs[pending] = np.minimum(grown, engine.most + 1)
         again = more | ~np.asarray(np.isfinite(wanted).all(axis=1))
         radius[pending] = np.where(
             (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
         )
-        pending = pending[~good & (slabs[pending] <= MOST_SLABS)]
-    return Found(cells.with_tubes(radius, np.minimum(slabs, MOST_SLABS)), proved, undefined, told)
+        pending = pending[~good & (slabs[pending] <= engine.most)]
+    return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, told)
 
 
 def _fixed_point(
@@ -166,12 +155,13 @@ def _fixed_point(
         radius = np.minimum(np.maximum(2.0 * off, least), bounded)
         radius = np.where(np.isfinite(radius), radius, cells.radius)
         kappa = np.full(count, np.inf)
-        for _ in range(RADII):
+        for k in range(RADII):
             image = _largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, count)
             kappa = (image / radius).max(axis=1)
             total = off + image
             inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
-            if (inside | ~(radius <= WIDE * scale).all(axis=1)).all():
+            hopeless = ~(radius <= WIDE * scale).all(axis=1) | (k >= SOON) & (kappa > HOPELESS)
+            if (inside | hopeless).all():
                 break
             radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
         return radius, kappa, (off / scale).max(axis=1)

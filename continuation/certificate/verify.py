@@ -9,12 +9,14 @@ import numpy as np
 from attrs import evolve
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined, sizes
 from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.krawczyk import ByIntervals, Engine
 from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.tubes import along, check, sizes
+from continuation.certificate.switches import crossings
+from continuation.certificate.tubes import along, check
+from continuation.homotopy import SupportsPieces
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
@@ -81,10 +83,11 @@ def verified(
     places = [_place(cells, event) for event in path.events]
     places = _on_curve(engine, cells, path.events, places)
     turning, more = _turning(cells, found or pieces(engine, plain, cells), path, places)
-    gaps += more + _events(path, places)
+    kinks, others = _kinks(engine, cells, homotopy, path, places)
+    gaps += more + others + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
     gaps += missing
-    return Proof(cells, at.radius, merged(gaps), turning, end, radius)
+    return Proof(cells, at.radius, merged(gaps), turning, end, radius, kinks)
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Cells, Nodes, Mask, Nodes]:
@@ -156,22 +159,43 @@ def _turning(
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
     turning = {id(event) for event in path.turning_points}
     listed = [(p, event.arclength) for p, event in zip(places, path.events) if id(event) in turning]
+    gaps += _unlike(cells, understood, listed, "turning point")
+    return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
+
+
+def _kinks(
+    engine: Engine, cells: Cells, homotopy: Any, path: Path, places: list[float | None]
+) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
+    """The same of zeros of switches; several may have theirs at one kink."""
+    if not isinstance(homotopy, SupportsPieces):
+        return (), []
+    understood, unknown = crossings(engine, ByIntervals(homotopy.switches, cells.begin.shape[1] - 1), cells)
+    gaps = [Gap(*_range(cells, *place), "kinks could not be counted") for place in unknown]
+    listed = [(p, event.arclength) for p, event in zip(places, path.events) if event.kind is Kind.KINK]
+    gaps += _unlike(cells, understood, listed, "kink", shared=True)
+    return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
+
+
+def _unlike(
+    cells: Cells, found: list[Turn], listed: list[tuple[float | None, float]], name: str, shared: bool = False
+) -> list[Gap]:
+    """Where what was found is not what is listed."""
+    gaps: list[Gap] = []
     used: set[int] = set()
-    for turn in understood:
+    for turn in found:
         slack = 2.0 * OVERHANG
         inside = [
             k
             for k, (place, _) in enumerate(listed)
-            if place is not None and k not in used and turn.lo - slack <= place <= turn.hi + slack
+            if place is not None and (shared or k not in used) and turn.lo - slack <= place <= turn.hi + slack
         ]
-        if len(inside) != 1 and (turn.certain or inside):
-            reason = "a turning point that the path does not list" if not inside else "more turning points are listed"
+        most = sum(other.lo <= turn.hi and turn.lo <= other.hi for other in found) if shared else 1
+        if (turn.certain and not inside) or len(inside) > most:
+            reason = f"a {name} that the path does not list" if not inside else f"more {name}s are listed"
             gaps.append(Gap(*_range(cells, turn.lo, turn.hi), reason))
         used.update(inside)
-    gaps += [
-        Gap(s, s, "a turning point is listed where there is none") for k, (_, s) in enumerate(listed) if k not in used
-    ]
-    return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
+    gaps += [Gap(s, s, f"a {name} is listed where there is none") for k, (_, s) in enumerate(listed) if k not in used]
+    return gaps
 
 
 def _counts(turn: Turn, listed: list[tuple[float | None, float]]) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.certificate.quadratic import Affine, Quadratic
+from continuation.certificate.form import Affine, Quadratic
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.certificate import certify_exactly
 

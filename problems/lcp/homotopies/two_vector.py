@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.certificate.quadratic import Quadratic
+from continuation.certificate.form import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure

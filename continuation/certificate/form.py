@@ -1,0 +1,100 @@
+"""Residuals that are quadratic in all unknowns and the parameter: their affine parts, and products of these."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Index
+from continuation.intervals.ends import EPS, Ends, Mask, thin
+
+
+@frozen(eq=False, slots=False)
+class Affine:
+    """u -> constant + matrix u, for u = (y, lam); where an entry is a rounded sum, `sizes` are those of its terms.
+
+    Parameters
+    ----------
+    constant : ndarray, shape (N,)
+    matrix : ndarray, shape (N, N + 1)
+    sizes : ndarray, shape (N, N + 1), optional
+        Sums of the absolute values of what an entry is the sum of; zero where it is exact.
+    constant_sizes : ndarray, shape (N,), optional
+    """
+
+    constant: Array
+    matrix: Array
+    sizes: Array | None = None
+    constant_sizes: Array | None = None
+
+    @cached_property
+    def size(self) -> Array:
+        """Of each entry, at least."""
+        return np.abs(self.matrix) if self.sizes is None else np.maximum(self.sizes, np.abs(self.matrix))
+
+    @cached_property
+    def error(self) -> Array:
+        """Of each entry."""
+        return np.zeros_like(self.matrix) if self.sizes is None else ROUNDED * self.sizes
+
+    @cached_property
+    def constant_ends(self) -> Ends:
+        """The constant."""
+        if self.constant_sizes is None:
+            return thin(self.constant)
+        room = ROUNDED * self.constant_sizes
+        return Ends(self.constant - room, self.constant + room)
+
+
+ROUNDED = 8.0 * EPS
+"""Error of a sum of up to eight exact terms, against the sum of their sizes: seven roundings, and that of the bound."""
+
+
+@frozen(eq=False, slots=False)
+class Quadratic:
+    """H(u) = plain(u) + first(u) second(u), component by component, each part affine in u = (y, lam).
+
+    Parameters
+    ----------
+    plain, first, second : Affine
+    """
+
+    plain: Affine
+    first: Affine
+    second: Affine
+
+    @cached_property
+    def pivots(self) -> tuple[Index, Index]:
+        """Rows and columns of H' where it is diagonal, whatever u is: multipliers, each in an equation of its own."""
+        there: Mask = (self.plain.matrix != 0.0) | (self.first.matrix != 0.0) | (self.second.matrix != 0.0)
+        free_rows, free_columns = np.ones_like(there[:, 0]), np.ones_like(there[0])
+        per_row, found = there.sum(axis=1), []
+        for j in np.argsort(there[:, :-1].sum(axis=0), kind="stable").tolist():
+            rows = np.flatnonzero(there[:, j] & free_rows)
+            i = int(rows[np.argmin(per_row[rows])]) if len(rows) else -1
+            if i < 0 or not free_columns[j]:
+                continue
+            found.append((i, j))
+            # No other pair may have an entry in this row or in this column.
+            free_rows = free_rows & ~there[:, j]
+            free_columns = free_columns & ~there[i]
+        pairs = np.array(found, dtype=np.intp).reshape(-1, 2)
+        return pairs[:, 0], pairs[:, 1]
+
+
+@runtime_checkable
+class SupportsQuadratic(Protocol):
+    """A homotopy whose residual is quadratic in (y, lam) says how: its proofs are then cheap."""
+
+    def quadratic(self) -> Quadratic:
+        """The residual as affine parts and products of them, its data taken as the numbers that they are.
+
+        Returns
+        -------
+        Quadratic
+        """
+        ...

@@ -1,0 +1,93 @@
+"""Proofs of paths with kinks: each switch keeps its sign on each piece, and the kinks are those that are listed."""
+
+import attrs
+import numpy as np
+import pytest
+from attrs import evolve
+
+from continuation import Path, certify, trace
+from continuation.certificate.inverse import inverted
+from continuation.status import Kind
+
+
+def bent(y, lam, a, b):
+    """Two equations with a = |x - 1/2| and b = |lam - 7/10|, or one of their pieces."""
+    x, z = y
+    return np.stack([x - np.sin(z) - 0.3 * a - lam + 0.15, z - 0.5 * x * x - 0.4 * b - 0.2 * lam + 0.28])
+
+
+@attrs.frozen
+class OnePiece:
+    signs: tuple
+
+    def start(self):
+        return np.zeros(2), 0.0
+
+    def residual(self, y, lam):
+        return bent(y, lam, self.signs[0] * (y[0] - 0.5), self.signs[1] * (lam - 0.7))
+
+
+@attrs.frozen
+class Bent:
+    """Its path has two kinks, and two turning points between them."""
+
+    target: float = 1.5
+
+    def start(self):
+        return np.zeros(2), 0.0
+
+    def residual(self, y, lam):
+        return bent(y, lam, np.abs(y[0] - 0.5), np.abs(lam - 0.7))
+
+    def switches(self, y, lam):
+        return np.stack([y[0] - 0.5, lam - 0.7])
+
+    def piece(self, signs):
+        return OnePiece(tuple(signs))
+
+
+@pytest.fixture(scope="module")
+def path():
+    return trace(Bent())
+
+
+def listing(path, events):
+    return Path(steps=path.steps, events=sorted(events, key=lambda e: e.arclength), status=path.status)
+
+
+def test_the_kinks_are_isolated(path):
+    proof = certify(path, Bent())
+    assert proof.complete, str(proof)
+    assert [kink.arclength for kink in path.kinks] == [
+        pytest.approx(0.5 * (lo + hi), abs=0.5 * (hi - lo)) for lo, hi in proof.kinks
+    ]
+    assert len(proof.kinks) == len(proof.turning_points) == 2
+
+
+@pytest.mark.parametrize("gone", range(2))
+def test_a_kink_that_is_not_listed_is_a_gap(path, gone):
+    events = [event for event in path.events if event is not path.kinks[gone]]
+    assert "a kink that the path does not list" in str(certify(listing(path, events), Bent()))
+
+
+def test_a_kink_that_is_none_is_a_gap(path):
+    step = next(s for s in path.steps if s.arclength > path.turning_points[0].arclength)
+    event = evolve(path.kinks[0], arclength=step.arclength, u=step.u, step=step.index)
+    assert "a kink is listed where there is none" in str(certify(listing(path, [*path.events, event]), Bent()))
+
+
+def test_a_kink_that_is_listed_twice_is_a_gap(path):
+    assert "more kinks are listed" in str(certify(listing(path, [*path.events, path.kinks[0]]), Bent()))
+    assert path.kinks[0].kind is Kind.KINK
+
+
+def test_small_pivots_are_not_trusted():
+    """An inverse by elimination that is far off is replaced."""
+    rng = np.random.default_rng(0)
+    matrices = rng.normal(size=(2, 6, 6))
+    matrices[:, :2, :2] = np.eye(2) * [[[1.0]], [[1e-15]]]
+    radius = np.ones((2, 6))
+    pairs = np.arange(2), np.arange(2)
+    Y, off = inverted(matrices, *pairs, radius)
+    np.testing.assert_allclose(Y, np.linalg.inv(matrices), rtol=1e-9)
+    assert (off < 1e-9).all()
