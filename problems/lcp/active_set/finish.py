@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import define, field
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, least
 from continuation.counts import Counts
 from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
@@ -263,7 +263,7 @@ class Finish:
         signed = w if problem.standard else np.where(state == UPPER, -w, np.where(state == LOWER, w, 0.0))
         if not problem.standard:
             signed = np.where(problem.fixed, 0.0, signed)
-        low_x, low_w = float(inside.min()), float(signed.min())
+        low_x, low_w = least(inside), least(signed)
         if low_x >= 0.0 and low_w >= 0.0:
             return True
         size = float(np.abs(x).max())

@@ -17,7 +17,7 @@ from attrs import evolve
 
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, largest, least
 from continuation.budget import Budget
 from continuation.checks import check_flag, instance_with
 from continuation.counts import Counts
@@ -150,7 +150,7 @@ def solve(
         return _nothing(problem, archive)
     start = None if x0 is None else _start(x0, problem, automatic)
     near = _near(guess, problem)
-    if problem.fixed.any():
+    if not problem.standard and problem.fixed.any():
         small = without_fixed(problem)
         if start is not None:
             start = start[small.kept]
@@ -170,11 +170,13 @@ def solve(
     quick = postponed and problem.n <= at_once.LARGEST and not problem.sparse
     kept: dict[bytes, Face] | None = {} if quick else None
     immediate = None
-    if quick and start is None and near is None and problem.q.min() < 0.0:
+    if quick and start is None and near is None and least(problem.q) < 0.0:
         with np.errstate(all="ignore"):
             immediate = at_once.at_once(Finish(Faces(Structure(plain), kept=kept), tolerance))
             if immediate is not None and scaled is not None:
                 immediate = unscaled(problem, scaled, immediate, tolerance)
+            if immediate is None and problem.n <= at_once.LARGEST_FACES:
+                immediate = at_once.none_at_once(problem, plain)
         if immediate is not None and archive is None:
             return immediate
     if not postponed:
