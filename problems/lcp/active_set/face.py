@@ -99,10 +99,17 @@ class Face:
         w: Array = self.problem.A @ x + self.q
         return w + self.shift * x if isinstance(self.shift, np.ndarray) or self.shift else w
 
-    def refined(self, x: Array) -> Array:
-        """The point x of a face of the problem itself, corrected once with w in twice the working precision."""
+    def refined(self, x: Array, w: Array | None = None) -> Array:
+        """The point x of a face of the problem itself, corrected once with w in twice the working precision.
+
+        Parameters
+        ----------
+        x : Array
+        w : Array, optional
+            That w, where it is known.
+        """
         with np.errstate(over="ignore", invalid="ignore"):
-            return self._corrected(x, accurate_w(self.problem, x)[0])
+            return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
         corrected = x.copy()

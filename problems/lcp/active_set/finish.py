@@ -232,15 +232,16 @@ class Finish:
         # A certificate is worth its cost where the signs are right to about the tolerance.
         if not self._plausible(face.state, x, w):
             return x, w, False
-        best = certified(self.problem, self.problem.clipped(x))
+        best = now = certified(self.problem, self.problem.clipped(x))
         for _ in range(SIGN_CORRECTIONS):
             if best.relative_residual <= ROUND_OFF:
                 break
-            better = face.refined(x)
+            better = face.refined(x, now.w if np.array_equal(now.x, x) else None)
             if not np.isfinite(better).all():
                 break
             x, before = better, best.relative_residual
-            best = min(best, certified(self.problem, self.problem.clipped(x)), key=lambda one: one.relative_residual)
+            now = certified(self.problem, self.problem.clipped(x))
+            best = min(best, now, key=lambda one: one.relative_residual)
             if best.relative_residual > WORTH_MORE * before:
                 break
         if not best.solves(self.tolerance):

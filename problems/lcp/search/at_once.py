@@ -9,7 +9,7 @@ from attrs import evolve
 
 from continuation.counts import Counts
 from problems.lcp.active_set.finish import Finish
-from problems.lcp.data.problem import LCP, MixedLCP, active_state
+from problems.lcp.data.problem import MixedLCP, active_state
 from problems.lcp.proof.pieces import all_faces, doubtful
 from problems.lcp.proof.verdict import LARGEST_DECIDED, exact_nearby
 from problems.lcp.reference.enumeration import Exhaustion
@@ -46,16 +46,15 @@ def at_once(finish: Finish) -> Solution | None:
     return Solution(problem, Outcome.SOLVED, MESSAGE, certificate, (), -1, counts, time.perf_counter() - began)
 
 
-def none_at_once(problem: LCP, plain: MixedLCP) -> Solution | None:
+def none_at_once(problem: MixedLCP, plain: MixedLCP) -> Solution | None:
     """That no face holds a solution, proved in floats of all of them together; None where one is in doubt.
 
     It comes after `at_once`, the factorisation of which is counted.
 
     Parameters
     ----------
-    problem : LCP
-    plain : MixedLCP
-        The same over a common factor.
+    problem, plain : MixedLCP
+        An LCP, and the same over a common factor.
     """
     began, every = time.perf_counter(), all_faces(problem.n)
     if np.count_nonzero(doubtful(plain, every.astype(np.int8) - 1)):

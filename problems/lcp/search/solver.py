@@ -175,7 +175,7 @@ def solve(
             immediate = at_once.at_once(Finish(Faces(Structure(plain), kept=kept), tolerance))
             if immediate is not None and scaled is not None:
                 immediate = unscaled(problem, scaled, immediate, tolerance)
-            if immediate is None and problem.n <= at_once.LARGEST_FACES:
+            if immediate is None and plain.n <= at_once.LARGEST_FACES:
                 immediate = at_once.none_at_once(problem, plain)
         if immediate is not None and archive is None:
             return immediate
