@@ -34,7 +34,8 @@ def at_once(finish: Finish) -> Solution | None:
         Of a dense LCP; where its faces are kept this one is made once.
     """
     problem, began = finish.problem, time.perf_counter()
-    face = finish.faces.face(active_state(problem.q < 0.0))
+    # Where a symmetric A has a singular face the proximal method comes next, which does not need its solution.
+    face = finish.faces.face(active_state(problem.q < 0.0), regular=finish.faces.structure.symmetric)
     point = None if face is None else face.point(np.zeros(problem.n))
     if face is None or point is None or not finish.judged(face, *point)[2]:
         return None

@@ -109,9 +109,8 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
     if found.x is None:
         return found
     x = scaled.x(found.x)
-    moved = _moved(problem, scaled, found, x)
-    sure = moved is not None and found.solved and not rounded
-    return evolve(found, certificate=moved) if sure else _at(found, x, tolerance, rounded)
+    same = _moved(problem, scaled, found, x) if found.solved and not rounded else None
+    return _at(found, x, tolerance, rounded) if same is None else evolve(found, certificate=same)
 
 
 def _moved(problem: MixedLCP, scaled: Scaled, found: Solution, x: Array) -> Certificate | None:

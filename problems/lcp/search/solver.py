@@ -5,6 +5,7 @@ What is tried, and in what order, is in `strategy`; what may be claimed is decid
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -51,8 +52,8 @@ OWNED = ("target", "direction", "start", "state", "observers")
 """What may be said of a path, but not of those that `solve` traces."""
 
 
-MOST_RESTARTS = 1000
-"""So that a search ends whose budget has no limit; the default one allows fewer from order 13 on, where they begin."""
+MOST_RESTARTS, WITHIN_BUDGET = 1000, 100_000
+"""So that a search ends whose budget has no limit; and one that has, whose restarts should cost nothing."""
 
 
 @documented
@@ -94,7 +95,7 @@ def solve(
         Trace a path even where "auto" needs none, to look at it.
     restarts : int, optional
         Paths from random starts after the first has failed. Default: 0 for a named homotopy, and as many as the budget
-        allows, up to 1000, for "auto".
+        allows for "auto" (1000 where it has no limit).
     seed : int
         Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
         restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
@@ -145,7 +146,8 @@ def solve(
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
     _check_arguments(tolerance, restarts, seed, budget, executor, options, finish=finish, path=path, progress=progress)
     if restarts is None:
-        restarts = MOST_RESTARTS if automatic else 0
+        limits = () if budget is None else (budget.steps, budget.seconds, budget.factorizations)
+        restarts = 0 if not automatic else MOST_RESTARTS if limits and min(limits) == math.inf else WITHIN_BUDGET
     if problem.n == 0:
         return _nothing(problem, archive)
     start = None if x0 is None else _start(x0, problem, automatic)

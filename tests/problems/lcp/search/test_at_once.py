@@ -5,15 +5,17 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from problems import lcp
 from problems.lcp import LCP
-from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import active_state
 from problems.lcp.search import at_once, strategy
+from problems.scenes.planar import free_motion, time_step
 
 SINGULAR = LCP([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.5, 2.0]], [-1.0, -1.0, -1.0])
 """Two contacts where one is enough."""
@@ -71,6 +73,7 @@ def test_an_iteration_over_regular_faces_ends_before_a_singular_one_which_may_be
 
 def test_where_pivots_fail_active_sets_go_on_from_the_singular_face(monkeypatch):
     monkeypatch.setattr(at_once, "LARGEST", 0)
+    monkeypatch.setattr(strategy, "WHILE_REGULAR", evolve(strategy.WHILE_REGULAR, singular=0))
     assert "Lemke" in lcp.solve(SINGULAR).message
     monkeypatch.setattr(strategy, "by_lemke", lambda search, seed: False)
     found = lcp.solve(LCP(SINGULAR.A, SINGULAR.q))
@@ -127,3 +130,26 @@ def test_tiny_problems_are_decided_as_exact_enumeration_decides_them():
         assert found.solved == lcp.solve_by_enumeration(problem).solvable
         seen[found.outcome, "before" in found.message or "linear program" in found.message] += 1
     assert seen[lcp.Outcome.UNSOLVABLE, False] > 50
+
+
+def test_a_box_on_many_corners_needs_no_pivots(monkeypatch):
+    """It has three degrees of freedom: a few singular faces are passed, before pivots, where each tells nearly all."""
+    monkeypatch.setattr(strategy, "by_lemke", lambda search, seed: pytest.fail("pivots"))
+    contacts = [(0, -1, float(x), 0.0, 0.0, 1.0) for x in np.linspace(-0.5, 0.5, 8)]
+    A, J, inverse = time_step([(1.0, 1.0 / 6.0, 0.0, 0.5)], contacts, 0.5)
+    for seed in range(3):
+        v = np.random.default_rng(seed).normal(0.0, 0.05, 3) + 0.01 * inverse * [0.0, -9.81, 0.0]
+        found = lcp.solve(LCP(A, free_motion(J @ v)))
+        assert found.solved
+        assert found.counts.factorizations <= 4
+
+
+def test_a_singular_first_face_of_a_symmetric_matrix_is_left_to_the_proximal_method(made, monkeypatch):
+    asked = []
+    monkeypatch.setattr(Face, "point", lambda self, near, real=Face.point: asked.append(self.exact) or real(self, near))
+    # Two goods that one market buys: costs alone tell them apart.
+    problem = LCP([[2.0, 2.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 3.0]], [-3.0, -2.0, -1.0])
+    assert at_once.at_once(Finish(Faces(Structure(problem)), 1e-10)) is None
+    assert (len(made), asked) == (1, [])
+    found = lcp.solve(problem)
+    np.testing.assert_allclose(found.x, [1.5, 0.0, 0.0], atol=1e-15)
