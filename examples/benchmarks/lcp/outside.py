@@ -233,7 +233,7 @@ def cell(found: list[Any]) -> str:
 
 
 def _digits(value: float) -> str:
-    return f"{value:.2g}" if value < 100.0 else f"{value:.0f}"
+    return f"{value:.2g}" if value < 99.5 else f"{value:.0f}"
 
 
 def main() -> None:

@@ -171,7 +171,7 @@ class Dictionary:
         own = np.minimum(self.basic[tied] - self.rows[0], places.size)
         at, width = 0, AT_FIRST // tied.size + 1
         while tied.size > 1:
-            # Some columns at a time: the first few tell most rows apart.
+            # Some columns at a time: of many rows the first few tell most apart.
             now = powers[at : at + width]
             ratios = self.table[tied[:, None], places[now]] / -scale[:, None]
             low, high = np.minimum.reduce(ratios), np.maximum.reduce(ratios)

@@ -27,7 +27,7 @@ def unit_of(problem: LCP) -> float:
 
 
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
-    """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from t = infinity, or from a solution at some t.
+    """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from infinity, or from the solution at t = 1.
 
     Parameters
     ----------
@@ -36,12 +36,12 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
     d : ndarray, shape (n,)
         Positive where the path begins on the ray t -> infinity.
     active : ndarray of bool, shape (n,), optional
-        Where x may be positive at the t where it begins; nowhere by default.
+        Where x may be positive at t = 1, where it begins then.
 
     Returns
     -------
     AlmostComplementary or None
-        None if the equations of the active set are singular, or its basis is no solution for any t.
+        None if the equations of the active set are singular, or its basis is no solution.
 
     References
     ----------
