@@ -50,12 +50,7 @@ def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=16)
 def all_faces(n: int) -> NDArray[np.bool_]:
-    """All active sets, shape (2^n, n), read-only; the first index changes most often.
-
-    Parameters
-    ----------
-    n : int
-    """
+    """All active sets, shape (2^n, n), read-only; the first index changes most often."""
     faces: NDArray[np.bool_] = (np.arange(2**n)[:, None] >> np.arange(n) & 1).astype(bool)
     faces.flags.writeable = False
     return faces

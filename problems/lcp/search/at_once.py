@@ -50,12 +50,7 @@ def at_once(finish: Finish) -> Solution | None:
 def none_at_once(problem: MixedLCP, plain: MixedLCP) -> Solution | None:
     """That no face holds a solution, proved in floats of all of them together; None where one is in doubt.
 
-    It comes after `at_once`, the factorisation of which is counted.
-
-    Parameters
-    ----------
-    problem, plain : MixedLCP
-        An LCP, and the same over a common factor.
+    It comes after `at_once`, the factorisation of which is counted. `plain` is the LCP over a common factor.
     """
     began, every = time.perf_counter(), all_faces(problem.n)
     if np.count_nonzero(doubtful(plain, every.astype(np.int8) - 1)):
