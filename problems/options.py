@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from attrs import Attribute
 
 from continuation.arrays import Array
+from continuation.arrays import finite as finite_sum
 from continuation.budget import Budget
 from continuation.checks import FINITE, integer
 
@@ -53,9 +54,9 @@ def real_array(name: str, value: Any) -> Array:
     booleans, and objects that are real numbers, as fractions are, will do. Raises `ValueError` for anything else:
     complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
     """
-    own = type(value) is np.ndarray and value.base is None and value.flags.c_contiguous and not value.flags.writeable
-    if own and value.dtype == float:
-        kept: Array = value
+    if type(value) is np.ndarray and value.dtype == float:
+        own = value.base is None and value.flags.c_contiguous and not value.flags.writeable
+        kept: Array = value if own else np.array(value, order="C")
         return kept
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
@@ -114,8 +115,9 @@ def sound_sparse(name: str, value: Any) -> Any:
 
 def check_finite(name: str, value: Any) -> None:
     """A ValueError that says which entry of an array, or sparse matrix, is not finite, if there is one."""
-    entries = value.data if sp.issparse(value) else value
-    if np.isfinite(entries).all():
+    entries = value if isinstance(value, np.ndarray) else value.data
+    # Numbers whose sum overflows may be finite all the same.
+    if entries.size == 0 or finite_sum(entries.ravel()) or np.isfinite(entries).all():
         return
     at = np.argwhere(~np.isfinite(entries))[0]
     if sp.issparse(value):
@@ -131,8 +133,8 @@ def finite_vector(name: str, value: Any, size: int | None = None) -> Array:
         vector = real_array(name, value)
     except ValueError as error:
         raise ValueError(str(error).replace("expected real numbers", "expected a vector of real numbers", 1)) from None
-    if np.asarray(value).dtype.kind == "b" or vector.ndim != 1 or vector.size == 0:
-        kind = np.asarray(value).dtype
+    kind = np.asarray(value).dtype
+    if kind.kind == "b" or vector.ndim != 1 or vector.size == 0:
         raise ValueError(f"{name}: expected a vector of real numbers, found shape {vector.shape}, dtype {kind}")
     if size is not None and vector.size != size:
         raise ValueError(f"{name}: expected {size} numbers, found {vector.size}")

@@ -10,7 +10,7 @@ from attrs import field, frozen
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotrs, dsytrf, dsytrf_lwork, dsytrs
 
-from continuation.arrays import Array
+from continuation.arrays import Array, least
 from continuation.linear.dense import factor_dense
 from continuation.linear.entries import real
 from continuation.linear.refine import BorderedMatrix, Factored, eliminate
@@ -68,7 +68,7 @@ class Cholesky:
     @property
     def least_pivot(self) -> float:
         """The least diagonal entry of L, squared: of A what elimination leaves there."""
-        return float(self.lower.diagonal().min() ** 2 / self.factor)
+        return least(self.lower.diagonal()) ** 2 / self.factor
 
     @property
     def sign(self) -> int:

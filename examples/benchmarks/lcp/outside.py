@@ -1,23 +1,30 @@
 """Families that the solver was not tuned on: what outsiders' problems cost, in processor seconds a problem.
 
-    python examples/benchmarks/lcp/outside.py [FAMILY ...] [--seed S] [--limit SECONDS]
+    python examples/benchmarks/lcp/outside.py [FAMILY ...] [--seed S] [--limit S] [--before CHECKOUT] [--write PAGE]
 
-Prints outcomes, the median and the largest time. The steps of a stack are solved by `lcp.Solver` where there is one.
+Prints how many are decided, the median and the largest time, of another checkout too, and puts the table into a file in
+place of the one there. The steps of a stack are solved by `lcp.Solver` where there is one.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import math
-import time
-from collections import Counter
+import os
+import pickle
+import re
+import subprocess
+import sys
+import tempfile
 from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.optimize import linprog
 
-from continuation import Budget
 from continuation.arrays import Array
 from problems import lcp
 from problems.scenes.game import bimatrix
@@ -170,37 +177,63 @@ def grids(seed: int) -> Iterator[Data]:
         yield A, r.normal(0.0, 0.1, A.shape[0]) - A @ r.uniform(0.0, 1.0, A.shape[0])
 
 
-FAMILIES = (
-    box_qp, collapse, contact, unsolvable, games, nonmonotone_sparse, nonmonotone_dense, monotone, small, grids,
-)  # fmt: skip
-
-
-def stack(steps: int = 100) -> list[float]:
-    """Seconds for each step of 25 boxes on each other, n = 200, pushed by a growing force."""
+def stack(seed: int) -> Iterator[Data]:
+    """100 steps of 25 boxes on each other, n = 200, pushed by a growing force."""
     boxes, h = 25, 0.01
     bodies: list[Body] = [(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(boxes)]
     contacts = [(k, k - 1, side, float(k), 0.0, 1.0) for k in range(boxes) for side in (-0.5, 0.5)]
     A, J, inverse = time_step(bodies, contacts, 0.5)
-    solver = lcp.Solver(A) if hasattr(lcp, "Solver") else None
-    v, active, taken, wrong = np.zeros(inverse.size), None, [], 0
-    for k in range(steps):
+    solver, v = lcp.Solver(A), np.zeros(inverse.size)
+    for k in range(100):
         force = np.tile([0.2 * math.sin(k / 8.0), -9.81, 0.0], boxes)
-        force[-3] += 0.08 * k
+        force[-3] += (0.08 + 0.001 * (seed % 7)) * k
         free = v + h * inverse * force
-        u = J @ free
-        q = free_motion(u)
-        began = time.process_time()
-        found = lcp.solve(lcp.LCP(A, q)) if solver is None else solver.solve(q, active=active)
-        taken.append(time.process_time() - began)
-        wrong += not found.solved
-        x = found.x
-        active = x
-        v = free + inverse * (J.T @ impulses(x))
-    slow = sum(seconds > 0.01 for seconds in taken[1:])
-    print(f"stack, {steps} steps of n = {len(q)}: the first {1e3 * taken[0]:.1f} ms; of the others median "
-          f"{1e3 * np.median(taken[1:]):.2f} ms, largest {1e3 * max(taken[1:]):.2f} ms, above 10 ms {slow}; "
-          f"not solved {wrong}", flush=True)  # fmt: skip
-    return taken
+        q = free_motion(J @ free)
+        yield A, q
+        found = solver.solve(q)
+        assert found.x is not None
+        v = free + inverse * (J.T @ impulses(found.x))
+
+
+FAMILIES = {
+    "indefinite box QPs, n = 40 to 200": box_qp,
+    "trusses beyond collapse, n = 12 to 50": collapse,
+    "piles with friction, n = 24 to 120": contact,
+    "feasible, unsolvable, n = 3 to 12": unsolvable,
+    "games of seven kinds, n = 40, 100, 300": games,
+    "monotone, n = 20 to 200": monotone,
+    "small integers, n = 1 to 8": small,
+    "grids, n = 12 to 900": grids,
+    "steps of a stack, n = 200": stack,
+    "nonmonotone, sparse, n = 200": nonmonotone_sparse,
+    "nonmonotone, dense, n = 200": nonmonotone_dense,
+}
+"""All but the last two are tried where none is named."""
+
+
+def timed(problems: list[Data], limit: float, checkout: str) -> list[Any]:
+    """(outcome, seconds) of each, in a process that has the package of a checkout."""
+    with tempfile.NamedTemporaryFile(suffix=".pickle") as file:
+        pickle.dump(problems, file)
+        file.flush()
+        child = [sys.executable, str(Path(__file__).with_name("timed.py")), file.name, str(limit)]
+        environment = {**os.environ, "PYTHONPATH": checkout}
+        done = subprocess.run(
+            child, env=environment, check=True, capture_output=True, text=True, cwd=tempfile.gettempdir()
+        )
+    found: list[Any] = json.loads(done.stdout)
+    return found
+
+
+def cell(found: list[Any]) -> str:
+    """How many are decided, and the median and the largest time in milliseconds."""
+    decided = sum(outcome not in ("NOT_FOUND", "STATIONARY") for outcome, _ in found)
+    taken = 1e3 * np.array([seconds for _, seconds in found])
+    return f"{decided}, {_digits(float(np.median(taken)))} ms, {_digits(taken.max())} ms"
+
+
+def _digits(value: float) -> str:
+    return f"{value:.2g}" if value < 99.5 else f"{value:.0f}"
 
 
 def main() -> None:
@@ -209,21 +242,26 @@ def main() -> None:
     parser.add_argument("families", nargs="*", default=[])
     parser.add_argument("--seed", type=int, default=2026)
     parser.add_argument("--limit", type=float, default=10.0)
+    parser.add_argument("--before")
+    parser.add_argument("--write")
     arguments = parser.parse_args()
-    lcp.solve(lcp.LCP(np.eye(2), -np.ones(2)))
-    for family in FAMILIES:
+    here = str(Path(__file__).parents[3])
+    lines = ["| family | before | now | ratio of medians |", "|---|---|---|---|"]
+    for title, family in list(FAMILIES.items()):
         if arguments.families and family.__name__ not in arguments.families:
             continue
-        name, taken, seen = family.__name__, [], Counter[str]()
-        for A, q in family(arguments.seed):
-            budget = Budget(steps=math.inf, seconds=arguments.limit)
-            began = time.process_time()
-            found = lcp.solve(lcp.LCP(A, q), budget=budget)
-            taken.append(time.process_time() - began)
-            seen[found.outcome.name] += 1
-        print(f"{name}: {dict(seen)}, median {np.median(taken):.4f} s, largest {max(taken):.3f} s", flush=True)
-    if not arguments.families or "stack" in arguments.families:
-        stack()
+        if not arguments.families and family in (nonmonotone_sparse, nonmonotone_dense):
+            continue
+        problems = list(family(arguments.seed))
+        now = timed(problems, arguments.limit, here)
+        before = timed(problems, arguments.limit, arguments.before) if arguments.before else []
+        ratio = np.median([s for _, s in now]) / np.median([s for _, s in before]) if before else math.nan
+        lines.append(f"| {len(problems)} {title} | {cell(before) if before else '-'} | {cell(now)} | {ratio:.2g} |")
+        print(lines[-1], flush=True)
+    if arguments.write:
+        page = Path(arguments.write)
+        table = "\n".join(lines) + "\n"
+        page.write_text(re.sub(r"\| family \|.*\n(\|.*\n)*", lambda _: table, page.read_text(), count=1))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgecon
 from scipy.sparse.csgraph import structural_rank
 
-from continuation.arrays import Array, Matrix, finite
+from continuation.arrays import Array, Matrix, finite, largest
 from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
 from continuation.linear.factoring import Factoring
@@ -23,6 +23,8 @@ from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import accurate_w
 
 Mask = NDArray[np.bool_]
+
+EPS = float(np.finfo(float).eps)
 
 SINGULAR_CONDITION = 1e-14
 """Reciprocal condition below which a face counts as singular: its solution has about no digit left."""
@@ -98,10 +100,17 @@ class Face:
         w: Array = self.problem.A @ x + self.q
         return w + self.shift * x if isinstance(self.shift, np.ndarray) or self.shift else w
 
-    def refined(self, x: Array) -> Array:
-        """The point x of a face of the problem itself, corrected once with w in twice the working precision."""
+    def refined(self, x: Array, w: Array | None = None) -> Array:
+        """The point x of a face of the problem itself, corrected once with w in twice the working precision.
+
+        Parameters
+        ----------
+        x : Array
+        w : Array, optional
+            That w, where it is known.
+        """
         with np.errstate(over="ignore", invalid="ignore"):
-            return self._corrected(x, accurate_w(self.problem, x)[0])
+            return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
         corrected = x.copy()
@@ -173,14 +182,15 @@ class Faces:
 
     def _made(self, state: State, shift: float, centre: Array | None, regular: bool) -> Face | None:
         problem = self.problem
-        active, ranges = state == BETWEEN, self.structure.ranges
+        active = state == BETWEEN
+        ranges = None if problem.standard else self.structure.ranges
         inside = active.nonzero()[0] if ranges is None else ranges.inside(active)
         shifts = ranges.shifts(shift) if ranges is not None and shift else shift
         q = problem.q if centre is None else problem.q - shifts * centre
         inverse: Callable[[Array], Array] | None
         if inside.size == 0:
             inverse, exact = _same, True
-        elif self.structure.band is not None and ranges is None:
+        elif problem.sparse and ranges is None and self.structure.band is not None:
             inverse, exact = self._banded(active, shift), True
         else:
             block = problem.A if inside.size == problem.n else problem.A[inside][:, inside]
@@ -198,10 +208,11 @@ class Faces:
         if shift:
             block[np.diag_indices(len(block))] += shift
         # Of order 1 LU is a division, rounded once, where Cholesky's takes a root.
-        if len(block) > 1 and self.structure.symmetric and (factor := _cholesky(block)) is not None:
+        symmetric = len(block) > 1 and self.structure.symmetric
+        if symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
         # Whether A is semidefinite is asked only once a factorisation has failed: the answer costs one of order n.
-        definite = self.structure.symmetric and not regular and self.structure.semidefinite
+        definite = symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
         if regular:
@@ -248,7 +259,7 @@ def _cholesky(block: Array) -> Factored | None:
     factor = factor_cholesky(block)
     if factor is None:
         return None
-    rounding = float(np.finfo(float).eps) * len(block) * block.diagonal().max()
+    rounding = EPS * len(block) * largest(block.diagonal())
     return factor if factor.least_pivot >= rounding else None
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import define, field
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, least
 from continuation.counts import Counts
 from problems.lcp.active_set.augmented import Saddle, guesses
 from problems.lcp.active_set.face import Face, Faces
@@ -233,15 +233,16 @@ class Finish:
         # A certificate is worth its cost where the signs are right to about the tolerance.
         if not self._plausible(face.state, x, w):
             return x, w, False
-        best = certified(self.problem, self.problem.clipped(x))
+        best = now = certified(self.problem, self.problem.clipped(x))
         for _ in range(SIGN_CORRECTIONS):
             if best.relative_residual <= ROUND_OFF:
                 break
-            better = face.refined(x)
+            better = face.refined(x, now.w if np.array_equal(now.x, x) else None)
             if not np.isfinite(better).all():
                 break
             x, before = better, best.relative_residual
-            best = min(best, certified(self.problem, self.problem.clipped(x)), key=lambda one: one.relative_residual)
+            now = certified(self.problem, self.problem.clipped(x))
+            best = min(best, now, key=lambda one: one.relative_residual)
             if best.relative_residual > WORTH_MORE * before:
                 break
         if not best.solves(self.tolerance):
@@ -264,7 +265,7 @@ class Finish:
         signed = w if problem.standard else np.where(state == UPPER, -w, np.where(state == LOWER, w, 0.0))
         if not problem.standard:
             signed = np.where(problem.fixed, 0.0, signed)
-        low_x, low_w = float(inside.min()), float(signed.min())
+        low_x, low_w = least(inside), least(signed)
         if low_x >= 0.0 and low_w >= 0.0:
             return True
         size = float(np.abs(x).max())

@@ -48,12 +48,15 @@ class Policy:
     patience : int or None
         Corrections in a row without a new low of the number of changed indices, after which it is given up.
     regular : bool
-        Whether it ends before the first face whose equations are singular.
+        Whether it ends before the first face whose equations are singular, after those that are allowed.
+    singular : int
+        How many of these are.
     """
 
     steps: int
     patience: int | None = None
     regular: bool = False
+    singular: int = 0
 
 
 @define(eq=False)
@@ -131,13 +134,16 @@ def iterate(
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x
     changes: list[int] = []
+    singular = 0
     for _ in range(policy.steps + 1):
         if tried is not None and not tried.add(state):
             return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
-        face = faces.face(state, shift or 0.0, centre, policy.regular)
-        if policy.regular and (face is None or not face.exact):
+        regular = policy.regular and singular >= policy.singular
+        face = faces.face(state, shift or 0.0, centre, regular)
+        singular += face is None or not face.exact
+        if regular and singular > policy.singular:
             if tried is not None:
                 tried.forget(state)
             return Iterated(Ended.IRREGULAR, state, x)

@@ -33,7 +33,8 @@ def _q(value: Any) -> Array:
 
 def square_matrix(value: Any) -> Matrix:
     """A finite square float matrix, dense or CSR."""
-    matrix = sound_sparse("A", value) if sp.issparse(value) else real_array("A", value)
+    dense = isinstance(value, np.ndarray) or not sp.issparse(value)
+    matrix = real_array("A", value) if dense else sound_sparse("A", value)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise ValueError(f"A: expected a square matrix, found shape {matrix.shape}")
     check_finite("A", matrix)
@@ -96,7 +97,7 @@ class MixedLCP:
     @property
     def sparse(self) -> bool:
         """Whether A is stored as a sparse array."""
-        return bool(sp.issparse(self.A))
+        return not isinstance(self.A, np.ndarray)
 
     @cached_property
     def standard(self) -> bool:
@@ -311,6 +312,15 @@ class LCP(MixedLCP):
     def standard(self) -> bool:
         """True."""
         return True
+
+    def clipped(self, x: Array) -> Array:
+        """The nearest point that is not negative.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        """
+        return np.maximum(x, 0.0)
 
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q; what is known of A is not found out again.

@@ -18,8 +18,9 @@ Indices = NDArray[np.intp]
 ZERO = 1e-10
 """An entry below this, relative to its column's largest, counts as rounding: a pivot on it loses the path."""
 
-AT_FIRST = 8
-"""Columns by which tied rows are compared first; twice as many next."""
+AT_FIRST = 512
+"""Entries of tied rows that are compared first; twice as many columns next. Mostly two rows are tied, as at contacts,
+where all columns at once are no slower than a few."""
 
 TIE = 1e-11
 """What a basic variable may be above zero, relative to the largest constant, where it counts as zero."""
@@ -168,9 +169,9 @@ class Dictionary:
         places = self._place[self.rows]
         powers = (places >= 0).nonzero()[0]
         own = np.minimum(self.basic[tied] - self.rows[0], places.size)
-        at, width = 0, AT_FIRST
+        at, width = 0, AT_FIRST // tied.size + 1
         while tied.size > 1:
-            # Some columns at a time: the first few tell most rows apart.
+            # Some columns at a time: of many rows the first few tell most apart.
             now = powers[at : at + width]
             ratios = self.table[tied[:, None], places[now]] / -scale[:, None]
             low, high = np.minimum.reduce(ratios), np.maximum.reduce(ratios)

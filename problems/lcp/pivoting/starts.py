@@ -8,10 +8,10 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.almost import LOST, AlmostComplementary, Ended
-from problems.lcp.pivoting.dictionary import Dictionary
+from problems.lcp.pivoting.dictionary import TIE, Dictionary
 
 
 def unit_of(problem: LCP) -> float:
@@ -27,7 +27,7 @@ def unit_of(problem: LCP) -> float:
 
 
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
-    """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from t = infinity, or from a solution at some t.
+    """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from infinity, or from the solution at t = 1.
 
     Parameters
     ----------
@@ -36,12 +36,12 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
     d : ndarray, shape (n,)
         Positive where the path begins on the ray t -> infinity.
     active : ndarray of bool, shape (n,), optional
-        Where x may be positive at the t where it begins; nowhere by default.
+        Where x may be positive at t = 1, where it begins then.
 
     Returns
     -------
     AlmostComplementary or None
-        None if the equations of the active set are singular, or its basis is no solution for any t.
+        None if the equations of the active set are singular, or its basis is no solution.
 
     References
     ----------
@@ -61,11 +61,16 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
         dictionary.nonbasic = np.append(np.where(active, np.arange(n), np.arange(n, 2 * n)), t)
         if np.isnan(dictionary.rebuilt()):
             return None
+        # What is zero at t = 1 but for rounding is raised to zero: no other t has the active set.
+        short = -(dictionary.table[:, -1] + dictionary.table[:, dictionary.column(t)])
+        if short.max() > -LOST * largest(dictionary.table[:, -1]):
+            return None
+        dictionary.table[:, -1] += np.maximum(short, 0.0)
     column = dictionary.column(t)
     assert column is not None
     path = AlmostComplementary(n, (dictionary,), t, frozenset({t}))
     constants = dictionary.table[:, -1]
-    if constants.min() >= 0.0:
+    if constants.min() >= (0.0 if active is None else -TIE * largest(constants)):
         path.ended = Ended.REACHED
         return path
     row = dictionary.last_zero(column)

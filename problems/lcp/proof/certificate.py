@@ -9,7 +9,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, largest, least
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
@@ -132,6 +132,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     return certified(problem, x)
 
 
+@np.errstate(over="ignore", under="ignore", invalid="ignore")
 def certified(problem: MixedLCP, x: Array) -> Certificate:
     """The certificate of a finite vector of n > 0 numbers, which nobody else changes.
 
@@ -141,15 +142,14 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
     x : Array of shape (n,)
     """
     terms = row_terms(problem, x)
-    if problem.standard and not terms.exponents.any():
+    if problem.standard and not np.count_nonzero(terms.exponents):
         return _of_lcp(problem, terms, x)
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        w = np.ldexp(terms.w, terms.exponents)
-        relative = terms.w / np.where(terms.size > 0.0, terms.size, 1.0)
-        above, below = x - problem.lower, problem.upper - x
-        distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
-        products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))
-        forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
+    w = np.ldexp(terms.w, terms.exponents)
+    relative = terms.w / np.where(terms.size > 0.0, terms.size, 1.0)
+    above, below = x - problem.lower, problem.upper - x
+    distance = np.where(np.isinf(below) | ((w > 0.0) & np.isfinite(above)), above, below)
+    products = np.where((distance == 0.0) | (w == 0.0) | np.isinf(distance), 0.0, np.abs(distance * w))
+    forbidden = np.maximum(np.where(np.isinf(below), -w, 0.0), np.where(np.isinf(above), w, 0.0))
     shares = shares_in_rows(terms, x, above, (above < 0.0) | (relative > ROUND_OFF))
     if not problem.standard:
         # A mid of three, in which what was not asked for is infinite.
@@ -173,37 +173,36 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     So it is at the far end of a solution that falls off by powers, away from the one q_i that is not 0. An x_j at its
     bound counts only where w_j is not pressed against it: another one is exactly there.
     """
-    with np.errstate(over="ignore", under="ignore"):
-        asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
-        if not asked.any():
-            return off
-        inward = np.where(x == problem.upper, -terms.w, terms.w)
-        away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
-        reach = abs(problem.A) @ ((np.abs(x) < TINY) & away).astype(float)
-        most = np.ldexp(np.minimum(reach, np.finfo(float).max), -1074 - terms.exponents)
+    asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
+    if not asked.any():
+        return off
+    inward = np.where(x == problem.upper, -terms.w, terms.w)
+    away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
+    reach = abs(problem.A) @ ((np.abs(x) < TINY) & away).astype(float)
+    most = np.ldexp(np.minimum(reach, np.finfo(float).max), -1074 - terms.exponents)
     made_up = (np.abs(terms.w) <= most) & (x >= problem.lower) & (x <= problem.upper)
     return np.where(made_up, 0.0, off)
 
 
 def _of_lcp(problem: MixedLCP, terms: Terms, x: Array) -> Certificate:
     """The same where there are no upper bounds, and no row is over a power of two: in a third of the time."""
-    w, low = terms.w, float(x.min())
-    with np.errstate(over="ignore", under="ignore"):
-        relative = w / (terms.size if terms.size.min() > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
-        complementarity = largest(x * w)
+    w, low = terms.w, least(x)
+    relative = w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
+    complementarity = largest(x * w)
     asked = relative > ROUND_OFF
     asked &= x != 0.0
     if low < 0.0:
         asked |= x < 0.0
-    shares = shares_in_rows(terms, x, x, asked) if asked.any() else np.where(x > 0.0, np.inf, 0.0)
+    shares = shares_in_rows(terms, x, x, asked) if np.count_nonzero(asked) else np.where(x > 0.0, np.inf, 0.0)
     off = np.abs(np.minimum(shares, relative))
+    worst = largest(off)
     return Certificate(
         x=x,
         w=w,
         residual=largest(np.minimum(x, w)),
-        relative_residual=largest(_counted(problem, terms, x, off)),
+        relative_residual=worst if worst <= ROUND_OFF else largest(_counted(problem, terms, x, off)),
         negative_x=max(-low, 0.0),
-        negative_w=max(-float(w.min()), 0.0),
+        negative_w=max(-least(w), 0.0),
         complementarity=complementarity,
         drowned=drowned_part(problem, terms, off),
     )

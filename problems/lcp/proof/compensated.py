@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array, Matrix, largest, least
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.inequalities import Inequalities
 from problems.lcp.proof.slices import sliced_terms
@@ -102,7 +102,7 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
-    if size.min() >= 1.0 / LARGE and size.max() <= LARGE:
+    if least(size) >= 1.0 / LARGE and largest(size) <= LARGE:
         return Terms(problem.A, x, w, size, none)  # w is finite where the size is
     doubtful, small = ~np.isfinite(w) | ~(size <= LARGE), size < 1.0 / LARGE
     if small.any():

@@ -73,19 +73,18 @@ def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
     off : Array of shape (n,)
         How far each row is off, relative to its terms.
     """
-    with np.errstate(over="ignore", under="ignore"):
-        q = np.ldexp(problem.q, -terms.exponents) if terms.exponents.any() else problem.q
-        asked = off * terms.size > DROWNED * np.abs(q)  # nowhere where off is zero
-    if not asked.any():
+    moved = np.count_nonzero(terms.exponents)
+    q = np.ldexp(problem.q, -terms.exponents) if moved else problem.q
+    asked = off * terms.size > DROWNED * np.abs(q)  # nowhere where off is zero
+    if not np.count_nonzero(asked):
         return 0.0
-    if not terms.exponents.any():
+    if not moved:
         constants = np.abs(q)
         clear = float((off * terms.size)[asked].max()) <= CLEAR * float(constants[constants > 0.0].min(initial=np.inf))
         if clear and q.any() and alike(problem):
             return 0.0
     rows, _ = units(problem)
-    with np.errstate(over="ignore", under="ignore"):
-        size = float(np.ldexp(np.abs(problem.q), rows).max())
-        worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())
+    size = float(np.ldexp(np.abs(problem.q), rows).max())
+    worst = float(np.ldexp((off * terms.size)[asked], (rows + terms.exponents)[asked]).max())
     part = worst / size if size > 0.0 else 0.0
     return part if part > FAR_BELOW_Q else 0.0

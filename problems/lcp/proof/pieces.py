@@ -11,6 +11,8 @@ Rump, "Verification methods: rigorous results using floating-point arithmetic", 
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -44,6 +46,14 @@ def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
             part = left[k : k + TOGETHER]
             asked[part] = in_doubt(A, problem.q, problem.lower, problem.upper, states[part])
     return asked
+
+
+@lru_cache(maxsize=16)
+def all_faces(n: int) -> NDArray[np.bool_]:
+    """All active sets, shape (2^n, n), read-only; the first index changes most often."""
+    faces: NDArray[np.bool_] = (np.arange(2**n)[:, None] >> np.arange(n) & 1).astype(bool)
+    faces.flags.writeable = False
+    return faces
 
 
 def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:

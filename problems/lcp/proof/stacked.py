@@ -10,7 +10,7 @@ from continuation.arrays import Array
 from problems.lcp.proof.certificate import ROUND_OFF
 from problems.lcp.proof.compensated import LARGE, error_bound, summed
 from problems.lcp.proof.off import DROWNED
-from problems.lcp.proof.pieces import in_doubt, inverses
+from problems.lcp.proof.pieces import all_faces, in_doubt, inverses
 from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced, identity
 
 CORRECTIONS = 2
@@ -84,14 +84,3 @@ def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
     states = np.broadcast_to(-1 + all_faces(n).astype(np.int8), (k, 2**n, n)).reshape(-1, n)
     repeated, zero = np.repeat(A, 2**n, axis=0), np.zeros(n)
     return in_doubt(repeated, np.repeat(q, 2**n, axis=0), zero, zero + np.inf, states).reshape(k, 2**n)
-
-
-def all_faces(n: int) -> NDArray[np.bool_]:
-    """All active sets, shape (2^n, n).
-
-    Parameters
-    ----------
-    n : int
-    """
-    faces: NDArray[np.bool_] = (np.arange(2**n)[:, None] >> np.arange(n) & 1).astype(bool)
-    return faces

@@ -10,7 +10,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from continuation.arrays import Array
+from continuation.arrays import Array, least
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import natural_units
@@ -108,7 +108,7 @@ def exact_nearby(problem: MixedLCP, x: Array) -> bool:
 def _clearly_exact(problem: MixedLCP, x: Array) -> bool:
     """Whether floats prove it; mostly plain arithmetic is enough."""
     if not x.any():
-        return bool(problem.q.min() >= 0.0)
+        return least(problem.q) >= 0.0
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     found = Faced.of(A, problem.q, x)
     return bool(found.exact(*found.plain) or found.exact(*accurate_w(problem, x)))

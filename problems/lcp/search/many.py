@@ -16,7 +16,8 @@ from continuation.budget import Budget
 from continuation.checks import instance_with
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.lockstep import lemke_bases
-from problems.lcp.proof.stacked import all_faces, faces_in_doubt, judged
+from problems.lcp.proof.pieces import all_faces
+from problems.lcp.proof.stacked import faces_in_doubt, judged
 from problems.lcp.search.outcome import Outcome
 from problems.lcp.search.solver import solve
 from problems.options import check_finite, real_array

@@ -17,8 +17,11 @@ from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.parametric.sensitivity import NotDifferentiableError, Sensitivity, sensitivity
 from problems.lcp.proof.certificate import Certificate
-from problems.lcp.proof.farkas import Farkas, FloatFarkas
+from problems.lcp.proof.farkas import Farkas, FloatFarkas, infeasibility
 from problems.lcp.reference.enumeration import Exhaustion
+
+LARGEST_SOUGHT = 5
+"""Order up to which faces may have been excluded before a Farkas vector was looked for."""
 
 
 class Outcome(Described):
@@ -103,7 +106,8 @@ class Solution:
     seconds : float
         Wall-clock time.
     farkas : Farkas or None
-        The proof of UNSOLVABLE where there is no feasible point.
+        The proof of UNSOLVABLE where there is no feasible point; where all faces of a problem up to order
+        `LARGEST_SOUGHT` were excluded at once it is looked for when it is asked for.
     exhaustion : Exhaustion or None
         What trying all faces came to, where that was done: the other proof of UNSOLVABLE.
     float_farkas : FloatFarkas or None
@@ -120,7 +124,7 @@ class Solution:
     best: int
     counts: Counts
     seconds: float
-    farkas: Farkas | None = None
+    _farkas: Farkas | None = None
     exhaustion: Exhaustion | None = None
     float_farkas: FloatFarkas | None = None
     program: Program | None = None
@@ -133,8 +137,18 @@ class Solution:
         if self.outcome is not Outcome.UNSOLVABLE:
             return ""
         return (_PROOFS if self.problem.standard else _PROOFS_WITH_BOUNDS)[
-            "farkas" if self.farkas is not None else "exhaustion"
+            "farkas" if self._farkas is not None else "exhaustion"
         ]
+
+    @property
+    def farkas(self) -> Farkas | None:
+        """The proof of UNSOLVABLE where there is no feasible point."""
+        sought = self._farkas is None and self.outcome is Outcome.UNSOLVABLE and self.problem.n <= LARGEST_SOUGHT
+        if not sought or not self.problem.standard:
+            return self._farkas
+        with np.errstate(all="ignore"):
+            proof = infeasibility(self.problem)
+        return proof if isinstance(proof, Farkas) else None
 
     @property
     def sentence(self) -> str:

@@ -5,6 +5,7 @@ What is tried, and in what order, is in `strategy`; what may be claimed is decid
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -17,7 +18,7 @@ from attrs import evolve
 
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, largest, least
 from continuation.budget import Budget
 from continuation.checks import check_flag, instance_with
 from continuation.counts import Counts
@@ -52,8 +53,8 @@ OWNED = ("target", "direction", "start", "state", "observers")
 """What may be said of a path, but not of those that `solve` traces."""
 
 
-MOST_RESTARTS = 1000
-"""So that a search ends whose budget has no limit; the default one allows fewer from order 13 on, where they begin."""
+MOST_RESTARTS, WITHIN_BUDGET = 1000, 100_000
+"""So that a search ends whose budget has no limit; and one that has, whose restarts should cost nothing."""
 
 
 @documented
@@ -96,7 +97,7 @@ def solve(
         Trace a path even where "auto" needs none, to look at it.
     restarts : int, optional
         Paths from random starts after the first has failed. Default: 0 for a named homotopy, and as many as the budget
-        allows, up to 1000, for "auto".
+        allows for "auto" (1000 where it has no limit).
     seed : int
         Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
         restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
@@ -154,12 +155,13 @@ def solve(
     check_method("sparse", sparse)
     _check_arguments(tolerance, restarts, seed, budget, executor, options, finish=finish, path=path, progress=progress)
     if restarts is None:
-        restarts = MOST_RESTARTS if automatic else 0
+        limits = () if budget is None else (budget.steps, budget.seconds, budget.factorizations)
+        restarts = 0 if not automatic else MOST_RESTARTS if limits and min(limits) == math.inf else WITHIN_BUDGET
     if problem.n == 0:
         return _nothing(problem, archive)
     start = None if x0 is None else _start(x0, problem, automatic)
     near = _near(guess, problem)
-    if problem.fixed.any():
+    if not problem.standard and problem.fixed.any():
         small = without_fixed(problem)
         if start is not None:
             start = start[small.kept]
@@ -180,11 +182,13 @@ def solve(
     quick = postponed and problem.n <= at_once.LARGEST and not problem.sparse
     kept: dict[bytes, Face] | None = {} if quick else None
     immediate = None
-    if quick and start is None and near is None and problem.q.min() < 0.0:
+    if quick and start is None and near is None and least(problem.q) < 0.0:
         with np.errstate(all="ignore"):
             immediate = at_once.at_once(Finish(Faces(Structure(plain), kept=kept), tolerance))
             if immediate is not None and scaled is not None:
                 immediate = unscaled(problem, scaled, immediate, tolerance)
+            if immediate is None and plain.n <= at_once.LARGEST_FACES:
+                immediate = at_once.none_at_once(problem, plain)
         if immediate is not None and archive is None:
             return immediate
     if not postponed:

@@ -1,16 +1,21 @@
 """What is tried before a search, and before more than one singular face: what it saves, and that nothing is lost."""
 
+import sys
+from collections import Counter
+
 import numpy as np
 import pytest
+from attrs import evolve
 
 from problems import lcp
 from problems.lcp import LCP
-from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.face import Face, Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Ended, Policy, Tried, iterate
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import active_state
 from problems.lcp.search import at_once, strategy
+from problems.scenes.planar import free_motion, time_step
 
 SINGULAR = LCP([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.5, 2.0]], [-1.0, -1.0, -1.0])
 """Two contacts where one is enough."""
@@ -68,8 +73,83 @@ def test_an_iteration_over_regular_faces_ends_before_a_singular_one_which_may_be
 
 def test_where_pivots_fail_active_sets_go_on_from_the_singular_face(monkeypatch):
     monkeypatch.setattr(at_once, "LARGEST", 0)
+    monkeypatch.setattr(strategy, "WHILE_REGULAR", evolve(strategy.WHILE_REGULAR, singular=0))
     assert "Lemke" in lcp.solve(SINGULAR).message
     monkeypatch.setattr(strategy, "by_lemke", lambda search, seed: False)
     found = lcp.solve(LCP(SINGULAR.A, SINGULAR.q))
     assert found.solved
     assert "Solved by active sets alone" in found.message
+
+
+def test_a_face_of_order_one_is_solved_by_a_division(monkeypatch):
+    monkeypatch.setattr(Structure, "semidefinite", property(lambda self: pytest.fail("A was factored")))
+    problem = LCP([[3.0, 1.0], [1.0, 2.0]], [-1.0, 5.0])
+    face = Faces(Structure(problem)).face(active_state(problem.q < 0.0))
+    assert face.exact
+    assert face.point(np.zeros(2))[0].tolist() == [1.0 / 3.0, 0.0]
+
+
+def test_the_first_active_set_costs_few_calls():
+    """Of functions, of Python and of C, by which the time of a small problem is counted."""
+    r = np.random.default_rng(8)
+    M = r.normal(size=(8, 8))
+    A, q = M @ M.T + 8.0 * np.eye(8), np.where(np.arange(8) < 3, -1.0, 2.0)
+    assert lcp.solve(LCP(A, q)).message == at_once.MESSAGE
+    calls = Counter()
+    sys.setprofile(lambda frame, event, argument: calls.update([event]))
+    try:
+        lcp.solve(LCP(A, q))
+    finally:
+        sys.setprofile(None)
+    assert calls["call"] + calls["c_call"] <= 340
+
+
+def test_a_tiny_problem_without_solution_costs_no_search(monkeypatch):
+    """All faces are excluded together; a vector that proves it infeasible is sought where it is asked for."""
+    monkeypatch.setattr(strategy, "by_lemke", lambda *given: pytest.fail("pivots"))
+    monkeypatch.setattr(strategy, "infeasibility", lambda *given: pytest.fail("a proof by pivots"))
+    infeasible = LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
+    feasible = LCP([[1.0, 1.0], [1.0, -1.0]], [-1.0, -2.0])
+    for problem in (infeasible, feasible, LCP(2.0**400 * feasible.A, 2.0**400 * feasible.q)):
+        found = lcp.solve(problem)
+        assert found.outcome is lcp.Outcome.UNSOLVABLE
+        assert found.problem is problem
+        assert (found.counts.factorizations, found.exhaustion.faces, found.exhaustion.solvable) == (1, 4, False)
+        assert found.proof in found.message
+    assert lcp.solve(infeasible).farkas.holds(infeasible)
+    assert lcp.solve(feasible).farkas is None
+
+
+def test_tiny_problems_are_decided_as_exact_enumeration_decides_them():
+    seen = Counter()
+    for seed in range(150):
+        r = np.random.default_rng([26, seed])
+        n = int(r.integers(2, 6))
+        problem = LCP(r.integers(-3, 4, (n, n)), r.integers(-3, 4, n))
+        found = lcp.solve(problem)
+        assert found.solved == lcp.solve_by_enumeration(problem).solvable
+        seen[found.outcome, "before" in found.message or "linear program" in found.message] += 1
+    assert seen[lcp.Outcome.UNSOLVABLE, False] > 50
+
+
+def test_a_box_on_many_corners_needs_no_pivots(monkeypatch):
+    """It has three degrees of freedom: a few singular faces are passed, before pivots, where each tells nearly all."""
+    monkeypatch.setattr(strategy, "by_lemke", lambda search, seed: pytest.fail("pivots"))
+    contacts = [(0, -1, float(x), 0.0, 0.0, 1.0) for x in np.linspace(-0.5, 0.5, 8)]
+    A, J, inverse = time_step([(1.0, 1.0 / 6.0, 0.0, 0.5)], contacts, 0.5)
+    for seed in range(3):
+        v = np.random.default_rng(seed).normal(0.0, 0.05, 3) + 0.01 * inverse * [0.0, -9.81, 0.0]
+        found = lcp.solve(LCP(A, free_motion(J @ v)))
+        assert found.solved
+        assert found.counts.factorizations <= 4
+
+
+def test_a_singular_first_face_of_a_symmetric_matrix_is_left_to_the_proximal_method(made, monkeypatch):
+    asked = []
+    monkeypatch.setattr(Face, "point", lambda self, near, real=Face.point: asked.append(self.exact) or real(self, near))
+    # Two goods that one market buys: costs alone tell them apart.
+    problem = LCP([[2.0, 2.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 3.0]], [-3.0, -2.0, -1.0])
+    assert at_once.at_once(Finish(Faces(Structure(problem)), 1e-10)) is None
+    assert (len(made), asked) == (1, [])
+    found = lcp.solve(problem)
+    np.testing.assert_allclose(found.x, [1.5, 0.0, 0.0], atol=1e-15)

@@ -1,5 +1,6 @@
 """Restarts: reproducible, in any order, over an executor, and given up when they are not worth following."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -181,3 +182,19 @@ def test_light_paths_keep_their_ends():
 def test_the_preset_factors_anew_only_where_that_is_cheap():
     assert search_preset(50).corrector.reuse == 0.0
     assert search_preset(500).corrector.reuse > 0.0
+
+
+def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):
+    """Whatever it is; where it has no limit there is one to their number."""
+    monkeypatch.setattr("problems.lcp.search.solver.MOST_RESTARTS", 3)
+    A = np.eye(13)
+    A[:2, :2] = [[0.0, 1.0], [0.0, 0.0]]
+    problem = lcp.LCP(A, np.append([-1.0, 1.0], -np.ones(11)))
+    endless = lcp.solve(problem, budget=continuation.Budget(steps=math.inf))
+    assert "Restarts from random starts: 3" in endless.message
+    assert not endless.solved
+    limit = endless.counts.factorizations + 300
+    found = lcp.solve(problem, budget=continuation.Budget(steps=math.inf, factorizations=limit))
+    assert f"The budget is used up: {limit} factorisations." in found.message
+    assert limit <= found.counts.factorizations < limit + 200
+    assert len(found.paths) > len(endless.paths)

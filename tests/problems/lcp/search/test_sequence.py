@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from attrs import fields
 
 from problems import lcp
 from problems.lcp.active_set.face import KEPT, Faces
+from problems.lcp.pivoting.dictionary import Dictionary
+from problems.lcp.search import judging
+from problems.scenes.planar import free_motion, impulses, time_step
 
 
 def definite(n, seed):
@@ -97,3 +101,40 @@ def test_nothing_is_printed_where_a_sparse_face_is_singular(capfd):
     for _ in range(5):
         lcp.solve(lcp.LCP(A, r.standard_normal(60)), restarts=0)
     assert capfd.readouterr() == ("", "")
+
+
+def test_steps_of_a_stack_take_a_few_pivots_from_the_last_basis(monkeypatch):
+    """Boxes on each other, pushed until they slide and tip: half of the contacts are degenerate all the time."""
+    pivots, number, h = [], 12, 0.01
+    monkeypatch.setattr(Dictionary, "pivot", lambda *a, real=Dictionary.pivot: pivots.append(1) or real(*a))
+    contacts = [(k, k - 1, side, float(k), 0.0, 1.0) for k in range(number) for side in (-0.5, 0.5)]
+    A, J, inverse = time_step([(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(number)], contacts, 0.5)
+    solver, v, per_step = lcp.Solver(A), np.zeros(inverse.size), []
+    for k in range(60):
+        force = np.tile([0.2 * np.sin(k / 8.0), -9.81, 0.0], number)
+        force[-3] += 0.15 * k
+        free = v + h * inverse * force
+        pivots.clear()
+        found = solver.solve(free_motion(J @ free))
+        assert found.solved
+        per_step.append((found.counts.factorizations, len(pivots)))
+        v = free + inverse * (J.T @ impulses(found.x))
+    faces, exchanged = np.array(per_step[1:]).T
+    assert faces.max() <= 3
+    assert exchanged.sum() <= 30
+
+
+def test_a_certificate_moves_between_units_digit_by_digit(monkeypatch):
+    """Powers of two change none, so that it is not made again."""
+    made = []
+    monkeypatch.setattr(judging, "certify", lambda *a: made.append(1) or lcp.certify(*a))
+    A, r = definite(20, 5)
+    rows, columns = 2.0 ** r.integers(-30, 31, (2, 20))
+    problem = lcp.LCP(rows[:, None] * A * columns, rows * r.standard_normal(20))
+    found = lcp.solve(problem)
+    assert found.solved
+    assert "scaled" in found.message
+    assert not made
+    again = lcp.certify(problem, found.x)
+    for one in fields(lcp.Certificate):
+        np.testing.assert_array_equal(getattr(found.certificate, one.name), getattr(again, one.name))
