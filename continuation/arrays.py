@@ -42,7 +42,7 @@ def multiple(factor: float, x: Array) -> Array:
 
 
 def add_multiple(y: Array, factor: float, x: Array) -> Array:
-    """``y + factor x`` in the storage of y, for contiguous vectors: a quarter of the time of two operations of numpy."""
+    """``y + factor x`` in the storage of y, for contiguous vectors: a quarter of the time of two of numpy's."""
     added: Array = daxpy(x, y, x.size, factor)
     return added
 

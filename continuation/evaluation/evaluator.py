@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cached_property, lru_cache, partial
+from functools import lru_cache, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -65,7 +65,7 @@ def _moves(n: int) -> Array:
     return moves
 
 
-@frozen(eq=False, slots=False)
+@frozen(eq=False)
 class CountedSystem:
     """A bordered factorisation whose solves are counted."""
 
@@ -76,19 +76,24 @@ class CountedSystem:
     approximate: Callable[[Array, float], Array] = field(init=False)
     """The same for an iteration that measures its own residual: not refined where the structure can do without."""
 
+    _sign: list[int] = field(factory=list, init=False)
+
     @solve.default
     def _solve(self) -> Callable[[Array, float], Array]:
-        return partial(_counted, self.counts, self.system.solve)
+        return partial(_counted if getattr(self.system, "finite", False) else _finite, self.counts, self.system.solve)
 
     @approximate.default
     def _approximate(self) -> Callable[[Array, float], Array]:
         own = getattr(self.system, "approximate", None)
-        return self.solve if own is None else partial(_counted, self.counts, own)
+        return self.solve if own is None else partial(_finite, self.counts, own)
 
-    @cached_property
+    @property
     def sign(self) -> int:
         """Sign of the determinant of the bordered matrix; 0 if unknown."""
-        return self.system.sign
+        # Asked for once: a structure may have to work for it.
+        if not self._sign:
+            self._sign.append(self.system.sign)
+        return self._sign[0]
 
     @property
     def approximates(self) -> bool:
@@ -99,9 +104,13 @@ class CountedSystem:
 def _counted(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
     counts.solves += 1
     try:
-        z = solve(r, rho)
+        return solve(r, rho)
     except SingularError as error:
         raise EvaluationError(str(error)) from error
+
+
+def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
+    z = _counted(counts, solve, r, rho)
     if not finite(z):
         raise EvaluationError("a bordered solve gave values that are not finite")
     return z
