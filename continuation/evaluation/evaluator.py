@@ -75,7 +75,6 @@ class CountedSystem:
     """The bordered solve; EvaluationError where the answer is not finite."""
     approximate: Callable[[Array, float], Array] = field(init=False)
     """The same for an iteration that measures its own residual: not refined where the structure can do without."""
-
     _sign: list[int] = field(factory=list, init=False)
 
     @solve.default
@@ -250,10 +249,19 @@ class Evaluator:
         Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
         an equation may cancel in one of them. `residual` is H(u).
         """
-        step, moves = LOOK * np.spacing(np.abs(u)), _moves(u.size)
-        looks = (self.residual(u + step * moves), self.residual(u + step * moves[::-1]))
-        terms: Array = np.maximum(*(np.abs(look - residual) for look in looks)) * (ULPS / LOOK)
+        terms: Array = np.maximum(self.look(u, residual), self.look(u, residual, -1))
         return terms
+
+    def look(self, u: Array, residual: Array, order: int = 1) -> Array:
+        """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
+        moved = np.spacing(np.abs(u))
+        moved *= LOOK
+        moved *= _moves(u.size)[::order]
+        moved += u
+        change = self.residual(moved)
+        change -= residual
+        change *= ULPS / LOOK
+        return np.abs(change, out=change)
 
     @property
     def derivative(self) -> Derivative:
