@@ -139,8 +139,11 @@ def relinearize(
     along: Array,
     signed: bool = False,
     accuracy: float = REFINED,
+    guess: Array | None = None,
 ) -> Linearization:
     """Linearize at u with a factorisation from nearby: the tangent is refined to `accuracy`, and makes along . v > 0.
+
+    It begins with that of the factorisation, or with a multiple of `guess`, where somebody knows it better.
 
     Iterative refinement of M v = e_{N+1} with the factors of M~ multiplies the error by I - M~^{-1} M. It is believed
     only if it contracts reliably, else u gets factors of its own. Where the determinant's sign counts
@@ -150,11 +153,14 @@ def relinearize(
     apply = evaluator.differential(u)
     tangent = None
     if apply is not None:
+        length = 0.0 if guess is None else dot(anchor.border, guess)
         if signed:
-            guess = generic_vector(u.size) / np.sqrt(weights)
+            begin = generic_vector(u.size) / np.sqrt(weights)
+        elif guess is not None and length != 0.0:
+            begin = guess / length
         else:
-            guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
-        tangent = _refined(apply, anchor, guess, weights, accuracy)
+            begin = anchor.system.solve(np.zeros(u.size - 1), 1.0)
+        tangent = _refined(apply, anchor, begin, weights, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
