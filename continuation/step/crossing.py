@@ -207,6 +207,7 @@ class Crossings:
             return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (places[0] + places[1]))
         if flipped != bool(len(places) % 2) or attempt.correction.contraction > DOUBTFUL:
             return _rejected(attempt, Rejection.ORIENTATION, 0.5)
+        moved = np.inf
         for _ in range(PASSES):
             u, _ = self.solver.project(arc.a, prediction(t * attempt.h), arc.a.border)
             if (apply := self._derivative(u)) is None:
@@ -215,7 +216,9 @@ class Crossings:
             if not found:
                 break
             before, t = t, t * min(found, key=lambda place: abs(place - 1.0))
-            if abs(t - before) <= LOCATED:
+            last, moved = moved, abs(t - before)
+            # What no longer falls is round-off, which is more than that where zero is far away.
+            if moved <= LOCATED or moved >= last:
                 break
         tangent = arc.segment.derivative(t)
         return Crossed(evolve(arc.a, u=u, tangent=tangent / norm(arc.a.weights, tangent)), None)
