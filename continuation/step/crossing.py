@@ -86,6 +86,9 @@ OVER, SHORT = 0.4, 0.5
 """A crossing in the first part of an arc that came out on the other branch is stepped over by as much again: there the
 branches are as far apart as they were. One farther on is first approached, to half the way."""
 
+SHORTEST = 0.1
+"""The least factor of a step: a place next to the arc's beginning may be round-off, and would end the path at once."""
+
 
 @frozen(eq=False)
 class Crossed:
@@ -326,4 +329,4 @@ def _peak(found: dict[float, list[float]]) -> float | None:
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:
-    return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
+    return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=max(factor, SHORTEST))
