@@ -173,6 +173,7 @@ def iterate(
     """
     iteration = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0))
     r, found, left, once = predicted, False, np.inf, False
+    terms = looked = there = r
 
     def small(size: float) -> bool:
         nonlocal r, found
@@ -202,7 +203,7 @@ def iterate(
         return tolerance.measure(step, point.weights)
 
     rejection: Rejection | None = None
-    detail, count, worst, terms, looked, there = "", 0, 0.0, r, r, r
+    detail, count, worst = "", 0, 0.0
     try:
         r = evaluator.residual(predicted)
         done = iteration.run(

@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -60,12 +60,11 @@ class SingularPointError(EvaluationError):
 def _moves(n: int) -> Array:
     """Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them."""
     generic = generic_vector(n)
-    size = np.abs(generic)
-    moves: Array = np.sign(generic) * (0.5 + 0.5 * size / size.max())
-    return moves
+    moves: Array = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
+    return LOOK * moves
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class CountedSystem:
     """A bordered factorisation whose solves are counted."""
 
@@ -75,7 +74,6 @@ class CountedSystem:
     """The bordered solve; EvaluationError where the answer is not finite."""
     approximate: Callable[[Array, float], Array] = field(init=False)
     """The same for an iteration that measures its own residual: not refined where the structure can do without."""
-    _sign: list[int] = field(factory=list, init=False)
 
     @solve.default
     def _solve(self) -> Callable[[Array, float], Array]:
@@ -86,13 +84,10 @@ class CountedSystem:
         own = getattr(self.system, "approximate", None)
         return self.solve if own is None else partial(_finite, self.counts, own)
 
-    @property
+    @cached_property
     def sign(self) -> int:
         """Sign of the determinant of the bordered matrix; 0 if unknown."""
-        # Asked for once: a structure may have to work for it.
-        if not self._sign:
-            self._sign.append(self.system.sign)
-        return self._sign[0]
+        return self.system.sign
 
     @property
     def approximates(self) -> bool:
@@ -254,11 +249,7 @@ class Evaluator:
 
     def look(self, u: Array, residual: Array, order: int = 1) -> Array:
         """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
-        moved = np.spacing(np.abs(u))
-        moved *= LOOK
-        moved *= _moves(u.size)[::order]
-        moved += u
-        change = self.residual(moved)
+        change = self.residual(u + np.spacing(np.abs(u)) * _moves(u.size)[::order])
         change -= residual
         change *= ULPS / LOOK
         return np.abs(change, out=change)
@@ -332,7 +323,7 @@ class Evaluator:
             else:
                 H_y, H_lam = self._evaluated(u)
                 column = np.asarray(H_lam, dtype=float)
-                if not finite(column) or (isinstance(H_y, np.ndarray) and not math.isfinite(H_y.sum())):
+                if not finite(column) or (isinstance(H_y, np.ndarray) and not finite(H_y.ravel("K"))):
                     raise NotFiniteError("the derivative is not finite")
                 system = factor_bordered(H_y, column, border)
         except EvaluationError:

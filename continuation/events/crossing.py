@@ -69,7 +69,7 @@ def singular_places(
     if turned:
         start = np.roll(start, turned)
     values, _ = _eigenvalues(a, apply, border, right, left_end, start, accuracy)
-    return sorted(float(1.0 / value) for value in values)
+    return sorted((1.0 / values).tolist())
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:

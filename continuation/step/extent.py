@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, generic_vector, median
 from continuation.evaluation.evaluator import ULPS, EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
 
@@ -144,7 +144,7 @@ def initial_extent(
         found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off))
     still = extent <= standstill * float(extent.max())
-    extent[still] = float(np.median(extent[~still]))
+    extent[still] = median(extent[~still])
     if still.any() and np.isinf(farthest):
         extent[still] *= _smaller(evaluator, point, np.where(still, extent, 0.0), residual)
     return extent
@@ -207,7 +207,7 @@ def _nonlinearity(
 
     def corrected(at: Array) -> Array:
         z = point.approximate(residual - evaluator.residual(at))
-        along: Array = z - float(np.median(z[moving] / v[moving])) * v
+        along: Array = z - median(z[moving] / v[moving]) * v
         return along
 
     there = point.u + h * v
@@ -217,7 +217,7 @@ def _nonlinearity(
     d = _beyond_round_off(evaluator, point, there, d, loose)
     e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
-    turned = float(np.median(relative))
+    turned = median(relative)
     if moving[-1]:
         # Unknowns that all move alike turn against the parameter alone.
         turned = max(turned, 0.5 * float(relative[-1]))

@@ -45,7 +45,7 @@ def test_random_units_change_nothing(name, preset):
     assert all(ratio * work <= 1.3 * work + 3.0 for ratio in ratios)
 
 
-@pytest.mark.parametrize("preset", (FAST, DEFAULT), ids=lambda preset: preset.name)
+@pytest.mark.parametrize("preset", [FAST, DEFAULT], ids=lambda preset: preset.name)
 def test_a_point_where_two_ranks_are_lost_is_passed_in_any_units(preset):
     """The symmetric branch on a square: 2.6 times the factorisations while the place depended on where zero is."""
     wrong, ratios, work = run.compare("Bratu 2D", preset, 3, seed=0)
