@@ -67,7 +67,8 @@ def singular_places(
     right, left_end = 1.0 / ahead, -1.0 / behind if np.isfinite(behind) else -np.inf
     start = generic_vector(a.u.size)
     if turned:
-        start = np.roll(start, turned)
+        place = turned % start.size
+        start = np.concatenate((start[-place:], start[:-place])) if place else start
     values, _ = _eigenvalues(a, apply, border, right, left_end, start, accuracy)
     return sorted((1.0 / values).tolist())
 
