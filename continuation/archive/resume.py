@@ -33,8 +33,14 @@ from continuation.step.options import OBSERVER, Options, documented, each
 from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
-    Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,
-    Status.PREDICTOR_FAILED, Status.ABANDONED, Status.RAISED,
+    Status.TRACING,
+    Status.INTERRUPTED,
+    Status.BUDGET_EXHAUSTED,
+    Status.STEP_TOO_SMALL,
+    Status.LEFT_DOMAIN,
+    Status.PREDICTOR_FAILED,
+    Status.ABANDONED,
+    Status.RAISED,
 )
 
 _YOUNGER = ("guards",)
@@ -182,10 +188,7 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
     """The homotopy, made of what the file says of it; `known` is the `registry`.
 
-    Raises
-    ------
-    ArchiveError
-        If it was not stored, or is not among what is trusted.
+    Raises `ArchiveError` if it was not stored, or is not among what is trusted.
     """
     try:
         tree: Any = checkpoint.run["homotopy"]
