@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from math import sqrt
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -35,7 +35,7 @@ def inner(weights: Array, a: Array, b: Array) -> float:
 
 def norm(weights: Array, a: Array) -> float:
     """The length of `a` in the metric of `weights`."""
-    return math.sqrt(dot(weights * a, a))
+    return sqrt(dot(weights * a, a))
 
 
 def share(weights: Array, v: Array) -> float:

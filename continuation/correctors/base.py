@@ -172,7 +172,8 @@ def iterate(
     goes with the outcome.
     """
     iteration = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0))
-    r, found, left = predicted, False, np.inf
+    r, found, left, once = predicted, False, np.inf, False
+    terms = looked = there = r
 
     def small(size: float) -> bool:
         nonlocal r, found
@@ -189,13 +190,20 @@ def iterate(
         nonlocal r, left
         r = evaluator.residual(iteration.x)
         left = level(r, terms)
+        if once and left > ROUND_OFF:
+            look_again()
         return left <= ROUND_OFF
+
+    def look_again() -> None:
+        nonlocal left, once, terms
+        once, terms = False, np.maximum(terms, evaluator.look(looked, there, -1))
+        left = level(r, terms)
 
     def measure(step: Array) -> float:
         return tolerance.measure(step, point.weights)
 
     rejection: Rejection | None = None
-    detail, count, worst, terms = "", 0, 0.0, r
+    detail, count, worst = "", 0, 0.0
     try:
         r = evaluator.residual(predicted)
         done = iteration.run(
@@ -211,13 +219,17 @@ def iterate(
             # was another.
             before = np.inf
             for fresh in range(ROUNDS):
-                terms = evaluator.round_off(iteration.x, r)
+                once, looked, there = not fresh, iteration.x, r
+                terms = evaluator.look(looked, there) if once else evaluator.round_off(looked, there)
                 left = level(r, terms)
+                if once and ROUND_OFF < left <= FAR_FROM_ROUND_OFF:
+                    # What is far from round-off is polished, what is at round-off needs no second look.
+                    look_again()
                 if left <= (FAR_FROM_ROUND_OFF if fresh else ROUND_OFF) or left > before:
                     break
                 before = left if fresh else np.inf
                 k, ratio = (count + 2 * fresh, 1.0) if fresh else (count, worst)
-                looked, iteration = iteration.x, Iteration(iteration.x, POLISHING)
+                iteration = Iteration(looked, POLISHING)
                 if iteration.run(partial(polished, k, ratio), leftover, settled) and _alike(looked, iteration.x):
                     break
         elif iteration.stalled:

@@ -60,9 +60,8 @@ class SingularPointError(EvaluationError):
 def _moves(n: int) -> Array:
     """Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them."""
     generic = generic_vector(n)
-    size = np.abs(generic)
-    moves: Array = np.sign(generic) * (0.5 + 0.5 * size / size.max())
-    return moves
+    moves: Array = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
+    return LOOK * moves
 
 
 @frozen(eq=False, slots=False)
@@ -78,12 +77,12 @@ class CountedSystem:
 
     @solve.default
     def _solve(self) -> Callable[[Array, float], Array]:
-        return partial(_counted, self.counts, self.system.solve)
+        return partial(_counted if getattr(self.system, "finite", False) else _finite, self.counts, self.system.solve)
 
     @approximate.default
     def _approximate(self) -> Callable[[Array, float], Array]:
         own = getattr(self.system, "approximate", None)
-        return self.solve if own is None else partial(_counted, self.counts, own)
+        return self.solve if own is None else partial(_finite, self.counts, own)
 
     @cached_property
     def sign(self) -> int:
@@ -99,9 +98,13 @@ class CountedSystem:
 def _counted(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
     counts.solves += 1
     try:
-        z = solve(r, rho)
+        return solve(r, rho)
     except SingularError as error:
         raise EvaluationError(str(error)) from error
+
+
+def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rho: float) -> Array:
+    z = _counted(counts, solve, r, rho)
     if not finite(z):
         raise EvaluationError("a bordered solve gave values that are not finite")
     return z
@@ -241,10 +244,15 @@ class Evaluator:
         Each component of u is moved by many units in its last place, in directions of no pattern, twice: the terms of
         an equation may cancel in one of them. `residual` is H(u).
         """
-        step, moves = LOOK * np.spacing(np.abs(u)), _moves(u.size)
-        looks = (self.residual(u + step * moves), self.residual(u + step * moves[::-1]))
-        terms: Array = np.maximum(*(np.abs(look - residual) for look in looks)) * (ULPS / LOOK)
+        terms: Array = np.maximum(self.look(u, residual), self.look(u, residual, -1))
         return terms
+
+    def look(self, u: Array, residual: Array, order: int = 1) -> Array:
+        """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
+        change = self.residual(u + np.spacing(np.abs(u)) * _moves(u.size)[::order])
+        change -= residual
+        change *= ULPS / LOOK
+        return np.abs(change, out=change)
 
     @property
     def derivative(self) -> Derivative:
@@ -266,9 +274,11 @@ class Evaluator:
         H_y, H_lam = self._evaluated(u)
         column = np.asarray(H_lam, dtype=float)
         if isinstance(H_y, np.ndarray):
-            # A method of the array takes half the time of `@`, for small ones.
-            product = H_y.dot
-            return lambda v: product(v[:-1]) + column * v[-1]
+            # One product with all of it takes a third of the time of one with each part.
+            whole = np.empty((u.size - 1, u.size))
+            whole[:, :-1] = H_y
+            whole[:, -1] = column
+            return whole.dot
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
@@ -313,7 +323,7 @@ class Evaluator:
             else:
                 H_y, H_lam = self._evaluated(u)
                 column = np.asarray(H_lam, dtype=float)
-                if not finite(column) or (isinstance(H_y, np.ndarray) and not math.isfinite(H_y.sum())):
+                if not finite(column) or (isinstance(H_y, np.ndarray) and not finite(H_y.ravel("K"))):
                     raise NotFiniteError("the derivative is not finite")
                 system = factor_bordered(H_y, column, border)
         except EvaluationError:

@@ -12,8 +12,10 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from scipy.linalg.lapack import dgeev
 
 from continuation.arrays import Array, dot, generic_vector
+from continuation.evaluation.evaluator import EvaluationError
 from continuation.point.linearization import Linearization
 
 PRODUCTS = 40
@@ -65,9 +67,10 @@ def singular_places(
     right, left_end = 1.0 / ahead, -1.0 / behind if np.isfinite(behind) else -np.inf
     start = generic_vector(a.u.size)
     if turned:
-        start = np.roll(start, turned)
+        place = turned % start.size
+        start = np.concatenate((start[-place:], start[:-place])) if place else start
     values, _ = _eigenvalues(a, apply, border, right, left_end, start, accuracy)
-    return sorted(float(1.0 / value) for value in values)
+    return sorted((1.0 / values).tolist())
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
@@ -128,7 +131,7 @@ def _eigenvalues(
             continue
         if k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left):
             return np.empty(0), np.empty((a.u.size, 0))
-        values, vectors = np.linalg.eig(H[: k + 1, : k + 1])
+        values, vectors = _eig(H[: k + 1, : k + 1])
         error = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
         told = (values.real + error > right) | (values.real - error < left)
         known = error <= accuracy * np.abs(values)
@@ -139,6 +142,20 @@ def _eigenvalues(
     real = np.abs(values.imag) <= error + EXHAUSTED * np.abs(values)
     wanted = real & ((values.real > right) | (values.real < left))
     return values[wanted].real, Q[: k + 1].T @ vectors[:, wanted].real
+
+
+def _eig(matrix: Array) -> tuple[Array, Array]:
+    """What `numpy.linalg.eig` says of a small matrix, in a third of its time."""
+    real, imaginary, _, vectors, info = dgeev(matrix, compute_vl=0)
+    if info:
+        raise EvaluationError("eigenvalues of a small matrix were not found")
+    if not imaginary.any():
+        return real, vectors
+    pairs = vectors.astype(complex)
+    for j in np.flatnonzero(imaginary > 0.0):
+        pairs[:, j] += 1j * vectors[:, j + 1]
+        pairs[:, j + 1] = pairs[:, j].conj()
+    return real + 1j * imaginary, pairs
 
 
 def _nothing_told(H: Array, right: float, left: float) -> bool:

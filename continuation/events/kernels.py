@@ -40,7 +40,7 @@ class Doubled:
         return lambda r, transposed: np.asarray(lu_solve(factors, r, int(transposed), check_finite=False))
 
 
-def kernels(matrix: Matrix) -> tuple[Array, Array]:
+def kernels(matrix: Matrix, accuracy: float = RANK) -> tuple[Array, Array]:
     """Orthonormal bases of the kernel of a matrix, shape (N, N + 1), and of its left kernel, as columns.
 
     With as many borders in general position as ranks may be lost the bordered matrix is regular, and what it makes of
@@ -49,6 +49,8 @@ def kernels(matrix: Matrix) -> tuple[Array, Array]:
     Parameters
     ----------
     matrix : ndarray or sparse array
+    accuracy : float
+        What may be left of a singular value that vanishes.
     """
     n = matrix.shape[0]
     k = min(BORDERS, n)
@@ -57,12 +59,12 @@ def kernels(matrix: Matrix) -> tuple[Array, Array]:
     solve = Doubled(matrix, columns, rows).factors()
     right = solve(np.vstack([np.zeros((n, k + 1)), np.eye(k + 1)]), False)
     left = solve(np.vstack([np.zeros((n + 1, k)), np.eye(k)]), True)
-    return _vanishing(right[: n + 1], right[n + 1 :]), _vanishing(left[:n], left[n:])
+    return _vanishing(right[: n + 1], right[n + 1 :], accuracy), _vanishing(left[:n], left[n:], accuracy)
 
 
-def _vanishing(vectors: Array, left_over: Array) -> Array:
+def _vanishing(vectors: Array, left_over: Array, accuracy: float) -> Array:
     """Those combinations of vectors that leave nothing."""
     values, turned = np.linalg.svd(left_over)[1:]
-    rank = int(np.count_nonzero(values > RANK * np.linalg.norm(vectors, 2)))
+    rank = int(np.count_nonzero(values > accuracy * np.linalg.norm(vectors, 2)))
     basis: Array = np.linalg.qr(vectors @ turned[rank:].T)[0]
     return basis

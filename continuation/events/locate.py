@@ -169,7 +169,8 @@ def _dividing(arc: Arc, along: list[float]) -> list[float]:
 
 
 def _knot(solver: PathSolver, event: Event, arc: Arc, t: float) -> tuple[Linearization, float]:
-    point = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, arc.segment.at(t), arc.border)
+    segment = arc.segment
+    point = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, segment.at(t), arc.border, segment.derivative(t))
     return point, event.monitor(point.u, point.tangent)
 
 
@@ -206,7 +207,7 @@ def _root(
         fine = width <= FINE * first
         t = 0.5 if bisect else ga / (ga - gb) if fine else _guess(event, segment, ga, gb)
         t = min(max(t, 1e-12), 1.0 - 1e-12)
-        point = solver.project_and_linearize(a if t < 0.5 else b, segment.at(t), arc.border)
+        point = solver.project_and_linearize(a if t < 0.5 else b, segment.at(t), arc.border, segment.derivative(t))
         g = event.monitor(point.u, point.tangent)
         bisect = abs(g) > HALVING * least
         if abs(g) < least:

@@ -41,6 +41,11 @@ WEAK = 1e-8
 TRANSVERSAL = 1e-9
 """The least discriminant, relative to its terms, of directions that are not one: the digits of SECOND."""
 
+HALTED = 1e-9, 100.0
+"""A simple branch point is a regular zero of the system: increments no longer halve at round-off, below the first even
+where zero is a million extents away. Where they halve, and no more, several ranks are lost: the next singular value was
+two to four times the last increment (Bratu's problem on a square, in any units)."""
+
 IMPERFECT = 1e-8
 """What the augmented system may add to H, relative to its terms: more, and H has no zero where H' loses its rank."""
 
@@ -247,7 +252,9 @@ def branch_point_near(
             here = at(u)
             if not np.abs(here.left[-2:]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
                 return None
-            if here.weak and kernels(here.matrix)[0].shape[1] > 2:
+            # Where Newton's method came to a halt early the point is known to its last increment only, and so is H'.
+            accuracy = max(RANK, HALTED[1] * newton.size) if newton.size > HALTED[0] else RANK
+            if (here.weak or accuracy > RANK) and kernels(here.matrix, accuracy)[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes that regular.
                 return None
             found = directions(scaled, here, u, heading / extent)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 
 from continuation.arrays import Array, dot
 from continuation.metric import inner, norm
@@ -23,12 +22,15 @@ class Arc:
     b: Linearization
     border: Array
     segment: Segment
+    _samples: list[tuple[Array, Array]] = field(factory=list, init=False)
 
-    @cached_property
+    @property
     def samples(self) -> list[tuple[Array, Array]]:
         """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
-        points, slopes = self.segment.sampled()
-        return list(zip(points, np.asarray(slopes) / dot(self.border, self.b.u - self.a.u)))
+        if not self._samples:
+            points, slopes = self.segment.sampled()
+            self._samples.extend(zip(points, np.asarray(slopes) / dot(self.border, self.b.u - self.a.u)))
+        return self._samples
 
     @property
     def just_after_start(self) -> tuple[Array, Array]:

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
 
-from continuation.arrays import Array, dot, generic_vector, largest
+from continuation.arrays import Array, dot, generic_vector, largest, multiple
 from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
@@ -69,6 +69,13 @@ class Linearization:
     anchor: Anchor
     tangent: Array
     orientation: int
+    border: Array = field(init=False)
+    """The tangent in the dual metric, W tangent: border . tangent = 1."""
+
+    @border.default
+    def _border(self) -> Array:
+        border: Array = self.weights * self.tangent
+        return border
 
     @property
     def exact(self) -> bool:
@@ -84,12 +91,6 @@ class Linearization:
     def lam(self) -> float:
         """The parameter."""
         return float(self.u[-1])
-
-    @property
-    def border(self) -> Array:
-        """The tangent in the dual metric, W tangent: border . tangent = 1."""
-        border: Array = self.weights * self.tangent
-        return border
 
     def solve(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
         """Solve ``H' z = r, border . z = rho`` with the factorisation at hand, whatever the border.
@@ -109,7 +110,8 @@ class Linearization:
         along = dot(row, self.tangent)
         if along == 0.0:
             raise EvaluationError("the border is orthogonal to the tangent")
-        corrected: Array = z + ((rho - dot(row, z)) / along) * self.tangent
+        corrected = multiple((rho - dot(row, z)) / along, self.tangent)
+        corrected += z
         return corrected
 
     def with_weights(self, weights: Array) -> Linearization:
@@ -137,8 +139,11 @@ def relinearize(
     along: Array,
     signed: bool = False,
     accuracy: float = REFINED,
+    guess: Array | None = None,
 ) -> Linearization:
     """Linearize at u with a factorisation from nearby: the tangent is refined to `accuracy`, and makes along . v > 0.
+
+    It begins with that of the factorisation, or with a multiple of `guess`, where somebody knows it better.
 
     Iterative refinement of M v = e_{N+1} with the factors of M~ multiplies the error by I - M~^{-1} M. It is believed
     only if it contracts reliably, else u gets factors of its own. Where the determinant's sign counts
@@ -148,11 +153,14 @@ def relinearize(
     apply = evaluator.differential(u)
     tangent = None
     if apply is not None:
+        length = 0.0 if guess is None else dot(anchor.border, guess)
         if signed:
-            guess = generic_vector(u.size) / np.sqrt(weights)
+            begin = generic_vector(u.size) / np.sqrt(weights)
+        elif guess is not None and length != 0.0:
+            begin = guess / length
         else:
-            guess = anchor.system.solve(np.zeros(u.size - 1), 1.0)
-        tangent = _refined(apply, anchor, guess, weights, accuracy)
+            begin = anchor.system.solve(np.zeros(u.size - 1), 1.0)
+        tangent = _refined(apply, anchor, begin, weights, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along)
     # The refined tangent makes an acute angle with the anchor's own border, which need not be the one asked for.
@@ -170,12 +178,19 @@ def _refined(
     """
     refinement = Iteration(guess, TANGENT_REFINEMENT)
     solve, border, length = anchor.system.approximate, anchor.border, partial(norm, weights)
+    longest = length(guess)
 
     def increment() -> Array:
         v = refinement.x
         return solve(-apply(v), 1.0 - dot(border, v))
 
-    done = refinement.run(increment, length, lambda size: size <= accuracy * length(refinement.x))
+    def small(size: float) -> bool:
+        # The sum of lengths is a bound: the vector itself is measured only where that is met.
+        nonlocal longest
+        longest += size
+        return size <= accuracy * longest and size <= accuracy * length(refinement.x)
+
+    done = refinement.run(increment, length, small)
     if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * length(refinement.x))):
         return None
     v = refinement.x

@@ -141,10 +141,15 @@ class PathSolver:
         noise: Array = NOISE_LOOKS * np.abs(left) + last_place
         return noise
 
-    def project_and_linearize(self, near: Linearization, guess: Array, border: Array) -> Linearization:
-        """The path's point on the hyperplane through `guess`, linearized, oriented by angle with the border."""
+    def project_and_linearize(
+        self, near: Linearization, guess: Array, border: Array, along: Array | None = None
+    ) -> Linearization:
+        """The path's point on the hyperplane through `guess`, linearized, oriented by angle with the border.
+
+        `along` is about the direction of the path there, if that is known, of any length: it saves solves.
+        """
         u, anchor = self.project(near, guess, border)
-        return relinearize(self.evaluator, u, near.weights, anchor, border)
+        return relinearize(self.evaluator, u, near.weights, anchor, border, guess=along)
 
 
 def _approximate(system: CountedSystem, r: Array) -> Array:

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array, dot
+from continuation.arrays import Array, add_multiple, dot
 
 
 class Segment(Protocol):
@@ -65,15 +65,15 @@ class HermiteSegment:
     def at(self, t: float) -> Array:
         """The cubic at t."""
         # From the beginning, so that round-off is that of the way, not of a sum of large parts.
-        s = t * (1.0 - t)
-        onward: Array = (t * t * (3.0 - 2.0 * t)) * (self.u1 - self.u0) + (s * (1.0 - t)) * self.d0 - (s * t) * self.d1
-        return self.u0 + onward
+        s, onward = t * (1.0 - t), self.u1 - self.u0
+        onward *= t * t * (3.0 - 2.0 * t)
+        return self.u0 + add_multiple(add_multiple(onward, s * (1.0 - t), self.d0), -s * t, self.d1)
 
     def derivative(self, t: float) -> Array:
         """Its derivative at t."""
-        at_begin, at_end = (1.0 - t) * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)
-        slope: Array = (6.0 * t * (1.0 - t)) * (self.u1 - self.u0) + at_begin * self.d0 + at_end * self.d1
-        return slope
+        slope = self.u1 - self.u0
+        slope *= 6.0 * t * (1.0 - t)
+        return add_multiple(add_multiple(slope, (1.0 - t) * (1.0 - 3.0 * t), self.d0), t * (3.0 * t - 2.0), self.d1)
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
         """All at once: a product of matrices costs less than one point by itself."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from attrs import field, frozen
 
-from continuation.arrays import Array, dot
+from continuation.arrays import Array, dot, multiple
 from continuation.checks import integer
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
@@ -26,7 +26,8 @@ class Interpolant:
         """Horner's scheme on the divided differences."""
         value: Array = self.coefficients[-1]
         for node, coefficient in zip(self.nodes[-2::-1], self.coefficients[-2::-1]):
-            value = coefficient + (h - node) * value
+            value = multiple(h - node, value)
+            value += coefficient
         return value
 
 
@@ -69,7 +70,8 @@ class Line:
 
     def __call__(self, h: float) -> Array:
         """The point at h."""
-        point: Array = self.u + h * self.v
+        point = multiple(h, self.v)
+        point += self.u
         return point
 
 

@@ -58,10 +58,15 @@ class Examiner:
     target: Target
     pieces: Pieces | None = None
     crossings: Crossings = field(init=False)
+    branch_index: int | None = field(init=False)
 
     @crossings.default
     def _crossings(self) -> Crossings:
         return Crossings(self.solver)
+
+    @branch_index.default
+    def _branch_index(self) -> int | None:
+        return self.settings.branch_index
 
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
@@ -93,7 +98,7 @@ class Examiner:
             if not arc_on_path(self.solver, arc, attempt.correction.distance):
                 return _rejected(attempt, Rejection.MIDPOINT)
             ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
-            index, flipped = self.settings.branch_index, arrival.orientation not in (0, orientation)
+            index, flipped = self.branch_index, arrival.orientation not in (0, orientation)
             if ending.limit is not None:
                 # A singular end by itself makes H' lose its rank there.
                 flipped = False

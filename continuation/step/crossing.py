@@ -86,6 +86,9 @@ OVER, SHORT = 0.4, 0.5
 """A crossing in the first part of an arc that came out on the other branch is stepped over by as much again: there the
 branches are as far apart as they were. One farther on is first approached, to half the way."""
 
+SHORTEST = 0.1
+"""The least factor of a step: a place next to the arc's beginning may be round-off, and would end the path at once."""
+
 
 @frozen(eq=False)
 class Crossed:
@@ -207,6 +210,7 @@ class Crossings:
             return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (places[0] + places[1]))
         if flipped != bool(len(places) % 2) or attempt.correction.contraction > DOUBTFUL:
             return _rejected(attempt, Rejection.ORIENTATION, 0.5)
+        moved = np.inf
         for _ in range(PASSES):
             u, _ = self.solver.project(arc.a, prediction(t * attempt.h), arc.a.border)
             if (apply := self._derivative(u)) is None:
@@ -215,7 +219,9 @@ class Crossings:
             if not found:
                 break
             before, t = t, t * min(found, key=lambda place: abs(place - 1.0))
-            if abs(t - before) <= LOCATED:
+            last, moved = moved, abs(t - before)
+            # What no longer falls is round-off, which is more than that where zero is far away.
+            if moved <= LOCATED or moved >= last:
                 break
         tangent = arc.segment.derivative(t)
         return Crossed(evolve(arc.a, u=u, tangent=tangent / norm(arc.a.weights, tangent)), None)
@@ -323,4 +329,4 @@ def _peak(found: dict[float, list[float]]) -> float | None:
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:
-    return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
+    return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=max(factor, SHORTEST))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, generic_vector, median
 from continuation.evaluation.evaluator import ULPS, EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
 
@@ -20,8 +20,13 @@ Mask = NDArray[np.bool_]
 TURN = 0.25
 """The nonlinearity at the extent. Between 0.1 and 0.5 factorisations on twelve problems differ by a tenth."""
 
-AROUND = 1.05
-"""The search ends within this factor of TURN; from there the nonlinearity grows like the length."""
+AROUND = 1.001
+"""The search ends within this factor of TURN; from there the nonlinearity grows like a power of the length. The extent
+is then known to about the square of that: where the search began depends on where zero is, and where it ends must not.
+With 1.05 shifts changed the extent by a hundredth, and factorisations on Bratu's problem by a factor of two."""
+
+POWERS = 0.5, 4.0
+"""Between these that power is looked for: one is usual, two where the path is symmetric about its start."""
 
 FIRST = 0.3
 """The first step, in extents: it turns by about a third of TURN, where the controllers aim at 0.4 radians."""
@@ -102,8 +107,8 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     h = NEAR * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    begin, low, high = h, 0.0, np.inf
-    found, off = h, np.zeros_like(u)
+    begin, low, high, power = h, 0.0, np.inf, 1.0
+    found, off, before = h, np.zeros_like(u), (0.0, 0.0)
     for _ in range(TRIALS):
         try:
             d, turned = _nonlinearity(evaluator, point, v, moving, h, residual)
@@ -112,21 +117,24 @@ def initial_extent(
             d, turned = off, np.inf
         # From a fold the parameter moves by the correction alone.
         turned = max(turned, TURN * abs((h * v[-1] + d[-1]) / gap))
-        if turned > AROUND * TURN:
+        if before[1] > 0.0 and 0.0 < turned < np.inf and h != before[0]:
+            power = min(max(float(np.log(turned / before[1]) / np.log(h / before[0])), POWERS[0]), POWERS[1])
+        before = h, turned if turned < np.inf else 0.0
+        rest = GROWTH if turned <= 0.0 else float((TURN / turned) ** (1.0 / power))
+        if TURN / AROUND <= turned <= AROUND * TURN:
+            rest = min(rest, whole / h)
+            found, off = rest * h, rest ** (power + 1.0) * d
+            break
+        if turned > TURN:
             high = h
         else:
             low = found = h
             off = d
-            if turned >= TURN / AROUND:
-                # Where the search began says something about units: what is left of that is taken out.
-                rest = min(TURN / turned, whole / h)
-                found, off = rest * h, rest**2 * d
-                break
             if h > FARTHEST:
                 # Nothing but the start's own size is left to measure by.
                 found, off = begin / NEAR, off * (begin / NEAR / h) ** 2
                 break
-        h *= min(max(TURN / max(turned, TURN / GROWTH), 0.1), GROWTH)
+        h *= min(max(rest, 0.1), GROWTH)
         if not low < h < high:
             h = 0.5 * (low + high)
         h = min(h, whole)
@@ -136,7 +144,7 @@ def initial_extent(
         found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off))
     still = extent <= standstill * float(extent.max())
-    extent[still] = float(np.median(extent[~still]))
+    extent[still] = median(extent[~still])
     if still.any() and np.isinf(farthest):
         extent[still] *= _smaller(evaluator, point, np.where(still, extent, 0.0), residual)
     return extent
@@ -199,7 +207,7 @@ def _nonlinearity(
 
     def corrected(at: Array) -> Array:
         z = point.approximate(residual - evaluator.residual(at))
-        along: Array = z - float(np.median(z[moving] / v[moving])) * v
+        along: Array = z - median(z[moving] / v[moving]) * v
         return along
 
     there = point.u + h * v
@@ -209,7 +217,7 @@ def _nonlinearity(
     d = _beyond_round_off(evaluator, point, there, d, loose)
     e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
-    turned = float(np.median(relative))
+    turned = median(relative)
     if moving[-1]:
         # Unknowns that all move alike turn against the parameter alone.
         turned = max(turned, 0.5 * float(relative[-1]))

@@ -87,14 +87,13 @@ class StepRecorder:
         return Step(
             index=index,
             u=point.u,
-            tangent=how.pop("tangent", point.tangent),
             arclength=arclength,
             residual_norm=self.evaluator.residual_norm(point.u) if math.isnan(residual_norm) else residual_norm,
             orientation=point.orientation,
             kind=kind,
             share=share(point.weights, point.tangent),
             observed={} if self.observe is None else self.observe(point.y, point.lam),
-            **how,
+            **{"tangent": point.tangent} | how,
         )
 
     def observing(self, events: Sequence[LocatedEvent]) -> Sequence[LocatedEvent]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from attrs import evolve
 
 from continuation import (
     CONSERVATIVE,
@@ -13,11 +14,12 @@ from continuation import (
     Kind,
     Status,
     TargetValue,
+    Tracer,
     TurningPoint,
     from_functions,
     trace,
 )
-from problems.bifurcation import Bratu1D
+from problems.bifurcation import Bratu1D, ExponentialCosine
 
 from ..util import benchmark
 
@@ -38,6 +40,38 @@ def test_random_units_change_nothing(name, preset):
     assert wrong == []
     # Small numbers of factorisations differ by one or two: shifts by 1e6 leave ten digits, so that one more is needed.
     assert all(ratio * work <= 1.3 * work + 3.0 for ratio in ratios)
+
+
+@pytest.mark.parametrize("preset", [FAST, DEFAULT], ids=lambda preset: preset.name)
+def test_a_point_where_two_ranks_are_lost_is_passed_in_any_units(preset):
+    """The symmetric branch on a square: 2.6 times the factorisations while the place depended on where zero is."""
+    wrong, ratios, work = run.compare("Bratu 2D", preset, 3, seed=0)
+    assert wrong == []
+    assert all(ratio * work <= 1.3 * work for ratio in ratios)
+
+
+def first_weights(homotopy):
+    """The metric at the start."""
+    tracer = Tracer(homotopy)
+    next(iter(tracer))
+    return tracer.state.weights
+
+
+@pytest.mark.parametrize("offset", [1.0, 1e3])
+@pytest.mark.parametrize("name", ["cusp", "Bratu 1D", "exponential-cosine 5"])
+def test_the_first_scales_do_not_depend_on_where_zero_is(name, offset):
+    """They solve an equation, to 1e-4; by a search that ended nearby they differed by up to a hundredth."""
+    here = run.plain(run.PROBLEMS[name].make())
+    there = evolve(here, c=np.full(here.c.size, offset))
+    np.testing.assert_allclose(first_weights(there), first_weights(here), rtol=1e-4)
+
+
+@pytest.mark.parametrize("n", [2, 5, 10])
+def test_the_first_scales_are_found_in_a_few_looks(n):
+    """Two residuals a look; on n = 10, where the nonlinearity grows like a square, 40 looks were not enough."""
+    tracer = Tracer(ExponentialCosine(n))
+    next(iter(tracer))
+    assert tracer.counts.residuals <= 2 * 8 + 3
 
 
 @every_preset
