@@ -151,10 +151,14 @@ class Curve:
     @cached_property
     def _corrected(self) -> Array:
         """The point brought onto the curve at its mu, if Newton's method does that."""
-        y = np.append(*self.at)
-        if self.event != Kind.HOPF:
-            return corrected(self, y, self.mu, self.size)
-        return corrected(self, np.append(y, self._frequency), self.mu, np.append(self.size, self._frequency))
+        beside = [self._frequency] if self.event == Kind.HOPF else []
+        return corrected(self, np.array([*self.at[0], self.at[1], *beside]), self.mu, self.extents[:-1])
+
+    @property
+    def extents(self) -> Array:
+        """How large unknowns and mu are, about."""
+        beside = [abs(self._frequency) or 1.0] if self.event == Kind.HOPF else []
+        return np.array([*self.size, *beside, abs(self.mu) or 1.0])
 
     @cached_property
     def _frequency(self) -> float:
@@ -167,9 +171,7 @@ class Curve:
     def _signs(self) -> Array | None:
         """Of the switches, at the start: the piece that the curve lies on."""
         member = self.family(self.mu)
-        if not isinstance(member, SupportsPieces):
-            return None
-        return np.where(member.switches(*self.at) >= 0.0, 1, -1)
+        return np.where(member.switches(*self.at) >= 0.0, 1, -1) if isinstance(member, SupportsPieces) else None
 
     @cached_property
     def _switch(self) -> int | None:
@@ -239,8 +241,8 @@ class Curve:
         points : ndarray, shape (m, N + 2) or (m, N + 3)
             Those of the path.
         """
-        eliminated = self._plain is None and self.event != Kind.BRANCH_POINT
-        return WrittenOut.of(self._condition, points) if eliminated else None
+        eliminates = self._plain is None and self.event != Kind.BRANCH_POINT
+        return WrittenOut.of(self._condition, points) if eliminates else None
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """The derivative by the unknowns, dense or sparse as the family's, and by mu.
@@ -292,9 +294,8 @@ class Curve:
         names = {Kind.HOPF: ("zero-Hopf",), Kind.TURNING_POINT: ("cusp", "Bogdanov-Takens")}.get(self.event, ())
         found: list[Event] = [Monitor(_frequency, "Bogdanov-Takens", 1)] if self.event == Kind.HOPF else []
         found += [Monitor(partial(self._sign, name), name) for name in names]
-        others = range(0 if self._signs is None else self._signs.size)
-        found += [Monitor(partial(self._other, i), f"switch {i} vanishes", 1) for i in others if i != self._switch]
-        return tuple(found)
+        others = [i for i in range(np.size(self._signs)) if i != self._switch] if self._signs is not None else []
+        return (*found, *(Monitor(partial(self._other, i), f"switch {i} vanishes", 1) for i in others))
 
     def _sign(self, name: str, u: Array, v: Array) -> float:
         """A number of the condition's."""
