@@ -205,7 +205,7 @@ def _product(multiply: Callable[[Any, Any], Any], a: Any, b: Any) -> Any:
     value = multiply(a.value, b.value)
     first = None if a.slope is None else multiply(a.slope, b.value)
     # Of a square both are the same, and intervals know a square by that.
-    second = first if a is b else None if b.slope is None else multiply(a.value, b.slope)
+    second = first if a is b and multiply is operator.mul else None if b.slope is None else multiply(a.value, b.slope)
     return dual(value, _sum_of(first, second))
 
 
