@@ -159,7 +159,7 @@ def engine(w: World) -> Iterator[Call]:
         c.diagram, {"homotopy": w.pitchfork, "box": {"lam": (-1.0, 1.0)}},
         {"homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
          "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values",
-         "resume": "truth"},
+         "resume": "truth", "keep": "text"},
     )  # fmt: skip
     yield Call(
         c.Deflated, {**right, "known": [np.zeros(1)]},
