@@ -27,14 +27,8 @@ from continuation.path import Path
 class Growing:
     """An archive of finished paths: a kill loses none that was added. As a context manager it is closed at the end.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-    title : str
-    pieces : bool
-        Whether kinks are kept with their switches and rays.
-    keep : str
-        "all" steps in memory, or the "ends" of each path.
+    With `pieces` kinks are kept with their switches and rays. What of a path stays in memory is `keep`: "all" steps,
+    or the "ends".
     """
 
     file: File

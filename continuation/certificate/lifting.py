@@ -46,17 +46,8 @@ class SupportsWrittenOut(Protocol):
 def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
     """What is to be proved: the homotopy and the path, or those with more unknowns that stand for them.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    path : Path
-    cells : Cells, optional
-        Of a proof: its nodes say what the further unknowns are at points that they share with the path.
-
-    Returns
-    -------
-    tuple, or Proof
-        A proof of nothing, with the reason, where the further unknowns have no value, or the cells are of other ones.
+    The nodes of `cells`, of a proof, say what the further unknowns are at points that they share with the path. A proof
+    of nothing, with the reason, comes where these have no value, or the cells are of other ones.
     """
     points = path.u
     width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))

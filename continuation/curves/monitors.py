@@ -121,12 +121,7 @@ def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
 
 
 def plainly(event: Any) -> Callable[[Any, Any], Any]:
-    """The function of u and v that an event's monitor makes a float of: of jets and intervals, too.
-
-    Parameters
-    ----------
-    event : Event
-    """
+    """The function of u and v that an event's monitor makes a float of: of jets and intervals, too."""
     if isinstance(event, TurningPoint):
         return lambda u, v: v[event.component]
     return event.function if isinstance(event, Monitor) else event.monitor

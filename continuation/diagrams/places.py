@@ -36,13 +36,7 @@ class Places(Generic[Item]):
     _items: list[tuple[Array, Array, Item]] = field(factory=list)
 
     def add(self, u: Array, weights: Array, item: Item) -> None:
-        """Put an item at a point.
-
-        Parameters
-        ----------
-        u, weights : ndarray, shape (N + 1,)
-        item : object
-        """
+        """Put an item at a point."""
         if self._axis is None:
             self._axis = generic_vector(u.size) * np.sqrt(weights)
         self._reach = max(self._reach, SAME_POINT * float(np.linalg.norm(self._axis / np.sqrt(weights))))
@@ -53,12 +47,7 @@ class Places(Generic[Item]):
         self._items.append((u, weights, item))
 
     def near(self, u: Array) -> list[Item]:
-        """The items within `SAME_POINT` of a point, each in its metric, in the order in which they were added.
-
-        Parameters
-        ----------
-        u : ndarray, shape (N + 1,)
-        """
+        """The items within `SAME_POINT` of a point, each in its metric, in the order in which they were added."""
         if self._axis is None:
             return []
         number = float(self._axis @ u)

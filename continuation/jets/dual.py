@@ -121,20 +121,7 @@ def _slope(x: Dual) -> Any:
 
 
 def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]:
-    """f(x) and f'(x) v, for x and v of whatever kind of array f runs on.
-
-    Parameters
-    ----------
-    f : callable
-        Of one array, written in numpy functions.
-    x, v : array
-        Of the same kind and shape: numbers, jets, intervals.
-
-    Raises
-    ------
-    TypeError
-        Where `f` uses an operation that is not known; the message names it.
-    """
+    """f(x) and f'(x) v, for x and v of whatever kind of array f runs on; TypeError names an operation that is unknown."""
     image = as_dual(f(dual(x, v)))
     return image.value, _slope(image)
 
