@@ -121,7 +121,7 @@ def _slope(x: Dual) -> Any:
 
 
 def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]:
-    """f(x) and f'(x) v, for x and v of whatever kind of array f runs on; TypeError names an operation that is unknown."""
+    """f(x) and f'(x) v, for x and v of whatever kind of array f runs on; a TypeError names an unknown operation."""
     image = as_dual(f(dual(x, v)))
     return image.value, _slope(image)
 
