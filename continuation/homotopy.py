@@ -278,6 +278,8 @@ class SupportsPieces(Protocol):
             If such signs cannot hold together anywhere: then there is no such piece.
         """
         ...
+
+
 class SupportsBox(Protocol):
     """Where its path ends for those who say nothing of that: no target, no events, no box."""
 
