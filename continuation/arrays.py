@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import lru_cache
 from math import isfinite
@@ -64,3 +65,18 @@ def generic_vector(n: int) -> Array:
     vector: Array = np.cos(1.0 + 1.7 * np.arange(float(n)) ** 2)
     vector.flags.writeable = False
     return vector
+
+
+def asked_by_sparse() -> bool:
+    """Within an `__array__`: whether a sparse matrix of scipy asks for it, to see what the other factor is.
+
+    Answered by an array of None, it leaves the product to the other factor's `__rmatmul__`.
+    """
+    caller = sys._getframe(2)
+    return caller.f_code.co_name == "_matmul_dispatch" and caller.f_globals["__name__"].startswith("scipy.sparse")
+
+
+def clipped(a: Any, a_min: Any = None, a_max: Any = None) -> Any:
+    """Numpy's `clip` of any kind of array that knows `maximum` and `minimum`."""
+    a = a if a_min is None else np.maximum(a, a_min)
+    return a if a_max is None else np.minimum(a, a_max)

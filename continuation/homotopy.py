@@ -181,6 +181,16 @@ class SupportsMetric(Protocol):
 
 
 @runtime_checkable
+class SupportsExtents(Protocol):
+    """How large the unknowns and the parameter are, about: what moves by less than their round-off stands still.
+
+    Positive, shape (N + 1,). Of use where unknowns stand at zero all along, and nothing else tells their units.
+    """
+
+    extents: Array
+
+
+@runtime_checkable
 class SupportsFinish(Protocol):
     """A problem's own way to end, tried after accepted steps; returns the end y at the target, or None."""
 
@@ -268,6 +278,8 @@ class SupportsPieces(Protocol):
             If such signs cannot hold together anywhere: then there is no such piece.
         """
         ...
+
+
 class SupportsBox(Protocol):
     """Where its path ends for those who say nothing of that: no target, no events, no box."""
 

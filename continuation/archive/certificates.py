@@ -77,21 +77,24 @@ def _write(group: Any, proof: Proof) -> None:
 def read_cells(archive: Archive, path: int) -> Cells | None:
     """The cells of a stored proof; None where the path has none; `ArchiveError` if they are not what was written."""
     try:
-        return _read(archive.contents.root, path, archive.layout.unknowns + 1)
+        return _read(archive.contents.root, path)
     except FAULTS as error:
         raise ArchiveError(
             f"{archive.contents.file}: the certificate of path {path} is damaged ({short(error)})"
         ) from None
 
 
-def _read(root: Any, path: int, width: int) -> Cells | None:
+def _read(root: Any, path: int) -> Cells | None:
     if GROUP not in names(root):
         return None
     group = subgroup(root, GROUP)
     if str(path) not in names(group):
         return None
-    group, columns, count = subgroup(group, str(path)), {}, None
+    group, count = subgroup(group, str(path)), None
+    columns: dict[str, Any] = {}
     for column in NAMES:
+        # As wide as the first is, which may be wider than the path (`continuation.certificate.lifting`).
+        width = columns["begin"].shape[1] if columns else None
         shape: Sequence[int | None] = (None,) if column == "slabs" else (None, 2 if column == "place" else width)
         found = dataset(group, column, _COLUMNS.get(column, np.dtype("f8")), shape)
         found = dataset(group, column, None, found.shape)

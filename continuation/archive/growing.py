@@ -8,7 +8,7 @@ from pathlib import Path as File
 from types import TracebackType
 from typing import Any
 
-from attrs import define
+from attrs import define, evolve
 
 from continuation.archive.atomic import beside
 from continuation.archive.copies import everything, write_copy
@@ -19,6 +19,7 @@ from continuation.archive.reader import open_archive
 from continuation.archive.recover import own
 from continuation.archive.resume import check_homotopy
 from continuation.archive.store import Store
+from continuation.archive.stored import StoredSteps
 from continuation.path import Path
 
 
@@ -26,12 +27,14 @@ from continuation.path import Path
 class Growing:
     """An archive of finished paths: a kill loses none that was added. As a context manager it is closed at the end.
 
-    With `pieces` kinks are kept with their switches and rays.
+    With `pieces` kinks are kept with their switches and rays. What of a path stays in memory is `keep`: "all" steps,
+    or the "ends".
     """
 
     file: File
     title: str
     pieces: bool
+    keep: str = "all"
     _store: Store | None = None
     _identifier: str = ""
 
@@ -41,7 +44,7 @@ class Growing:
             return []
         target = File(os.path.realpath(self.file))
         with open_archive(target) as source, closing(own(source.contents, target)), beside(target) as part:
-            paths = list(source)
+            paths = [source.path(number, keep=self.keep) for number in range(len(source))]
             for path in paths[-1:]:
                 check_homotopy(homotopy, path.endpoint.u, path.endpoint.residual_norm)
             attributes = {**source.attributes, **process(), **history(source.attributes, "went on")}
@@ -49,12 +52,18 @@ class Growing:
             self._store, self._identifier = publish_live(store, target, replace=True), attributes["identifier"]
             return paths
 
-    def add(self, path: Path) -> None:
-        """One more path; the first makes the file."""
+    def add(self, path: Path) -> Path:
+        """One more path, which comes back as it is kept; the first makes the file."""
         if self._store is None:
             layout, attributes = layout_of(path, self.title, self.pieces)
             self._store, self._identifier = create(self.file, layout, attributes), attributes["identifier"]
-        append(self._store, path, f"{self._identifier} {self._store.committed.paths} {self.file.name}")
+        number = self._store.committed.paths
+        roles = append(self._store, path, f"{self._identifier} {number} {self.file.name}")
+        if self.keep == "all":
+            return path
+        steps: Any = StoredSteps(open_archive, self.file, number, 0)
+        steps.known(roles, (path.steps[0], path.steps[-1]))
+        return evolve(path, steps=steps)
 
     def __enter__(self) -> Growing:
         return self

@@ -122,9 +122,13 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     put(target, write)
 
 
-def append(store: Store, path: Path, source: str) -> None:
-    """Write a path behind those that a file holds, in one commit; `source` is where it was written first."""
+def append(store: Store, path: Path, source: str) -> Any:
+    """Write a path behind those that a file holds, in one commit; the roles of its rows.
+
+    `source` is where it was written first.
+    """
     held, rows = store.committed, rows_of(path, store.layout.pieces)
     row = {**record.of_path(path, None, ()), "path": held.paths, "member": held.paths, "n_points": len(rows)}
-    points = to_columns(rows, held.paths, store.layout, store.name_event) if rows else None
+    points = to_columns(rows, held.paths, store.layout, store.name_event) if rows else {}
     store.commit(points, held.points, record.to_columns({**row, "source": source}, store.layout), held.paths)
+    return points.get("role", ())

@@ -105,12 +105,21 @@ def between(
     return Cells(begin[None], end[None], first, last, chart[None], nothing, one, np.array([place]))
 
 
-def sizes(cells: Cells) -> Array:
-    """How far a cell goes in each component; where that is little, a share of what its metric counts as much."""
+def sizes(cells: Cells, still: Array | None = None) -> Array:
+    """How far a cell goes in each component; where that is little, a share of what its metric counts as much.
+
+    Parameters
+    ----------
+    cells : Cells
+    still : ndarray, optional
+        Lengths in that metric of components that stand still, of which a cell does not know it.
+    """
     far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
     with np.errstate(all="ignore"):
         # chart = weights * chord up to a factor: the square root of chord over chart is a length of that metric.
         unit = np.sqrt(np.abs(cells.end - cells.begin) / np.abs(cells.chart))
+        if still is not None:
+            unit = np.where(np.isfinite(unit), unit, still)
         length = np.sqrt(np.sum(np.abs(cells.chart * (cells.end - cells.begin)), axis=1, keepdims=True))
         alike = 1e-6 * length * unit
     alike = np.where(np.isfinite(alike), alike, 0.0)

@@ -15,6 +15,7 @@ from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.folds import Piece, Signs, pieces
 from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals, Engine
+from continuation.certificate.lifting import lifted
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
@@ -93,11 +94,16 @@ def certify(path: Path, homotopy: Any) -> Proof:
     """
     require_path(path)
     Evaluator(homotopy, Counts())  # which says what no homotopy lacks
+    width = path.u.shape[1]
+    if width != len(np.atleast_1d(homotopy.start()[0])) + 1:
+        raise ValueError(f"path: expected points of {homotopy}, found {width - 1} unknowns")
+    whole = lifted(homotopy, path)
+    if isinstance(whole, Proof):
+        return whole
+    homotopy, path = whole
     engine, plain = engines(homotopy)
-    if path.u.shape[1] != len(np.atleast_1d(homotopy.start()[0])) + 1:
-        raise ValueError(f"path: expected points of {homotopy}, found {path.u.shape[1] - 1} unknowns")
     cells, gaps, found = Search(engine, plain, homotopy, path).run()
-    return verified(engine, plain, cells, path, homotopy, gaps, found)
+    return verified(engine, plain, cells, path, homotopy, gaps, found).of_width(width)
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
@@ -122,8 +128,13 @@ def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Pr
     ImportError
         If it is to be asked and is not installed.
     """
+    width = path.u.shape[1]
+    whole = lifted(homotopy, path, cells)
+    if isinstance(whole, Proof):
+        return whole
+    homotopy, path = whole
     engine, plain = engines(homotopy)
-    proof = verified(engine, plain, cells, path, homotopy, [])
+    proof = verified(engine, plain, cells, path, homotopy, []).of_width(width)
     if not second:
         return proof
     places = proof.cells.place.tolist()
@@ -170,12 +181,13 @@ class Search:
         done: list[Cells] = []
         told: list[list[Piece]] = []
         gaps: list[Gap] = []
+        own = getattr(self.homotopy, "metric", None) is not None
         for depth in range(DEPTH + 1):
             if not pending:
                 break
             trial = joined([_cell(a, b) for a, b in pending])
-            if depth:
-                trial = trial.with_tubes(trial.radius, np.full(len(trial), self.engine.fine))
+            still = np.array([a.weights for a, _ in pending]) ** -0.5 if own else trial.radius
+            trial = trial.with_tubes(still, np.full(len(trial), self.engine.fine) if depth else trial.slabs)
             found = search(self.engine, trial)
             proved = found.cells.take(found.proved)
             known = [one for one in found.signs if one is not None]

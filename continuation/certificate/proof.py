@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells
+from continuation.certificate.cells import NAMES, Cells
 
 
 @frozen
@@ -74,6 +74,8 @@ class Proof:
         Where the end is proved to lie on the curve, exactly at the target: how far from the stored one it is at most.
     kinks : tuple of tuple of float
         Of a homotopy in pieces, ranges of arclength with exactly one zero of a switch each; elsewhere none vanishes.
+    width : int
+        N + 1 of the path. Rows of cells are longer where it was proved with other unknowns in front of its own.
     """
 
     cells: Cells
@@ -83,6 +85,7 @@ class Proof:
     end: str
     end_radius: Array | None = None
     kinks: tuple[tuple[float, float], ...] = ()
+    width: int = 0
 
     @classmethod
     def empty(cls, width: int, gap: Gap) -> Proof:
@@ -118,6 +121,22 @@ class Proof:
         more = f"; and {len(self.gaps) - SHOWN} more" if len(self.gaps) > SHOWN else ""
         return "Not proved " + "; ".join(str(gap) for gap in self.gaps[:SHOWN]) + more
 
+    @property
+    def shadow(self) -> Cells:
+        """The cells in the unknowns of the path alone."""
+        rows = {name: getattr(self.cells, name)[:, -self.width :] for name in NAMES if name not in ("slabs", "place")}
+        return evolve(self.cells, **rows)
+
+    def of_width(self, width: int) -> Proof:
+        """The proof of a path whose points have so many components, the last ones of the cells'.
+
+        Parameters
+        ----------
+        width : int
+        """
+        end = None if self.end_radius is None else self.end_radius[-width:]
+        return evolve(self, node_radius=self.node_radius[:, -width:], end_radius=end, width=width)
+
     def radius(self, s: float) -> Array:
         """The tube's radius at arclength s, shape (N + 1,): nan in a gap.
 
@@ -132,8 +151,8 @@ class Proof:
         place = self.cells.place
         inside = np.flatnonzero((place[:, 0] <= s) & (s <= place[:, 1]))
         if not len(inside):
-            return np.full(self.cells.radius.shape[1], np.nan)
-        return np.asarray(self.cells.radius[inside].max(axis=0))
+            return np.full(self.shadow.radius.shape[1], np.nan)
+        return np.asarray(self.shadow.radius[inside].max(axis=0))
 
     def plot(self, component: int = 0, axes: Any = None) -> Any:
         """The tube against the parameter: each cell's cubic with its radius, and what is not proved as gaps.
@@ -150,4 +169,4 @@ class Proof:
         """
         from continuation.certificate.picture import draw
 
-        return draw(self.cells, [(gap.begin, gap.end) for gap in self.gaps], component, axes)
+        return draw(self.shadow, [(gap.begin, gap.end) for gap in self.gaps], component, axes)

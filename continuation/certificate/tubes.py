@@ -103,8 +103,9 @@ def search(engine: Engine, cells: Cells) -> Found:
     ----------
     engine : Engine
     cells : Cells
+        With lengths of components that stand still for radii.
     """
-    count, scale = len(cells), sizes(cells)
+    count, scale = len(cells), sizes(cells, cells.radius)
     radius = np.zeros_like(scale)
     slabs = cells.slabs.copy()
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)

@@ -242,7 +242,9 @@ def _on_curve(
     own = cells.take(owner)
     at = nodes(engine, evolve(own, begin=np.array([events[k].u for k in known])), np.zeros(len(known)))
     round_off = 8.0 * NEAR * EPS * np.abs([events[k].u for k in known])
-    near = np.asarray((at.radius <= CLOSE * sizes(own) + round_off).all(axis=1))
+    # Of what stands still a cell knows no size but the tube's.
+    allowed = np.where(own.begin == own.end, own.radius, CLOSE * sizes(own)) + round_off
+    near = np.asarray((at.radius <= allowed).all(axis=1))
     lost = {k for k, good in zip(known, near) if not good}
     return [None if k in lost else place for k, place in enumerate(places)]
 

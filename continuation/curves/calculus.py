@@ -20,13 +20,16 @@ from continuation.evaluation.derivatives import (
 )
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.functions import DifferentiableHomotopy
-from continuation.events.singularity import SECOND, full_derivative
+from continuation.events.singularity import SECOND, full_derivative, row_sizes
 
 MOST = 128
 """Columns up to which second derivatives come from jets, which make all of them; beyond, two Jacobians are cheaper."""
 
 AGREE = 1e-3
 """Jets are believed where they agree with a difference so well, relative to the largest."""
+
+BESIDE = 1e-2
+"""How far beside the start, in extents."""
 
 Member = Callable[[Any], Any]
 """From mu to the homotopy."""
@@ -139,7 +142,7 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     source = "" if own else from_residual(homotopy.residual, (u[:-1], float(u[-1]))).source
     U = np.append(u, mu)
 
-    v, left = extent * generic_vector(u.size), np.ones(u.size - 1)
+    v = extent * generic_vector(u.size)
 
     def at(y: Array, m: float) -> Any:
         return family(m).residual(y[:-1], float(y[-1]))
@@ -149,7 +152,7 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
 
     along = np.zeros_like(U)
     along[-1] = sizes(U[-1:])[0]
-    slope, reach = difference_along(at, U, along)
+    reach = difference_along(at, U, along)[1]
     first = Calculus(family, source, False, U, extent, reach, reach)
     plain = evolve(first, bend=difference_along(bent, U, along)[1])
     with_jets = evolve(plain, jets=True)
@@ -157,11 +160,18 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
         return plain
     try:
         with np.errstate(all="ignore"):
-            agree = _alike(with_jets.by_parameter(u, mu), slope / along[-1])
-            agree = agree and _alike(with_jets.second(u, mu, v, left), plain.second(u, mu, v, left))
+            # Each equation and each unknown in its own size: the difference of another one's round-off tells nothing.
+            left, columns = 1.0 / row_sizes(plain.evaluator(mu), extent, (u,)), np.append(extent, along[-1])
+            # Where a derivative vanishes its difference is round-off: a point beside the start decides then.
+            for beside in (u, u + BESIDE * v):
+                both = (with_jets, plain)
+                if _alike(*(left * one.by_parameter(beside, mu) for one in both)) and _alike(
+                    *(columns * one.second(beside, mu, v, left) for one in both)
+                ):
+                    return with_jets
     except (TypeError, ArithmeticError, ValueError, AttributeError):
-        return plain
-    return with_jets if agree else plain
+        pass
+    return plain
 
 
 def _alike(found: Array, difference: Array) -> bool:

@@ -46,6 +46,12 @@ class Singular:
         b, c = scaled.first(scaled.times(full_derivative(calculus.evaluator(mu), u)[:, :-1]))
         return cls(scaled, b, c, branches)
 
+    def null_vector(self, u: Array) -> Array:
+        """Of H_y at a point of the curve, behind which is mu; of length one in the extents of the start."""
+        full = full_derivative(self.scaled.calculus.evaluator(float(u[-1])), u[:-1])
+        right = null_vectors(self.scaled.times(full[:, :-1]), self.b, self.c).right
+        return right / float(np.linalg.norm(right))
+
     def at(self, u: Array, beside: float, mu: float) -> Local:
         """The condition at a point."""
         scaled, calculus = self.scaled, self.scaled.calculus
@@ -103,6 +109,10 @@ class HopfPoint:
         found = cls(scaled, empty, empty, Tangential.at_start(calculus))
         b, c = scaled.first(found._matrix(u, frequency, mu))
         return cls(scaled, b, c, found.tangential)
+
+    def null_vector(self, u: Array) -> Array:
+        """Of H_y - i omega at a point of the curve, complex, in the extents of the start."""
+        return null_vectors(self._matrix(u[:-2], float(u[-2]), float(u[-1])), self.b, self.c).right
 
     def _matrix(self, u: Array, omega: float, mu: float) -> Matrix:
         full = full_derivative(self.scaled.calculus.evaluator(mu), u)[:, :-1]

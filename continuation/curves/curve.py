@@ -19,7 +19,8 @@ from continuation.curves.correcting import corrected
 from continuation.curves.frequency import frequency_at
 from continuation.curves.here import Here
 from continuation.curves.local import Condition
-from continuation.curves.monitors import AlongTangent, Vanishing, without_tangent
+from continuation.curves.monitors import AlongTangent, Vanishing, plainly, without_tangent
+from continuation.curves.written import WrittenOut
 from continuation.events import Event, Monitor
 from continuation.events.singularity import full_derivative
 from continuation.homotopy import SupportsPieces
@@ -28,8 +29,7 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 LAST = 6
-"""Points, and members, that are kept: a corrector asks for the residual and the derivative at one, and events that lie
-on an arc look at its ends again."""
+"""Points, and members, that are kept: correctors ask for several things at one, events look at ends of an arc again."""
 
 PERSISTS = 1e-6
 """What mu may do to H at a branch point, along the vector that H' does not reach, beside what it does to H at all:
@@ -60,9 +60,8 @@ class Curve:
     curve ends where its frequency is zero, a Bogdanov-Takens point; where H_y is singular on it is a "zero-Hopf" point.
 
     Nothing is densified: the system is solved by elimination with the family's own factorisation, or, where H_y is
-    singular, one of H_y with a border of its own; second derivatives come from jets (up to 128 unknowns), or from two
-    Jacobians. A border that becomes nearly orthogonal to the null vector that it is to see is replaced by that vector,
-    at every point anew: nothing is remembered, so a path that is resumed is the one that was never stopped.
+    singular, one of H_y with a border, which is replaced where it no longer sees the null vector, at every point anew;
+    second derivatives come from jets (up to 128 unknowns), or from two Jacobians.
 
     Parameters
     ----------
@@ -152,10 +151,14 @@ class Curve:
     @cached_property
     def _corrected(self) -> Array:
         """The point brought onto the curve at its mu, if Newton's method does that."""
-        y = np.append(*self.at)
-        if self.event != Kind.HOPF:
-            return corrected(self, y, self.mu, self.size)
-        return corrected(self, np.append(y, self._frequency), self.mu, np.append(self.size, self._frequency))
+        beside = [self._frequency] if self.event == Kind.HOPF else []
+        return corrected(self, np.array([*self.at[0], self.at[1], *beside]), self.mu, self.extents[:-1])
+
+    @property
+    def extents(self) -> Array:
+        """How large unknowns and mu are, about."""
+        beside = [abs(self._frequency) or 1.0] if self.event == Kind.HOPF else []
+        return np.array([*self.size, *beside, abs(self.mu) or 1.0])
 
     @cached_property
     def _frequency(self) -> float:
@@ -168,16 +171,12 @@ class Curve:
     def _signs(self) -> Array | None:
         """Of the switches, at the start: the piece that the curve lies on."""
         member = self.family(self.mu)
-        if not isinstance(member, SupportsPieces):
-            return None
-        return np.where(member.switches(*self.at) >= 0.0, 1, -1)
+        return np.where(member.switches(*self.at) >= 0.0, 1, -1) if isinstance(member, SupportsPieces) else None
 
     @cached_property
     def _switch(self) -> int | None:
         """Which of the switches vanishes along a curve of kinks."""
-        if self.event != Kind.KINK:
-            return None
-        return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at))))
+        return int(np.argmin(np.abs(self.family(self.mu).switches(*self.at)))) if self.event == Kind.KINK else None
 
     def _member(self, mu: Any) -> Any:
         if isinstance(mu, float) and mu in self._members:
@@ -201,7 +200,7 @@ class Curve:
             return HopfPoint.at_start(calculus, self._frequency)
         if self._plain is not None:
             return Vanishing.at_start(calculus, self._plain)
-        return AlongTangent.at_start(calculus, lambda x: self.event.monitor(*np.split(x, 2)))
+        return AlongTangent.at_start(calculus, lambda x: plainly(event)(*np.split(x, 2)))
 
     @cached_property
     def _plain(self) -> Callable[[Any], Any] | None:
@@ -226,13 +225,24 @@ class Curve:
         TypeError
             For jets and intervals, where what is to vanish comes out of a factorisation.
         """
-        if not isinstance(y, np.ndarray):
+        if not isinstance(y, np.ndarray) or y.dtype == object:
             if self._plain is None:
                 what = self.event.name.lower().replace("_", " ") if isinstance(self.event, Kind) else "tangent's"
                 raise TypeError(f"the residual of a {what} curve is not plain arithmetic: it takes a factorisation")
             U = np.concatenate([y, np.stack([lam])])
             return np.concatenate([self._calculus.residual(U), np.stack([self._plain(U)])])
         return self._at(y, lam).residual()
+
+    def written_out(self, points: Array) -> WrittenOut | None:
+        """The equations that `certify` proves a path by, where a factorisation is in those that are traced.
+
+        Parameters
+        ----------
+        points : ndarray, shape (m, N + 2) or (m, N + 3)
+            Those of the path.
+        """
+        eliminates = self._plain is None and self.event != Kind.BRANCH_POINT
+        return WrittenOut.of(self._condition, points) if eliminates else None
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """The derivative by the unknowns, dense or sparse as the family's, and by mu.
@@ -281,14 +291,11 @@ class Curve:
     @cached_property
     def events(self) -> tuple[Event, ...]:
         """Degenerate points: cusps and Bogdanov-Takens points; where another switch of a piecewise map vanishes."""
-        found: list[Event] = []
-        if self.event == Kind.HOPF:
-            found = [Monitor(_frequency, "Bogdanov-Takens", 1), Monitor(partial(self._sign, "zero-Hopf"), "zero-Hopf")]
-        if self.event == Kind.TURNING_POINT:
-            found = [Monitor(partial(self._sign, name), name) for name in ("cusp", "Bogdanov-Takens")]
-        others = range(0 if self._signs is None else self._signs.size)
-        found += [Monitor(partial(self._other, i), f"switch {i} vanishes", 1) for i in others if i != self._switch]
-        return tuple(found)
+        names = {Kind.HOPF: ("zero-Hopf",), Kind.TURNING_POINT: ("cusp", "Bogdanov-Takens")}.get(self.event, ())
+        found: list[Event] = [Monitor(_frequency, "Bogdanov-Takens", 1)] if self.event == Kind.HOPF else []
+        found += [Monitor(partial(self._sign, name), name) for name in names]
+        others = [i for i in range(np.size(self._signs)) if i != self._switch] if self._signs is not None else []
+        return (*found, *(Monitor(partial(self._other, i), f"switch {i} vanishes", 1) for i in others))
 
     def _sign(self, name: str, u: Array, v: Array) -> float:
         """A number of the condition's."""
@@ -308,9 +315,8 @@ class Curve:
     def names(self) -> tuple[str, ...]:
         """Those of the member's unknowns, if it names them, of its parameter, and of what is beside."""
         labels = Labels.of(self.family(self.mu))
-        if not labels.names:
-            return ()
-        return (*labels.names, labels.parameter_name or "lambda", *self._condition.beside)
+        beside = (labels.parameter_name or "lambda", *self._condition.beside)
+        return (*labels.names, *beside) if labels.names else ()
 
     @property
     def units(self) -> Mapping[str, str]:
@@ -325,13 +331,11 @@ class Curve:
     def _observed(self, y: Array, lam: float) -> dict[str, float]:
         """What the member observes."""
         n = self.size.size - 1
-        observed: dict[str, float] = self.family(lam).observe(y[:n], float(y[n]))
-        return observed
+        return dict(self.family(lam).observe(y[:n], float(y[n])))
 
     def _room(self, u: Array, v: Array) -> float:
         """How far the member's path may go: mu stands still for it."""
-        n = self.size.size
-        return float(self._member(u[-1]).max_step(u[:n], v[:n]))
+        return float(self._member(u[-1]).max_step(u[: self.size.size], v[: self.size.size]))
 
 
 def _keep(recent: dict[Any, Any], key: Any, value: Any) -> None:

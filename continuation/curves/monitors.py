@@ -12,7 +12,7 @@ from continuation.arrays import Array, generic_vector
 from continuation.curves.calculus import AGREE, Calculus
 from continuation.curves.local import Local, Scaled, Tangential, last_column
 from continuation.evaluation.derivatives import by_differences, difference_along, sizes
-from continuation.events import Monitor, TargetValue
+from continuation.events import Monitor, TargetValue, TurningPoint
 from continuation.events.singularity import full_derivative
 from continuation.linear.nullspace import bordered, factor
 
@@ -81,6 +81,10 @@ class AlongTangent:
         gradient = gradient_of(function, np.append(u, tangential.factored(u, mu)[1]))
         return cls(Scaled.at_start(calculus), tangential, function, gradient)
 
+    def null_vector(self, u: Array) -> Array:
+        """The tangent of the member's path at a point of the curve, behind which is mu; in the extents of the start."""
+        return self.tangential.factored(u[:-1], float(u[-1]))[1] / self.scaled.calculus.extent
+
     def at(self, u: Array, beside: float, mu: float) -> Local:
         """The condition at a point."""
         calculus, extent, rows = self.scaled.calculus, self.scaled.calculus.extent, self.scaled.rows
@@ -113,9 +117,14 @@ def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
     unknown = np.full(u.size, np.nan)
     if not np.isfinite(event.monitor(u, unknown)):
         return None
-    # `Monitor.monitor` makes a float of what the function gives.
-    function = event.function if isinstance(event, Monitor) else event.monitor
-    return lambda U: function(U[:-1], unknown)
+    return lambda U: plainly(event)(U[:-1], unknown)
+
+
+def plainly(event: Any) -> Callable[[Any, Any], Any]:
+    """The function of u and v that an event's monitor makes a float of: of jets and intervals, too."""
+    if isinstance(event, TurningPoint):
+        return lambda u, v: v[event.component]
+    return event.function if isinstance(event, Monitor) else event.monitor
 
 
 def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], Array]:

@@ -10,13 +10,10 @@ from attrs import define, field
 from continuation.arrays import Array
 from continuation.branch_switching import branch_directions, leaving_branches, metric_at, switch_branch
 from continuation.metric import inner, norm
-from continuation.path import LocatedEvent, Path, Step
+from continuation.path import LocatedEvent, Path
 from continuation.status import Kind
 
 MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
-
-SAME_POINT = 1e-6
-"""How far apart, in extents of the path, one point may be located on two branches: they are polished to 1e-10."""
 
 SAME_RAY = 0.99
 """The cosine between a ray and the tangent of a branch that came along it; rays that are nearer to each other than
@@ -78,15 +75,6 @@ class Junction:
             other = branch_directions(homotopy, event)[1]
             rays = np.array([*own, *(np.copysign(1.0, inner(weights, other, v)) * other for _, v in starts)])
         return cls(event, weights, rays, starts)
-
-    def is_at(self, event: LocatedEvent) -> bool:
-        """Whether it is the place of an event."""
-        return norm(self.weights, event.u - self.event.u) <= SAME_POINT
-
-    def on(self, path: Path) -> Step | None:
-        """The step of a path there, as that of a branch that was found from here has one, or else None."""
-        at = np.flatnonzero((path.u == self.event.u).all(axis=1))
-        return path.steps[int(at[0])] if at.size else None
 
     def take(self, direction: Array) -> None:
         """A branch follows the ray of a direction."""

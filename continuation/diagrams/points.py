@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from continuation.branch_switching import metric_at
 from continuation.diagrams.branches import LABELS, Branch, Special
-from continuation.diagrams.junctions import SAME_POINT, Junction
-from continuation.metric import norm
+from continuation.diagrams.junctions import Junction
+from continuation.diagrams.places import Places
 from continuation.path import LocatedEvent
 
 
@@ -19,23 +20,25 @@ def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list
     branches : sequence of Branch
     junctions : sequence of Junction
     """
-    labelled = sorted((j for j in junctions if j.label), key=lambda j: j.number)
-    found: list[tuple[str, LocatedEvent, list[int]]] = [(j.label, j.event, []) for j in labelled]
+    labels: Counter[str] = Counter()
+    found: list[tuple[str, LocatedEvent, list[int]]] = []
+    places: Places[tuple[str, list[int]]] = Places()
+
+    def entry(label: str, event: LocatedEvent) -> list[int]:
+        through: list[int] = []
+        found.append((label, event, through))
+        places.add(event.u, metric_at(event), (label, through))
+        labels[label[:2]] += 1
+        return through
+
+    origins = {j.label: entry(j.label, j.event) for j in sorted(junctions, key=lambda j: j.number) if j.label}
     for k, branch in enumerate(branches):
         for event in branch.path.events:
             if event.kind not in LABELS:
                 continue
-            label = LABELS[event.kind]
-            same = [entry for entry in found if entry[0].startswith(label) and _one_place(entry[1], event)]
-            if not same:
-                same = [(f"{label}{1 + sum(entry[0].startswith(label) for entry in found)}", event, [])]
-                found += same
-            same[0][2].append(k)
-        for entry in found:
-            if entry[0] == branch.origin:
-                entry[2].append(k)
+            kind = LABELS[event.kind]
+            same = [through for label, through in places.near(event.u) if label.startswith(kind)]
+            (same[0] if same else entry(f"{kind}{1 + labels[kind]}", event)).append(k)
+        if branch.origin:
+            origins[branch.origin].append(k)
     return [Special(label, event, tuple(dict.fromkeys(through))) for label, event, through in found]
-
-
-def _one_place(a: LocatedEvent, b: LocatedEvent) -> bool:
-    return norm(metric_at(a), a.u - b.u) <= SAME_POINT

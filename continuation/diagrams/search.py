@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter, deque
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from continuation.counts import Counts
 from continuation.diagrams.branches import LABELS, Branch, Diagram, from_point
 from continuation.diagrams.deflation import others, same_solution, solved
 from continuation.diagrams.junctions import Junction, directions_of, meetings
+from continuation.diagrams.places import Places
 from continuation.diagrams.points import points_of
 from continuation.events.box import is_inside
 from continuation.labels import Labels
@@ -30,6 +33,10 @@ WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.D
 
 LEAVES = 0.1
 """Guesses for deflation lie beside known solutions, by this part of how far these are apart."""
+
+AHEAD = 64
+"""Paths that an executor is given before the first of them is looked at: enough for as many processes, and what has
+come back and waits is bounded."""
 
 
 @frozen(eq=False)
@@ -86,6 +93,8 @@ class Search:
     log: Growing | None = None
     branches: list[Branch] = field(factory=list)
     junctions: list[Junction] = field(factory=list)
+    places: Places[Junction] = field(factory=Places)
+    labels: Counter[str] = field(factory=Counter)
     missing: list[str] = field(factory=list)
     counts: Counts = field(factory=Counts)
 
@@ -121,11 +130,13 @@ class Search:
         """A branch of the archive: the rays that it follows are not followed again."""
         self.counts = self.counts + path.counts
         self._meet(path)
-        known = ((j, at) for j in self.junctions if j.label and (at := j.on(path)) is not None)
-        junction, at = next(known, (None, None))
-        if junction is None or at is None:
+        points = enumerate(path.u)
+        known = [(j, k) for k, u in points for j in self.places.near(u) if j.label and (j.event.u == u).all()]
+        if not known:
             self._add(path, "", 0, kept=True)
             return
+        junction, number = min(known, key=lambda found: found[0].number)
+        at = path.steps[number]
         junction.take(at.tangent)
         if at.index:
             junction.take(-at.tangent)
@@ -173,20 +184,28 @@ class Search:
 
     def _traced(self, tasks: list[Task]) -> Iterator[tuple[Task, Path | None]]:
         """The paths of tasks in their order; none of those that have become idle when it is their turn."""
-        ready: list[Future[Path]] = []
-        asked = [(self.homotopy, task.start, task.direction, self.options, task.metric) for task in tasks]
-        if self.executor is not None:
-            ready = [self.executor.submit(_path, *one) for one in asked]
+        ready: deque[Future[Path] | None] = deque()
+        following = iter(tasks if self.executor is not None else ())
         try:
-            for k, task in enumerate(tasks):
-                path = None
-                if ready or not task.idle:
-                    path = ready[k].result() if ready else _path(*asked[k])
+            for task in tasks:
+                for other in islice(following, AHEAD - len(ready)):
+                    assert self.executor is not None
+                    ready.append(None if other.idle else self.executor.submit(_path, *self._asked(other)))
+                future, path = ready.popleft() if ready else None, None
+                if future is not None:
+                    path = future.result()
+                elif not task.idle:
+                    path = _path(*self._asked(task))
+                if path is not None:
                     self.counts = self.counts + path.counts
                 yield task, None if task.idle else path
         finally:
             for future in ready:
-                future.cancel()
+                if future is not None:
+                    future.cancel()
+
+    def _asked(self, task: Task) -> tuple[Any, ...]:
+        return self.homotopy, task.start, task.direction, self.options, task.metric
 
     def _meet(self, path: Path) -> None:
         """The junctions on a path: new ones wait, of old ones rays are taken."""
@@ -198,10 +217,12 @@ class Search:
                 junction.take(direction)
 
     def _junction(self, event: LocatedEvent) -> Junction:
-        junction = next((known for known in self.junctions if known.is_at(event)), None)
-        if junction is None:
-            junction = Junction.at(self.homotopy, event, self.step)
-            self.junctions.append(junction)
+        known = self.places.near(event.u)
+        if known:
+            return known[0]
+        junction = Junction.at(self.homotopy, event, self.step)
+        self.junctions.append(junction)
+        self.places.add(event.u, junction.weights, junction)
         return junction
 
     def _add(self, path: Path, origin: str, generation: int, kept: bool = False) -> None:
@@ -213,13 +234,14 @@ class Search:
             if junction.label:
                 continue
             prefix = LABELS[event.kind]
-            junction.label = f"{prefix}{1 + sum(known.label.startswith(prefix) for known in self.junctions)}"
-            junction.number, junction.generation = sum(bool(known.label) for known in self.junctions), generation
+            junction.number, junction.generation = self.labels.total() + 1, generation
+            self.labels[prefix] += 1
+            junction.label = f"{prefix}{self.labels[prefix]}"
             if junction.failed:
                 self.missing.append(f"at {junction.label}, lam = {event.lam:.6g}, {junction.failed}")
-        self.branches.append(Branch(path, origin, generation))
         if self.log is not None and not kept:
-            self.log.add(path)
+            path = self.log.add(path)
+        self.branches.append(Branch(path, origin, generation))
 
     def _spread(self) -> None:
         """Generation after generation, until no ray is open."""

@@ -40,6 +40,7 @@ def diagram(
     executor: Executor | None = None,
     archive: str | PathLike[str] | None = None,
     resume: bool = False,
+    keep: str = "all",
     **options: Unpack[Options],
 ) -> Diagram:
     """Trace all branches that hang together: from the start both ways, then from every point at which others leave.
@@ -72,6 +73,9 @@ def diagram(
         A new file that all branches are written to, each when it is finished.
     resume : bool, default False
         Go on with the archive, if there is one: its branches are not traced again. The same call as before is meant.
+    keep : str, default "all"
+        With an archive "ends": points between the ends of a branch are read from the file when they are asked for, so
+        that a diagram of thousands of branches needs little memory.
     {options}
 
     Returns
@@ -104,6 +108,8 @@ def diagram(
         raise complain(TypeError, "starts", "pairs (y, lam)", starts)
     if not isinstance(resume, bool) or (resume and archive is None):
         raise complain(ValueError, "resume", "True with an archive, or False", resume)
+    if keep not in ("all", "ends") or (keep == "ends" and archive is None):
+        raise complain(ValueError, "keep", '"all", or "ends" with an archive', keep)
     file = None if archive is None else as_file("archive", archive)
     if file is not None and not resume:
         check_new(file)
@@ -113,7 +119,7 @@ def diagram(
     asked: Options = {**options, "box": box, "target": options.get("target")}
     if stability is not None:
         asked["events"] = (*options.get("events", ()), *stability.events)
-    log = None if file is None else Growing(file, "A diagram", isinstance(homotopy, SupportsPieces))
+    log = None if file is None else Growing(file, "A diagram", isinstance(homotopy, SupportsPieces), keep)
     search = Search(homotopy, asked, executor, float(step), branches, generations, log)
     with nullcontext() if log is None else log:
         try:

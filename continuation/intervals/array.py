@@ -7,14 +7,13 @@ half the second derivative along a curve (`CURVE`).
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from continuation.arrays import Array
+from continuation.arrays import Array, asked_by_sparse
 from continuation.intervals.elementary import RULES
 from continuation.intervals.ends import Ends, thin
 
@@ -205,8 +204,7 @@ class IntervalArray(Interval):
     __slots__ = ()
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
-        caller = sys._getframe(1)
-        if caller.f_code.co_name == "_matmul_dispatch" and caller.f_globals["__name__"].startswith("scipy.sparse"):
+        if asked_by_sparse():
             return np.array(None, dtype=object)  # "no" in scipy's terms: Python goes on to `__rmatmul__`
         raise TypeError(
             "an Interval cannot become a plain array, which would drop its width: leave out numpy.asarray, use "

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 
-from continuation.arrays import Array
+from continuation.arrays import Array, clipped
 from continuation.intervals.array import Interval, alike, as_interval, unknown, wrap
 from continuation.intervals.ends import TINIEST, Ends, accumulated, bilinear, up_sum
 from continuation.intervals.operations import broadcast_to, product_of
@@ -208,11 +208,6 @@ def _bincount(x: Any, weights: Any, minlength: int = 0) -> Any:
     return (places[:, None] == x).astype(float) @ as_interval(weights)
 
 
-def _clip(a: Any, a_min: Any = None, a_max: Any = None) -> Any:
-    a = a if a_min is None else np.maximum(a, a_min)
-    return a if a_max is None else np.minimum(a, a_max)
-
-
 def _like(a: Interval, value: Any, dtype: Any, shape: Any) -> Interval:
     if dtype is not None and np.dtype(dtype) != np.float64:
         raise unknown(f"arrays like themselves of dtype {np.dtype(dtype)}")
@@ -238,7 +233,7 @@ RULES: dict[Any, Callable[..., Any]] = {
     np.append: _append,
     np.bincount: _bincount,
     np.where: _where,
-    np.clip: _clip,
+    np.clip: clipped,
     np.zeros_like: lambda a, dtype=None, *, shape=None: _like(a, 0.0, dtype, shape),
     np.ones_like: lambda a, dtype=None, *, shape=None: _like(a, 1.0, dtype, shape),
     np.empty_like: lambda prototype, dtype=None, *, shape=None: _like(prototype, 0.0, dtype, shape),

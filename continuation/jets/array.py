@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import operator
-import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from scipy.sparse import issparse
 
-from continuation.arrays import Array
+from continuation.arrays import Array, asked_by_sparse
 from continuation.jets import ufuncs
 from continuation.jets.algebra import TAYLOR, Algebra
 from continuation.jets.dispatch import call, unknown
@@ -227,8 +226,7 @@ class ArrayJet(Jet):
     __slots__ = ()
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
-        caller = sys._getframe(1)
-        if caller.f_code.co_name == "_matmul_dispatch" and caller.f_globals["__name__"].startswith("scipy.sparse"):
+        if asked_by_sparse():
             return np.array(None, dtype=object)  # "no" in scipy's terms: Python goes on to `__rmatmul__`
         raise TypeError(
             "a Jet cannot become a plain array, which would drop its series: leave out numpy.asarray, use np.stack for "

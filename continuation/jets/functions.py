@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 
-from continuation.arrays import Array
+from continuation.arrays import Array, clipped
 from continuation.jets.array import Jet, as_jet, common, gather, operand, wrap
 from continuation.jets.dispatch import unknown
 
@@ -154,11 +154,6 @@ def _entries_first(jet: Jet) -> Array:
     return np.moveaxis(jet.c, 0, -1)
 
 
-def _clip(a: Any, a_min: Any = None, a_max: Any = None) -> Any:
-    a = a if a_min is None else np.maximum(a, a_min)
-    return a if a_max is None else np.minimum(a, a_max)
-
-
 def _like(a: Jet, shape: Any, value: Any) -> Jet:
     shape = a.shape if shape is None else (shape,) if isinstance(shape, int) else tuple(shape)
     out = wrap(np.zeros((len(a.c), *shape)), a.algebra)
@@ -254,7 +249,7 @@ RULES: dict[Any, Callable[..., Any]] = {
     np.column_stack: lambda tup: _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in _pieces(tup)], 1),
     np.append: lambda arr, values, axis=None: _concatenate([arr, values], axis),
     np.where: _where,
-    np.clip: _clip,
+    np.clip: clipped,
     np.zeros_like: lambda a, dtype=None, *, shape=None: _full_like(a, 0.0, dtype, shape=shape),
     np.ones_like: lambda a, dtype=None, *, shape=None: _full_like(a, 1.0, dtype, shape=shape),
     np.empty_like: lambda prototype, dtype=None, *, shape=None: _full_like(prototype, 0.0, dtype, shape=shape),

@@ -72,6 +72,7 @@ def initial_extent(
     residual: Array,
     farthest: float = np.inf,
     room: float = np.inf,
+    sizes: Array | None = None,
 ) -> Array:
     """How far each component goes while the path turns by about TURN, or to the target if that is nearer.
 
@@ -88,11 +89,13 @@ def initial_extent(
         for these alone.
     room : float
         How far along the tangent the path ends on a value that was asked for, if it is straight.
+    sizes : ndarray, shape (N + 1,), optional
+        How large the components are, about: what moves by less than their round-off then stands still.
 
     Returns
     -------
     ndarray, shape (N + 1,)
-        Positive. A component that does not move is given the median of the others.
+        Positive. A component that does not move is given the median of the others, in their sizes if these are known.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -100,9 +103,10 @@ def initial_extent(
         whole = abs(gap / v[-1])
         v = v * np.sign(gap / v[-1])
     whole = whole if np.isfinite(whole) else farthest
-    standstill = ROUND_OFF if np.isfinite(farthest) else STANDSTILL
-    if np.isfinite(farthest):
-        v = np.where(np.abs(v) > standstill * float(np.abs(v).max()), v, 0.0)
+    exactly = sizes is None and np.isinf(farthest)
+    standstill, unit = STANDSTILL if exactly else ROUND_OFF, np.ones_like(v) if sizes is None else sizes
+    if not exactly:
+        v = np.where(np.abs(v) > standstill * unit * float(np.abs(v / unit).max()), v, 0.0)
     v = _without_round_off(evaluator, point, v)
     size = np.abs(v)
     moving = size > 0.0
@@ -142,10 +146,11 @@ def initial_extent(
             break
     if found > room:
         found, off = room, (room / found) ** 2 * off
-    extent = np.maximum(found * size, np.abs(off))
+    extent = np.maximum(found * size, np.abs(off)) / unit
     still = extent <= standstill * float(extent.max())
     extent[still] = median(extent[~still])
-    if still.any() and np.isinf(farthest):
+    extent *= unit
+    if still.any() and exactly:
         extent[still] *= _smaller(evaluator, point, np.where(still, extent, 0.0), residual)
     return extent
 

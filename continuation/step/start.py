@@ -13,6 +13,7 @@ from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.correctors.base import holds
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.homotopy import SupportsExtents
 from continuation.metric import Automatic, Metric, SupportsExtent, norm
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -119,7 +120,9 @@ def measured(
     seen = RESOLVED * np.spacing(np.abs(point.u)) / solver.tolerance.relative
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
-    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual, farthest, room), seen)
+    homotopy = solver.evaluator.homotopy
+    sizes = homotopy.extents if isinstance(homotopy, SupportsExtents) else None
+    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes), seen)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent
     return point.with_weights(metric.weights(point.u, point.tangent, None)), extent

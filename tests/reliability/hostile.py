@@ -166,7 +166,7 @@ def engine(w: World) -> Iterator[Call]:
         {"box": ({"lam": (0.0, 2.0)},), "starts": ([3],), "direction": (1,),
          "homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
          "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values",
-         "resume": "truth"},
+         "resume": "truth", "keep": "text"},
     )  # fmt: skip
     yield Call(
         c.Deflated,

@@ -7,9 +7,11 @@ import pytest
 
 from continuation import Budget, Kind, Stability, diagram, from_functions
 from continuation.archive import open_archive
+from continuation.metric import norm
 from continuation.status import Status
 from problems.bifurcation import FreudensteinRoth, Pitchfork
 
+from ...util import benchmark
 from ..kinks.util import Folded
 from .util import ChafeeInfante, Forks
 
@@ -78,6 +80,10 @@ def test_branches_that_leave_branches_are_all_there_and_none_twice():
     states = {tuple(np.sign(np.round(y, 6)).astype(int)) for y in ends}
     assert len(states) == len(ends) == 3**4 - 1
     assert len(found.at(5.5)) == 3**4
+
+
+def test_the_benchmark_of_pitchforks_runs():
+    assert len(benchmark("diagrams/pitchforks.py").run(3)) == 14
 
 
 def test_ten_pitchforks_that_leave_each_other_have_an_arm_for_each_and_a_crossing_for_each_later_one():
@@ -216,6 +222,33 @@ def test_one_archive_holds_all_branches_and_the_picture_names_the_points(tmp_pat
     assert {line.get_linestyle() for line in axes.lines} >= {"-", "--"}
     assert found.plot(value=0, labels=False).texts[:] == []
     pyplot.close("all")
+
+
+def test_points_that_are_not_kept_are_read_from_the_file_and_the_diagram_goes_on_from_it(tmp_path):
+    homotopy, asked = Forks((1.0, 2.0, 3.0)), {"box": {"lam": (0.0, 5.0)}}
+    whole = diagram(homotopy, **asked)
+    assert (len(whole), len(whole.points), whole.complete) == (14, 13, True)
+    file = tmp_path / "d.h5"
+    few = diagram(homotopy, archive=file, keep="ends", branches=3, **asked)
+    assert "2 of them in memory" in repr(few.branches[0].path.steps)
+    found = diagram(homotopy, archive=file, keep="ends", resume=True, **asked)
+    assert [b.origin for b in found.branches] == [b.origin for b in whole.branches]
+    assert [(p.label, p.branches) for p in found.points] == [(p.label, p.branches) for p in whole.points]
+    for branch, other in zip(found.branches, whole.branches):
+        assert "2 of them in memory" in repr(branch.path.steps)
+        # Which of two ends comes first is no matter where a diagram goes on.
+        np.testing.assert_allclose(np.abs(branch.path.u[[0, -1]]), np.abs(other.path.u[[0, -1]]), atol=1e-9)
+    once = diagram(homotopy, archive=tmp_path / "once.h5", keep="ends", **asked)
+    assert outline(once) == outline(whole)
+    np.testing.assert_allclose(once.at(4.5), whole.at(4.5), atol=1e-3)
+
+
+def test_a_diagram_takes_up_as_many_comparisons_as_points(monkeypatch):
+    looked = []
+    monkeypatch.setattr("continuation.diagrams.places.norm", lambda w, d: looked.append(1) or norm(w, d))
+    found = diagram(Forks((1.0, 2.0, 3.0, 4.0)), box={"lam": (0.0, 6.0)})
+    # Each of 40 points is met twice while branches are traced, and looked for once more at the end.
+    assert len(looked) <= 5 * len(found.points)
 
 
 def test_a_branch_goes_through_the_point_that_it_was_found_at():

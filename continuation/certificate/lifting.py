@@ -1,0 +1,79 @@
+"""Paths with more unknowns in front, where a homotopy's residual is plain arithmetic with these alone."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from attrs import evolve
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Cells
+from continuation.certificate.proof import Gap, Proof
+from continuation.path import Path, Step
+
+
+class WrittenOut(Protocol):
+    """A homotopy with further unknowns in front, whose zeros are those of another with what these are there."""
+
+    def start(self) -> tuple[Array, float]:
+        """A point of it."""
+        ...
+
+    def residual(self, y: Any, lam: Any) -> Any:
+        """Its equations, in plain numpy."""
+        ...
+
+    def lifted(self, u: Array, before: Array | None) -> Array:
+        """A point of the other with the further unknowns; of several such, the one that is near to `before`."""
+        ...
+
+
+@runtime_checkable
+class SupportsWrittenOut(Protocol):
+    """A homotopy that may eliminate unknowns by factorisations, and says what it is without that."""
+
+    def written_out(self, points: Array) -> WrittenOut | None:
+        """The equations with all unknowns, for a path with these points; None where nothing is eliminated.
+
+        Parameters
+        ----------
+        points : ndarray, shape (m, N + 1)
+        """
+        ...
+
+
+def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
+    """What is to be proved: the homotopy and the path, or those with more unknowns that stand for them.
+
+    The nodes of `cells`, of a proof, say what the further unknowns are at points that they share with the path. A proof
+    of nothing, with the reason, comes where these have no value, or the cells are of other ones.
+    """
+    points = path.u
+    width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))
+    try:
+        whole = homotopy.written_out(points) if isinstance(homotopy, SupportsWrittenOut) else None
+        longer = path if whole is None else _lifted(whole, path, cells)
+    except ArithmeticError as error:
+        return Proof.empty(width, Gap(*ends, f"the equations cannot be written out there ({error})"))
+    needed = longer.steps[0].u.size
+    if cells is not None and cells.begin.shape[1] != needed:
+        return Proof.empty(width, Gap(*ends, f"tubes have {cells.begin.shape[1]} components, not {needed}"))
+    return homotopy if whole is None else whole, longer
+
+
+def _lifted(whole: WrittenOut, path: Path, cells: Cells | None) -> Path:
+    """The path with the further unknowns."""
+    rows = () if cells is None else (*cells.begin, *cells.end)
+    known = {row[-path.steps[0].u.size :].tobytes(): row for row in rows}
+    steps: list[Step] = []
+    before = None
+    for step in path.steps:
+        found = known.get(step.u.tobytes())
+        before = whole.lifted(step.u, before) if found is None else found
+        steps.append(evolve(step, u=before, tangent=np.full_like(before, np.nan)))
+    events = []
+    for event in path.events:
+        u = whole.lifted(event.u, steps[min(event.step, len(steps) - 1)].u)
+        events.append(evolve(event, u=u, tangent=np.full_like(u, np.nan)))
+    return evolve(path, steps=steps, events=events)

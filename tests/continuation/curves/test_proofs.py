@@ -1,0 +1,119 @@
+"""Curves that are proved by their equations written out: folds, Hopf points, and what looks at the tangent."""
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+import continuation
+from continuation import Curve, Family, Kind, Monitor, TurningPoint, certify
+from continuation.archive import recheck
+from continuation.certificate import second
+
+from .util import (
+    Brusselator,
+    Coupled,
+    CuspForm,
+    Gelfand,
+    Imperfect,
+    Lorenz,
+    Ring,
+    TakensBogdanov,
+    VanDerPol,
+    first_fold,
+    named,
+)
+
+
+def folds(homotopy, name):
+    return Curve(Family(homotopy, name), first_fold(homotopy))
+
+
+def steep(u, v):
+    """Where the slope is -0.4."""
+    return v[0] + 0.4 * v[1]
+
+
+CASES = {
+    "a cusp": (folds(CuspForm(1.0), "mu"), {"lam": (-4.0, 4.0), "y": (-16.0, 16.0)}, 1),
+    "a slab that heats itself": (folds(Gelfand(n=4), "eps"), {"lam": (0.0, None), "y": (None, 12.0)}, 1),
+    "folds that stand still": (folds(TakensBogdanov(), "mu"), {"lam": (-2.0, 2.0)}, 0),
+    "Hopf points where nothing moves but mu": (
+        Curve(Family(VanDerPol(), "k"), Kind.HOPF, (np.zeros(2), 0.05)), {"lam": (0.5, 1.5)}, 0,
+    ),
+    "Hopf points": (Curve(Family(Brusselator(), "A"), Kind.HOPF, (np.array([1.0, 2.0]), 2.0)), {"lam": (0.5, 3.0)}, 0),
+    "Lorenz": (Curve(Family(Lorenz(), "b"), Kind.HOPF, Lorenz().wing(24.0)), {"lam": (2.0, 8.0)}, 0),
+    "an unknown turns": (
+        Curve(Family(Ring(), "a"), TurningPoint(1), (np.array([0.7, 0.5]), 0.6)), {"lam": (0.2, 5.0)}, 0,
+    ),
+    "a slope": (Curve(Family(Imperfect(), "eps"), Monitor(steep), (np.array([-1.2]), 1.4)), {"lam": (0.05, 1.0)}, 0),
+}  # fmt: skip
+
+
+def proved(name):
+    curve, box, turning = CASES[name]
+    path = continuation.trace_both(curve, box=box)
+    return curve, path, certify(path, curve), turning
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_whole_curve_is_proved_and_what_is_changed_is_not(name):
+    curve, path, proof, turning = proved(name)
+    assert proof.complete, proof
+    assert len(proof.turning_points) == turning
+    width = path.u.shape[1]
+    assert proof.node_radius.shape[1] == len(proof.radius(0.0)) == width
+    k, extent = len(path) // 2, np.maximum(np.ptp(path.u, axis=0), 1.0)
+    steps = list(path.steps)
+    steps[k] = evolve(steps[k], u=steps[k].u + 2.0 * proof.radius(path.arclength[k]) + 1e-3 * extent)
+    assert not certify(evolve(path, steps=steps), curve).complete
+    if turning:
+        unlisted = [event for event in path.events if event.name != "turning point"]
+        assert not certify(evolve(path, events=unlisted), curve).complete
+    if second.available():
+        # Its test is a plainer one: of the longest steps, where nothing but mu moves, it misses two.
+        missed = second.confirmed(curve.written_out(path.u).residual, proof.cells).count(False)
+        assert missed <= (2 if name == "folds that stand still" else 0)
+
+
+def test_what_is_proved_is_that_curve():
+    curve, path, proof, _ = proved("a cusp")
+    # The exact folds: y = t, mu = 3 t^2, lam = -2 t^3.
+    for s, (y, _, _) in zip(path.arclength, path.u):
+        for t in (y, y + 0.5 * proof.radius(s)[0]):
+            off = np.abs(np.array([t, -2.0 * t**3, 3.0 * t**2]) - path(s))
+            assert (off <= 20.0 * proof.radius(s) + 1e-9).all()
+    # That of another family is not, with the same points or with the same tubes.
+    other = Curve(lambda mu: CuspForm(1.001 * mu), Kind.TURNING_POINT, curve.at, mu=1.0)
+    assert not certify(path, other).complete
+
+
+def test_a_hopf_curve_is_proved_up_to_where_it_meets_the_folds():
+    homotopy = TakensBogdanov()
+    curve = Curve(Family(homotopy, "mu"), Kind.HOPF, (np.array([-1.0, 0.0]), -1.0))
+    path = continuation.trace_both(curve, box={"lam": (-3.0, 3.0)})
+    (end,) = named(path, "Bogdanov-Takens")
+    proof = certify(path, curve)
+    assert not proof.complete
+    assert max(gap.end for gap in proof.gaps) <= end.arclength + 0.01 * path.arclength[-1]
+
+
+def test_an_archive_holds_the_proof(tmp_path):
+    for name in ("a cusp", "Hopf points"):
+        curve, box, _ = CASES[name]
+        file = tmp_path / f"{name}.h5"
+        path = continuation.trace(curve, box=box, certified=True, archive=file)
+        assert path.proof.complete
+        (again,) = recheck(file, curve, second=second.available())
+        assert again.complete
+        assert again.node_radius.shape == path.proof.node_radius.shape
+        # Its tubes are wider than those of a path of the same width that has nothing in front.
+        (foreign,) = recheck(file, continuation.from_functions(lambda y, lam: y, start=curve.start()))
+        assert "components" in str(foreign)
+        path.proof.plot(0)
+
+
+def test_branch_points_are_not_proved_and_that_is_said():
+    curve = Curve(Family(Coupled(), "mu"), Kind.BRANCH_POINT, (np.array([1.0, -1.0]), 3.0))
+    path = continuation.trace(curve, box={"lam": (0.5, 2.0)})
+    with pytest.raises(TypeError, match="residual of a branch point curve is not plain arithmetic: it takes a factor"):
+        certify(path, curve)
