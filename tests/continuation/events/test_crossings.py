@@ -275,3 +275,21 @@ def test_random_crossings_in_random_units(campaign, family, preset):
     for _ in range(4):
         problem = campaign.FAMILIES[family](rng, int(rng.integers(1, 9)), float(rng.choice([0.0, 6.0])))
         assert campaign.judged(problem, family == "arm", preset)[0] == ""
+
+
+@pytest.mark.parametrize(
+    ("family", "seed", "k", "preset"),
+    [
+        ("transversal", 777, 480, continuation.DEFAULT),
+        ("transversal", 777, 641, continuation.CONSERVATIVE),
+        ("apart", 888, 443, continuation.DEFAULT),
+        ("apart", 888, 830, continuation.FAST),
+        ("apart", 888, 151, continuation.SERIES),
+    ],
+    ids=lambda value: getattr(value, "name", str(value)),
+)
+def test_between_two_crossings_graphs_are_nearer_than_predictions(campaign, family, seed, k, preset):
+    """Each of these left its graph at the second crossing, or (the last) stopped in the first one."""
+    *_, problem = campaign.drawn(family, k + 1, seed)
+    assert len(problem.crossings) == 2
+    assert campaign.judged(problem, False, preset)[0] == ""
