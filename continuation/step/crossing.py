@@ -15,7 +15,7 @@ from continuation.arrays import Array, largest
 from continuation.contraction import RELIABLE
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events.crossing import multiplicity, singular_places
+from continuation.events.crossing import eigenvalues_along, multiplicity, peak_between, singular_places
 from continuation.events.singularity import SimpleBranchPoint, branch_point_near, row_sizes
 from continuation.metric import norm
 from continuation.point.arc import Arc, position
@@ -157,9 +157,9 @@ class Crossings:
             return self._together(arc, attempt, prediction, together, flipped)
         changing = series or bool(looked.get(LOOKS[0]))
         doubtful = changing and len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
+        # A series is so near to the path that its looks tell all.
+        passed = [there[0] for at, there in sorted(looked.items()) if there and there[0] <= at] if series else []
         if not flipped:
-            passed = any(found and found[0] < at for at, found in looked.items())
-            # A series is so near to the path that its looks tell all.
             whole = series and not passed and self._continues(arc, seen)
             if whole:
                 return None
@@ -167,7 +167,7 @@ class Crossings:
                 return self._left(arc, attempt) if before and not series and len(looked) >= len(LOOKS) else None
         found = None
         if places or flipped:
-            t = self._refined(arc, attempt, prediction, (inside or places or guesses or [LOOKS[0]])[0])
+            t = self._refined(arc, attempt, prediction, (passed or inside or places or guesses or [LOOKS[0]])[0])
             found = self._found(arc, prediction(t * attempt.h))
         if found is None and not flipped and (behind := self._behind(arc)) is not None:
             found = self._found(arc, arc.segment.at(behind))
@@ -182,7 +182,7 @@ class Crossings:
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         if at > 1.0:
             # What lies beyond does not change the sign on the arc, which left its branch.
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or passed else None
         if not flipped or doubtful:
             # With a second crossing behind it the sign is that of the other branch: how well the corrector contracts
             # tells the two apart.
@@ -190,6 +190,8 @@ class Crossings:
         if not series and found.branch_of(arc.a) != found.branch_of(arc.b):
             # The arc's end is on the other branch: a second crossing, of which nothing was seen, made its sign right.
             return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (at + 1.0))
+        if (between := self._more(arc, seen, at)) is not None:
+            return _rejected(attempt, Rejection.CROSSINGS, between)
         return self._point(arc, found, at)
 
     def _left(self, arc: Arc, attempt: Arrival) -> Rejected | None:
@@ -199,6 +201,21 @@ class Crossings:
         """
         behind = self._behind(arc)
         return None if behind is None or behind <= 0.0 else _rejected(attempt, Rejection.ORIENTATION, 0.5)
+
+    def _more(self, arc: Arc, seen: dict[float, list[float]], at: float) -> float | None:
+        """A place on the arc between the crossing found and another one; None where it explains all that was seen.
+
+        The largest eigenvalue passes one where branches cross: between two looks, or behind the last one.
+        """
+        apply = self._derivative(arc.b.u)
+        there = [] if apply is None else singular_places(arc.a, apply, arc.b.border, 1.0 / CHANGED)
+        times, values = eigenvalues_along({**seen, 1.0: there})
+        changes = [times[k : k + 2] for k in np.flatnonzero(np.diff(values > 1.0))]
+        if len(changes) > 1:
+            return float(changes[0][1])
+        if changes and not changes[0][0] - BESIDE < at < changes[0][1] + BESIDE:
+            return 0.5 * (at + float(changes[0].mean()))
+        return None
 
     def _counted(self, arc: Arc, places: list[float], flipped: bool) -> list[float]:
         """The same places, each as often as H' loses a rank there, if their number does not agree with the sign."""
@@ -252,8 +269,9 @@ class Crossings:
             found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, ahead, turned=k)]
             if not found[LOOKS[0]] and not series and attempt.correction.contraction <= DOUBTFUL:
                 break
-            if series and len(EIGHTHS) <= len(found) == len(looks) < MOST_LOOKS and (peak := _peak(found)) is not None:
-                looks.append(peak)
+            if series and len(EIGHTHS) <= len(found) == len(looks) < MOST_LOOKS:
+                peak = peak_between(found, APART)
+                looks += [] if peak is None else [peak]
         return found
 
     def _derivative(self, u: Array) -> Callable[[Array], Array] | None:
@@ -323,20 +341,6 @@ class Crossings:
         """The branch point as a point of the path, its tangent that of the branch which goes on."""
         rays = found.rays(arc.segment.derivative(at), arc.a.weights)
         return Crossed(evolve(arc.a, u=found.u, tangent=rays[1]), rays)
-
-
-def _peak(found: dict[float, list[float]]) -> float | None:
-    """Where between looks H' may be singular twice: it was nearly so, and less on either side; None if nowhere."""
-    at = np.array([0.0, *sorted(found)])
-    near = np.array([t / found[t][0] if t and found[t] else 0.0 for t in at])
-    k = int(near.argmax())
-    # From there a crossing is expected before the next look, which does not show it.
-    if not 0 < k < near.size - 1 or not at[k] / at[k + 1] < near[k] < 1.0:
-        return None
-    # The vertex of the parabola through the three, if they are known.
-    a, b, _ = np.polyfit(at[k - 1 : k + 2] - at[k], near[k - 1 : k + 2], 2)
-    peak = at[k] - 0.5 * b / a if near[k + 1] else 0.5 * (at[k - 1] + at[k])
-    return float(peak) if min(abs(peak - at)) > APART else None
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:

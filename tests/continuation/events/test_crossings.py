@@ -293,3 +293,23 @@ def test_between_two_crossings_graphs_are_nearer_than_predictions(campaign, fami
     *_, problem = campaign.drawn(family, k + 1, seed)
     assert len(problem.crossings) == 2
     assert campaign.judged(problem, False, preset)[0] == ""
+
+
+@pytest.mark.parametrize(
+    ("c", "pair", "last"), [(2.5, 0.02, 0.8), (0.25, 0.02, 0.8), (1.43, 0.05, 1.1), (2.93, 0.01, 0.93)]
+)
+def test_a_pair_of_crossings_in_a_long_step_of_a_series(c, pair, last):
+    """y = f(t) and y = f(t) + c t (t - pair) (t - last): the first two were passed between two looks, or all as one."""
+
+    def apart(t):
+        return c * t * (t - pair) * (t - last)
+
+    def residual(y, t):
+        own = y[0] + 0.8 * t + 0.1 * np.sin(2.0 * t)
+        return np.stack([own * (own - apart(t))])
+
+    path = trace(
+        from_functions(residual, start=([1.6 + 0.1 * np.sin(4.0)], -2.0)), target=2.0, preset=continuation.SERIES
+    )
+    assert [event.lam for event in branch_points(path)] == pytest.approx([0.0, pair, last], abs=1e-11)
+    assert path.endpoint.y[0] == pytest.approx(-1.6 - 0.1 * np.sin(4.0))
