@@ -98,14 +98,7 @@ def plot_bifurcation(
 
 
 def values_along(path: Path, drawing: Drawing, value: Value) -> Array:
-    """A number of each point that is drawn.
-
-    Parameters
-    ----------
-    path : Path
-    drawing : Drawing
-    value : int, str, callable or None
-    """
+    """A number of each point that is drawn."""
     if value is None:
         return height(drawing.u[:, :-1])
     if callable(value):

@@ -128,11 +128,8 @@ def instance_with(name: str, value: Any, attributes: Sequence[str], expected: st
 def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     """A copy of `value` as an array of floats.
 
-    Raises
-    ------
-    ValueError
-        If it holds anything but real numbers: a complex one would lose its imaginary part, and a masked one its mask,
-        without a word.
+    Raises `ValueError` if it holds anything but real numbers: a complex one would lose its imaginary part, and a
+    masked one its mask, without a word.
     """
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")

@@ -135,24 +135,13 @@ AGAINST = ("lam", "arclength")
 
 
 def check_path(path: Path) -> None:
-    """Raise ValueError for a path without points.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """Raise ValueError for a path without points."""
     if len(path) == 0:
         raise ValueError("path: expected at least one point, found none")
 
 
 def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
-    """The components asked for, which must exist, or twelve at even distances.
-
-    Parameters
-    ----------
-    components : iterable of int or None
-    y : ndarray, shape (m, N)
-    """
+    """The components asked for, which must exist, or twelve at even distances."""
     n = y.shape[1]
     if components is None:
         # An archive of paths with different numbers of unknowns fills the shorter ones up with NaN.
@@ -168,23 +157,13 @@ def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
 
 
 def height(y: Array) -> Array:
-    """The largest absolute value along the last axis, NaN apart.
-
-    Parameters
-    ----------
-    y : ndarray
-    """
+    """The largest absolute value along the last axis, NaN apart."""
     largest: Array = np.fmax.reduce(np.abs(y), axis=-1)
     return largest
 
 
 def axes_or_new(axes: Axes | None) -> Axes:
-    """The axes, or those of a new figure.
-
-    Parameters
-    ----------
-    axes : matplotlib Axes or None
-    """
+    """The axes, or those of a new figure."""
     if axes is not None:
         return axes
     require_matplotlib()
@@ -194,35 +173,19 @@ def axes_or_new(axes: Axes | None) -> Axes:
 
 
 def line_style(k: int) -> dict[str, Any]:
-    """Colour and dashes of the k-th line.
-
-    Parameters
-    ----------
-    k : int
-    """
+    """Colour and dashes of the k-th line."""
     return {"color": COLOURS[k % len(COLOURS)], "linestyle": STYLES[k % len(STYLES)], "linewidth": 1.6}
 
 
 def tidy(axes: Axes) -> Axes:
-    """Take away what no reader needs.
-
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    """
+    """Take away what no reader needs."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.margins(x=0.03)
     return axes
 
 
 def across(against: str, drawing: Drawing) -> Array:
-    """The horizontal coordinate of a drawing.
-
-    Parameters
-    ----------
-    against : {"lam", "arclength"}
-    drawing : Drawing
-    """
+    """The horizontal coordinate of a drawing."""
     if against not in AGAINST:
         raise ValueError(f"against: expected 'lam' or 'arclength', found {against!r}")
     values: Array = drawing.u[:, -1] if against == "lam" else drawing.s
@@ -230,14 +193,7 @@ def across(against: str, drawing: Drawing) -> Array:
 
 
 def label_axis(axes: Axes, against: str, paths: Sequence[Path]) -> None:
-    """Name the horizontal axis, and let it run as the paths do: from left to right where the parameter falls.
-
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    against : {"lam", "arclength"}
-    paths : sequence of Path
-    """
+    """Name the horizontal axis, and let it run as the paths do: from left to right where the parameter falls."""
     if against == "arclength":
         axes.set_xlabel("arclength $s$")
         return
@@ -247,25 +203,13 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Path]) -> None:
 
 
 def falls(path: Path) -> bool:
-    """Whether the parameter never grows along the path, as from 1 to 0.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """Whether the parameter never grows along the path, as from 1 to 0."""
     lam = path.lam
     return len(lam) > 1 and bool((np.diff(lam) <= 0.0).all()) and bool(lam[-1] < lam[0])
 
 
 def mark_events(axes: Axes, places: Sequence[tuple[LocatedEvent, float, Any]]) -> None:
-    """Mark located events, each kind in its own way, named once in the legend.
-
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    places : sequence of (LocatedEvent, float, float or array)
-        With the coordinates of each.
-    """
+    """Mark events at their coordinates, each kind in its own way, named once in the legend."""
     named = set(axes.get_legend_handles_labels()[1])
     for event, x, y in places:
         known = event.kind in MARKS and event.kind is not Kind.HOPF

@@ -34,13 +34,7 @@ class Guard(Protocol):
 
 
 def objection(guard: Guard, arc: Arc) -> str:
-    """What a guard has against an arc; "" for nothing.
-
-    Raises
-    ------
-    TypeError
-        If it answers with anything else.
-    """
+    """What a guard has against an arc; "" for nothing; `TypeError` if it answers with anything else."""
     answer: Any = guard(arc)
     if answer is None or isinstance(answer, str):
         return answer or ""

@@ -31,12 +31,7 @@ def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = 
 
 
 def path_page(path: Path) -> str:
-    """How a path went: its end, its events, its cost.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """How a path went: its end, its events, its cost."""
     rows: list[Sequence[object]] = [("message", path.message)]
     if path.steps:
         first, last = path.steps[0], path.steps[-1]
@@ -54,12 +49,7 @@ def path_page(path: Path) -> str:
 
 
 def archive_page(archive: Any) -> str:
-    """What an archive holds, path by path.
-
-    Parameters
-    ----------
-    archive : Archive
-    """
+    """What an archive holds, path by path."""
     shown = range(min(len(archive), MOST_ROWS))
     rows = [
         (k, archive.status(k).name, int(archive.paths["n_points"][k]), archive.paths["message"][k].decode())

@@ -34,13 +34,7 @@ class Labels:
 
     @classmethod
     def of(cls, homotopy: Any) -> Labels:
-        """What a homotopy says of itself.
-
-        Raises
-        ------
-        TypeError
-            If one of the three attributes is nothing of its kind.
-        """
+        """What a homotopy says of itself; `TypeError` if one of the three attributes is nothing of its kind."""
         name, names, units = (getattr(homotopy, attribute, None) for attribute in ATTRIBUTES)
         if not isinstance(name, str | None):
             raise complain(TypeError, "parameter_name", "a text", name)
@@ -89,13 +83,7 @@ class Labels:
         return f"{name} [{self.units[name]}]" if name in self.units else name
 
     def index(self, name: str) -> int:
-        """The number of an unknown, -1 for the parameter.
-
-        Raises
-        ------
-        ValueError
-            If nothing is called so.
-        """
+        """The number of an unknown, -1 for the parameter; `ValueError` if nothing is called so."""
         if name in ("lam", self.parameter_name):
             return -1
         if name in self.names:

@@ -10,10 +10,5 @@ from typing import Any
 
 
 def late(module: str, name: str) -> Any:
-    """The function `name` of ``continuation.<module>``.
-
-    Parameters
-    ----------
-    module, name : str
-    """
+    """The function `name` of ``continuation.<module>``."""
     return getattr(import_module(f"continuation.{module}"), name)

@@ -48,16 +48,7 @@ class Backwards:
 def part_of(path: Path, chosen: slice) -> Path:
     """Some consecutive steps of a path, or every k-th of them, with the events between the first and the last.
 
-    Parameters
-    ----------
-    path : Path
-    chosen : slice
-        With a positive step.
-
-    Raises
-    ------
-    ValueError
-        If the step is negative: `Path.reversed` turns a path round.
+    Raises `ValueError` if the step is negative: `Path.reversed` turns a path round.
     """
     numbers = range(*chosen.indices(len(path.steps)))
     if numbers.step < 0:
@@ -79,12 +70,7 @@ def _cubic(a: Step, b: Step) -> Segment | None:
 
 
 def turned_round(path: Path) -> Path:
-    """The path from its end to its start.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """The path from its end to its start."""
     old, last = list(path.steps), len(path.steps) - 1
     whole = old[-1].arclength if old else 0.0
     # At a kink the tangent is that of the arc which comes there, and that is the other one now.
@@ -124,17 +110,7 @@ def turned_round(path: Path) -> Path:
 
 
 def joined(first: Path, second: Path) -> Path:
-    """One path, and then another that begins where it ends.
-
-    Parameters
-    ----------
-    first, second : Path
-
-    Raises
-    ------
-    ValueError
-        If they do not meet.
-    """
+    """One path, and then another that begins where it ends; `ValueError` if they do not meet."""
     if not len(first) or not len(second):
         return first if len(first) else second
     a, b = first.steps[-1], second.steps[0]

@@ -69,7 +69,7 @@ class Plugin:
     ----------
     name : str
     points : tuple of EntryPoint
-        One, unless packages quarrel about the name.
+        One; more where several packages register the name.
     kind : str
         What is made: a homotopy, a scene.
     """

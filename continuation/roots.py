@@ -16,16 +16,7 @@ class _NoValueError(Exception):
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: Any) -> float | None:
     """A zero of a function that has different signs at two places; None where it overflows, or is NaN, on the way.
 
-    Parameters
-    ----------
-    function : callable
-    low, high : float
-    **options
-        For `scipy.optimize.brentq`.
-
-    Returns
-    -------
-    float or None
+    The options are those of `scipy.optimize.brentq`.
 
     References
     ----------

@@ -31,16 +31,7 @@ class Stretch:
 
 
 def stretches(s: Array, edges: Array, first: bool) -> list[Stretch]:
-    """Solid and dashed in turn, changing at some arclengths.
-
-    Parameters
-    ----------
-    s : ndarray
-        Of the line.
-    edges : ndarray
-    first : bool
-        Whether it begins solid.
-    """
+    """Solid and dashed in turn, changing at some arclengths of a line; `first` says whether it begins solid."""
     bounds = [float(s[0]), *map(float, edges), float(s[-1])]
     return [Stretch(a, b, first != bool(k % 2)) for k, (a, b) in enumerate(pairwise(bounds))]
 
@@ -49,13 +40,7 @@ def by_stability(path: Path, s: Array) -> list[Stretch] | None:
     """Where the path is stable, by what was stored with its points; None where nothing was.
 
     Between two points that differ it changes at the first of the events between them that can be the reason, else half
-    way.
-
-    Parameters
-    ----------
-    path : Path
-    s : ndarray
-        Arclengths of the line to draw.
+    way. The arclengths s are those of the line to draw.
     """
     if not path.steps or UNSTABLE not in path.steps[0].observed:
         return None
@@ -72,19 +57,7 @@ def by_stability(path: Path, s: Array) -> list[Stretch] | None:
 def draw_line(
     axes: Axes, x: Array, y: Array, label: str, looks: dict[str, Any], s: Array, parts: Sequence[Stretch] | None
 ) -> None:
-    """A line, whole or in parts that are solid and dashed.
-
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    x, y : ndarray
-    label : str
-    looks : dict
-        Of `line_style`.
-    s : ndarray
-        Arclengths of the points.
-    parts : list of Stretch, or None
-    """
+    """A line of points at arclengths s, whole or in parts that are solid and dashed."""
     if parts is None or len(x) == 1:
         axes.plot(x, y, label=label, marker="." if len(x) == 1 else "", **looks)
         return

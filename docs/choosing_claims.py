@@ -51,19 +51,9 @@ def median_excess(results, method, work="factorizations"):
     return median(value for (_, name, _), value in far.items() if name == method and math.isfinite(value))
 
 
-CLAIMS = {}
-
-
-def claim(test):
-    """Register a test by its name."""
-    CLAIMS[test.__name__] = test
-    return test
-
-
 # -- presets -------------------------------------------------------------------------------------------------------
 
 
-@claim
 def series_needs_fewest_factorizations(charts):
     results = charts["engine-presets"]
     return all(total(results, "SERIES") < total(results, m) for m in results.methods if m != "SERIES") and (
@@ -71,28 +61,23 @@ def series_needs_fewest_factorizations(charts):
     )
 
 
-@claim
 def series_is_slow_on_small_problems(charts):
     return ratio(charts["engine-presets"], "SERIES", "DEFAULT", "seconds") > 1.5
 
 
-@claim
 def conservative_costs_several_times_default(charts):
     return ratio(charts["engine-presets"], "CONSERVATIVE", "DEFAULT") > 3.0
 
 
-@claim
 def presets_never_fail(charts):
     results = charts["engine-presets"]
     return all(solved(results, name) == 1.0 for name in ("DEFAULT", "FAST", "CONSERVATIVE", "SERIES"))
 
 
-@claim
 def fast_saves_an_eighth(charts):
     return 0.83 < ratio(charts["engine-presets"], "FAST", "DEFAULT") < 0.92
 
 
-@claim
 def tolerance_is_cheap(charts):
     results = charts["engine-presets"]
     work = [total(results, "DEFAULT", rung=rung) for rung in sorted({row.rung for row in results.rows})]
@@ -102,26 +87,22 @@ def tolerance_is_cheap(charts):
 # -- predictors ----------------------------------------------------------------------------------------------------
 
 
-@claim
 def hermite_is_near_the_best(charts):
     results = charts["engine-predictors"]
     others = [m for m in results.methods if m not in SERIES and solved(results, m) == 1.0]
     return total(results, "Hermite (DEFAULT)") <= 1.1 * min(total(results, m) for m in others)
 
 
-@claim
 def secant_is_worse(charts):
     results = charts["engine-predictors"]
     failed = {row.problem for row in results.of(method="secant") if row.failed}
     return ratio(results, "secant", "Hermite (DEFAULT)") > 1.4 and any("cosine" in name for name in failed)
 
 
-@claim
 def runge_kutta_is_dear(charts):
     return ratio(charts["engine-predictors"], "Runge-Kutta 4", "Hermite (DEFAULT)") > 3.0
 
 
-@claim
 def series_and_pade_pay(charts):
     results = charts["engine-predictors"]
     series, pade = SERIES
@@ -131,7 +112,6 @@ def series_and_pade_pay(charts):
     )  # fmt: skip
 
 
-@claim
 def series_has_the_best_dense_output(charts):
     results = charts["engine-steps"]
     rungs = sorted({row.rung for row in results.rows})
@@ -150,7 +130,6 @@ def series_has_the_best_dense_output(charts):
 DEFAULT_CORRECTOR = "bordered, reuse 0.2 (DEFAULT)"
 
 
-@claim
 def reuse_saves_factorizations(charts):
     results = charts["engine-correctors"]
     return all(
@@ -159,7 +138,6 @@ def reuse_saves_factorizations(charts):
     )
 
 
-@claim
 def broyden_saves_a_tenth(charts):
     results = charts["engine-correctors"]
     return solved(results, "Broyden") == 1.0 and all(
@@ -167,7 +145,6 @@ def broyden_saves_a_tenth(charts):
     )
 
 
-@claim
 def broyden_loses_on_larger_systems(charts):
     results = charts["scaling-curves"]
     largest = max(row.n for row in results.of(family="H-equation (dense)"))
@@ -175,7 +152,6 @@ def broyden_loses_on_larger_systems(charts):
     return total(results, "DEFAULT, Broyden", **where) > 1.3 * total(results, "DEFAULT", **where)
 
 
-@claim
 def linear_correctors_dislike_tight_tolerances(charts):
     results = charts["engine-correctors"]
     rungs = sorted({row.rung for row in results.rows})
@@ -189,7 +165,6 @@ def linear_correctors_dislike_tight_tolerances(charts):
     return all(growth(name) > 1.1 for name in ("Broyden", "chord"))
 
 
-@claim
 def default_controller_is_on_the_front(charts):
     results = charts["engine-controllers"]
     far = chart.excess(results, "end_point", "factorizations")
@@ -197,7 +172,6 @@ def default_controller_is_on_the_front(charts):
     return median(own) == 1.0 and max(own) <= 7.0 / 6.0
 
 
-@claim
 def geometric_is_dear(charts):
     return ratio(charts["engine-controllers"], "geometric (the paper's)", "Allgower-Georg (DEFAULT)") > 1.4
 
@@ -205,7 +179,6 @@ def geometric_is_dear(charts):
 # -- metric, series ------------------------------------------------------------------------------------------------
 
 
-@claim
 def automatic_metric_is_good(charts):
     results = charts["engine-metrics"]
     own = total(results, "automatic (the default)")
@@ -216,14 +189,12 @@ def automatic_metric_is_good(charts):
     )
 
 
-@claim
 def pade_pays(charts):
     results = charts["engine-series"]
     pairs = (("1e-05 (SERIES)", "1e-05"), ("1e-07", "1e-07"))
     return all(total(results, f"Pade, accuracy {a}") < 0.75 * total(results, f"series, accuracy {b}") for a, b in pairs)
 
 
-@claim
 def accuracy_is_the_best(charts):
     results = charts["engine-series"]
     methods = [method for method in results.methods if "Pade" in method]
@@ -242,7 +213,6 @@ def _relative_cost(results, method, problem):
     return {row.rung: row.seconds / least for row in rows}
 
 
-@claim
 def orders_from_13_to_20_are_good(charts):
     results = charts["order"]
     pade = results.methods[-1]
@@ -252,7 +222,6 @@ def orders_from_13_to_20_are_good(charts):
     )
 
 
-@claim
 def chosen_order_is_near_the_best(charts):
     from problems.charts.order import CostModel
 
@@ -263,13 +232,11 @@ def chosen_order_is_near_the_best(charts):
 # -- linear complementarity ----------------------------------------------------------------------------------------
 
 
-@claim
 def kkt_solves_the_ten_examples(charts):
     results = charts["lcp-paper"]
     return solved(results, "KKT") == 1.0 and all(solved(results, name) < 1.0 for name in IN_XY)
 
 
-@claim
 def solve_is_cheaper_than_the_path(charts):
     results = charts["lcp-paper"]
     least = {row.problem: row.work("factorizations") for row in results.of(method="KKT")}
@@ -277,7 +244,6 @@ def solve_is_cheaper_than_the_path(charts):
     return solved(results, "solve, auto") == 1.0 and sum(cheaper) >= 0.8 * len(cheaper)
 
 
-@claim
 def references_fail_on_some(charts):
     results = charts["lcp-paper"]
     names = ("Lemke", "modulus", "min-Newton")
@@ -285,19 +251,16 @@ def references_fail_on_some(charts):
     return all(0.0 < solved(results, name) < 1.0 and median_excess(results, name) < dear for name in names)
 
 
-@claim
 def modulus_makes_many_solves(charts):
     rows = [row for row in charts["lcp-paper"].of(method="modulus") if not row.failed]
     return all(row.counts.factorizations == 1 and row.counts.solves > 20 for row in rows)
 
 
-@claim
 def kkt_solves_n_matrices(charts):
     results = charts["robustness"]
     return solved(results, "KKT", family="N") == 1.0 and solved(results, "Wang", family="N") == 0.0
 
 
-@claim
 def wang_series_saves(charts):
     results = charts["lcp-generated"]
     return (
@@ -306,13 +269,11 @@ def wang_series_saves(charts):
     )
 
 
-@claim
 def kkt_fails_on_scaled_p(charts):
     rows = [row for row in charts["lcp-generated"].of(family="scaled P", method="KKT") if row.n == 100]
     return all(row.failure == chart.Failure.BUDGET for row in rows)
 
 
-@claim
 def zhao_never_arrives(charts):
     return solved(charts["lcp-generated"], "Zhao") == 0.0
 
@@ -320,12 +281,10 @@ def zhao_never_arrives(charts):
 # -- size and robustness -------------------------------------------------------------------------------------------
 
 
-@claim
 def factorizations_do_not_grow(charts):
     return all(abs(p) < 0.25 for p in chart.exponents(charts["scaling-curves"], "factorizations").values())
 
 
-@claim
 def series_gains_with_size(charts):
     rows = charts["scaling-curves"].of(family="H-equation (dense)")
     sizes = sorted({row.n for row in rows})
@@ -333,12 +292,10 @@ def series_gains_with_size(charts):
     return fastest[0] != "SERIES" and fastest[-1] == "SERIES" and sizes[-1] == 1000
 
 
-@claim
 def solve_is_robust_where_theory_says_so(charts):
     results = charts["robustness"]
     return all(solved(results, "solve, auto", family=f) == 1.0 for f in ("semidefinite", "scaled P", "copositive"))
 
 
-@claim
 def pure_paths_fail_on_indefinite(charts):
     return all(solved(charts["robustness"], name, family="indefinite") < 1.0 for name in PATHS)

@@ -3,9 +3,7 @@
 import math
 from statistics import median
 
-from choosing_claims import CLAIMS, claim, ratio, solved
-
-__all__ = ["CLAIMS"]
+from choosing_claims import ratio, solved
 
 
 def _at(results, problem, method, rung=None):
@@ -19,19 +17,16 @@ def _finest(results):
     return max(row.rung for row in results.rows)
 
 
-@claim
 def scenes_are_all_answered(charts):
     return all(solved(charts[name], "ours") == 1.0 for name in ("scenes-meshes", "scenes-exact"))
 
 
-@claim
 def mesh_errors_are_second_order(charts):
     results = charts["scenes-meshes"]
     coarse, fine = (_at(results, "torsion", "ours", rung).errors["answer"] for rung in (0.5, 2.0))
     return 15.0 < coarse / fine < 17.0
 
 
-@claim
 def ours_beats_bfgs_on_fine_meshes(charts):
     results = charts["scenes-meshes"]
     rung = _finest(results)
@@ -41,12 +36,10 @@ def ours_beats_bfgs_on_fine_meshes(charts):
     )
 
 
-@claim
 def brennan_schwartz_is_quicker(charts):
     return ratio(charts["scenes-meshes"], "ours", "Brennan-Schwartz", "seconds") > 2.0
 
 
-@claim
 def arc_lengths_pay_for_one_unknown(charts):
     name = "arc length (Crisfield)"
     one = charts["scenes-exact"]
@@ -55,20 +48,17 @@ def arc_lengths_pay_for_one_unknown(charts):
     )
 
 
-@claim
 def pooling_is_quicker(charts):
     results = charts["scenes-exact"]
     pooled = _at(results, "isotonic", "pool adjacent violators")
     return _at(results, "isotonic", "ours").seconds > 8.0 * pooled.seconds
 
 
-@claim
 def nnls_is_as_exact(charts):
     results = charts["scenes-exact"]
     return all(_at(results, "unmixing", method).errors["answer"] < 1e-12 for method in ("ours", "nnls (scipy)"))
 
 
-@claim
 def bfgs_leaves_errors(charts):
     results = charts["scenes-exact"]
     return all(
@@ -78,7 +68,6 @@ def bfgs_leaves_errors(charts):
     )
 
 
-@claim
 def lemke_is_quick_on_small_scenes(charts):
     results, tables = charts["scenes-exact"], "Lemke (tables, numpy)"
     small = ("block", "box", "braess", "diode-bridge")
@@ -96,7 +85,6 @@ def _where_asked(results, method, test):
     return all(test(row) for row in results.of(method=method))
 
 
-@claim
 def piqp_is_quicker_and_less_exact(charts):
     meshes, exact = charts["scenes-meshes"], charts["scenes-exact"]
     return _where_asked(
@@ -111,7 +99,6 @@ def piqp_is_quicker_and_less_exact(charts):
     )
 
 
-@claim
 def gauss_seidel_slows_down(charts):
     results = charts["scenes-meshes"]
     return _where_asked(

@@ -6,12 +6,13 @@ FOLDER holds what ``make chart`` wrote (build/chart by default). Needs matplotli
 everything, if a statement of the page does not hold.
 """
 
+import inspect
 import re
 import sys
 from pathlib import Path
 
-from choosing_claims import Charts
-from choosing_scenes import CLAIMS
+import choosing_claims
+import choosing_scenes
 
 from continuation import chart
 from continuation.chart.style import CHART_DPI
@@ -41,6 +42,14 @@ TABLES = {
     "scaling-factorizations": chart.Scaling("factorizations"),
     "profile-factorizations": chart.Profile("factorizations"),
 }
+
+CLAIMS = {
+    name: test
+    for module in (choosing_claims, choosing_scenes)
+    for name, test in inspect.getmembers(module, inspect.isfunction)
+    if list(inspect.signature(test).parameters) == ["charts"]
+}
+"""What takes the charts alone is the test of a statement."""
 
 CLAIM = re.compile(r"<!-- claim (\w+) -->")
 TABLE = re.compile(r"<!-- table (\S+) -->\n.*?<!-- end -->", re.DOTALL)
@@ -74,7 +83,7 @@ def false_claims(text, charts):
 
 
 def main(folder):
-    charts = Charts(folder)
+    charts = choosing_claims.Charts(folder)
     IMAGES.mkdir(exist_ok=True)
     draw(charts)
     text = PAGE.read_text(encoding="utf-8")

@@ -49,19 +49,9 @@ def check_budget(value: Any) -> None:
 def real_array(name: str, value: Any) -> Array:
     """A copy of `value` as an array of floats, if it is made of real numbers that a float can hold.
 
-    What nobody can change, a read-only array that owns its floats by rows, is taken as it is.
-
-    Parameters
-    ----------
-    name : str
-        The argument, for the message.
-    value : array_like
-        Integers, floats, booleans, or objects that are real numbers, as fractions are.
-
-    Raises
-    ------
-    ValueError
-        For anything else: complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
+    What nobody can change, a read-only array that owns its floats by rows, is taken as it is. Integers, floats,
+    booleans, and objects that are real numbers, as fractions are, will do. Raises `ValueError` for anything else:
+    complex numbers, dates, text, masked entries, rows of several lengths, numbers beyond 1e308.
     """
     own = type(value) is np.ndarray and value.base is None and value.flags.c_contiguous and not value.flags.writeable
     if own and value.dtype == float:
@@ -95,17 +85,8 @@ def _is_real(entry: Any) -> bool:
 def sound_sparse(name: str, value: Any) -> Any:
     """A sparse matrix as CSR of floats, its structure checked: indices outside of the shape would corrupt memory.
 
-    Parameters
-    ----------
-    name : str
-        The argument, for the message.
-    value : scipy sparse array or matrix
-        In any format; entries that occur more than once add up, as floats.
-
-    Raises
-    ------
-    ValueError
-        If it holds anything but real numbers, or its indices do not belong to its shape.
+    Entries that occur more than once add up, as floats. Raises `ValueError` if it holds anything but real numbers, or
+    its indices do not belong to its shape.
     """
     if value.dtype.kind not in "fiub":
         raise ValueError(f"{name}: expected real numbers, found dtype {value.dtype}")
@@ -132,14 +113,7 @@ def sound_sparse(name: str, value: Any) -> Any:
 
 
 def check_finite(name: str, value: Any) -> None:
-    """A ValueError that says which entry of an array, or sparse matrix, is not finite, if there is one.
-
-    Parameters
-    ----------
-    name : str
-        The argument, for the message.
-    value : ndarray or sparse array
-    """
+    """A ValueError that says which entry of an array, or sparse matrix, is not finite, if there is one."""
     entries = value.data if sp.issparse(value) else value
     if np.isfinite(entries).all():
         return

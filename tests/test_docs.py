@@ -3,7 +3,6 @@
 The pages themselves are made by `make docs`, warnings as errors, which CI runs too.
 """
 
-import importlib.util
 import re
 import runpy
 import shlex
@@ -14,6 +13,8 @@ import pytest
 
 from continuation.cli.commands import register
 from continuation.cli.parser import Parser
+
+from .util import load
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -26,13 +27,6 @@ SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("plot_*.py"))
 NAMES = [str(path.relative_to(ROOT)) for path in PAGES]
 _SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _TREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.MULTILINE | re.DOTALL)
-
-
-def load(file):
-    spec = importlib.util.spec_from_file_location(file.stem, file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 executed = load(DOCS / "executed.py")

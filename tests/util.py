@@ -1,13 +1,66 @@
-"""What tests of paths have in common."""
+"""What tests of several rooms have in common."""
+
+import importlib.util
+import os
+import sys
+from functools import cache
+from pathlib import Path
 
 import pytest
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES
+from continuation.archive import ArchiveError
 
 
 def by_preset(*presets):
     return pytest.mark.parametrize("preset", presets, ids=lambda preset: preset.name)
 
 
+@cache
+def load(file):
+    """A module by its file, which may import from its own folder."""
+    name = "_".join(file.with_suffix("").parts[-2:])
+    spec = importlib.util.spec_from_file_location(name, file)
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    sys.path.insert(0, str(file.parent))
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(file.parent))
+    return module
+
+
+def benchmark(name):
+    """A module of the benchmarks, by its path below them."""
+    return load(Path(__file__).parents[1] / "examples" / "benchmarks" / name)
+
+
 every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE)
 for_interior_paths = by_preset(DEFAULT, CONSERVATIVE, SERIES)
+
+
+def refused(argument, call):
+    """The call is refused with a line about the argument, or the file of that name; warnings are errors here."""
+    with pytest.raises((TypeError, ValueError, LookupError, ArchiveError)) as caught:
+        call()
+    text = str(caught.value.args[0] if isinstance(caught.value, KeyError) else caught.value)
+    assert "\n" not in text
+    assert text.startswith(f"{argument}: "), text
+    assert len(text) < 400
+
+
+def in_child(work):
+    """The exit status of a process that does it: 0, 7 for an ArchiveError of one line, 8 for anything else."""
+    process = os.fork()
+    if process:
+        return os.waitpid(process, 0)[1]
+    status = 0
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        work()
+    except ArchiveError as error:
+        status = 7 if "\n" not in str(error) else 8
+    except BaseException:
+        status = 8
+    finally:
+        os._exit(status)

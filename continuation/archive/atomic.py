@@ -29,14 +29,7 @@ _ABANDONED = 60.0
 def beside(target: File) -> Iterator[File]:
     """A new name beside `target`, to be written and then published; what is left under it in the end is removed.
 
-    Parameters
-    ----------
-    target : pathlib.Path
-
-    Raises
-    ------
-    ArchiveError
-        For whatever the operating system says while it is written.
+    Raises `ArchiveError` for whatever the operating system says while it is written.
     """
     _tidy(target)
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
@@ -53,21 +46,9 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Give a complete file its name, in one step.
+    """Give a complete file its name in the same directory, in one step; `replace` takes the place of an old one.
 
-    Parameters
-    ----------
-    part, target : pathlib.Path
-        In the same directory.
-    replace : bool
-        Take the place of an old file of that name; else there must be none.
-
-    Raises
-    ------
-    ArchiveExistsError
-        If there is one.
-    OSError
-        For anything else.
+    Raises `ArchiveExistsError` if there is one and it is not to be replaced, `OSError` for anything else.
     """
     if replace:
         os.replace(part, target)
@@ -126,13 +107,7 @@ def _tidy(target: File) -> None:
 
 
 def as_file(argument: str, value: Any) -> File:
-    """The path that an argument is.
-
-    Raises
-    ------
-    TypeError
-        If it is no name of a file.
-    """
+    """The path that an argument is; `TypeError` if it is no name of a file."""
     if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
         raise complain(TypeError, argument, "the name of a file", value)
     return File(value)
@@ -141,14 +116,7 @@ def as_file(argument: str, value: Any) -> File:
 def check_new(file: File) -> None:
     """Whether a file can be made there, asked before any work is done.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-
-    Raises
-    ------
-    ArchiveError
-        If it exists, or its directory does not, or may not be written.
+    Raises `ArchiveError` if it exists, or its directory does not, or may not be written.
     """
     try:
         if "\0" in str(file):

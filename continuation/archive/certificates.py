@@ -75,18 +75,7 @@ def _write(group: Any, proof: Proof) -> None:
 
 
 def read_cells(archive: Archive, path: int) -> Cells | None:
-    """The cells of a stored proof; None where the path has none.
-
-    Parameters
-    ----------
-    archive : Archive
-    path : int
-
-    Raises
-    ------
-    ArchiveError
-        If they are not what was written.
-    """
+    """The cells of a stored proof; None where the path has none; `ArchiveError` if they are not what was written."""
     try:
         return _read(archive.contents.root, path, archive.layout.unknowns + 1)
     except FAULTS as error:

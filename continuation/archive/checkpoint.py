@@ -32,19 +32,8 @@ _INLINE_BYTES = 1 << 16
 class Checkpoint:
     """A point from which a path continues exactly.
 
-    Attributes
-    ----------
-    sequence : int
-        Grows with each checkpoint written.
-    path, rows : int
-        The path's number, and how many of its rows come before the state.
-    state : State
-    counts : mapping
-        The counters at that point.
-    seconds : float
-        Wall-clock time spent so far.
-    run : mapping
-        Options, homotopy and index in a sweep, described.
+    `sequence` grows with each checkpoint written; `rows` of the path come before the state; `counts` and `seconds` are
+    what it has cost so far; `run` describes options, homotopy and index in a sweep.
     """
 
     sequence: int
@@ -90,10 +79,7 @@ class _Arrays:
 def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> np.ndarray[Any, Any]:
     """The first bytes as an array of numbers, not copied: never larger than they are.
 
-    Raises
-    ------
-    ValueError
-        If it is to hold something else than numbers, or more than the bytes do.
+    Raises `ValueError` if it is to hold something else than numbers, or more than the bytes do.
     """
     kind = np.dtype(dtype)
     count = math.prod(shape)
@@ -105,13 +91,7 @@ def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F
 def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Options and homotopy of a tracer as JSON; what cannot be stored is said in its place, under "unstorable".
 
-    Parameters
-    ----------
-    tracer : Tracer
-    member : int or None
-        Index of the homotopy in its sweep.
-    homotopy : mapping, optional
-        The homotopy's description, where its arrays are in the file's own problem group.
+    `member` is the index in a sweep; `homotopy` describes one whose arrays are in the file's own problem group.
     """
     options = {name: _described(value) for name, value in _options(tracer).items()}
     return {"options": options, "homotopy": homotopy or _described(tracer.homotopy), "member": member}

@@ -67,13 +67,7 @@ def blank() -> Array:
 
 
 def latest(records: Array) -> Committed:
-    """The last commit that was completed.
-
-    Raises
-    ------
-    DamageError
-        If the records do not tell.
-    """
+    """The last commit that was completed; `DamageError` if the records do not tell."""
     found = [_unpack(record.tobytes()) for record in records]
     commits = [commit for commit in found[PLACES:] if commit is not None]
     if not commits:
@@ -111,20 +105,9 @@ def width(columns: Sequence[str]) -> int:
 
 
 class Ledger:
-    """The checksums of one table, as read from a file.
+    """The checksums of one table of `size` rows, as read from a file: what `seal` returned, one row a block.
 
-    Parameters
-    ----------
-    rows : ndarray of u4
-        What `seal` returned, one row a block.
-    columns : sequence of str
-    size : int
-        Rows of the table.
-
-    Raises
-    ------
-    DamageError
-        If the blocks are not those of so many rows.
+    Raises `DamageError` if the blocks are not those of so many rows.
     """
 
     def __init__(self, rows: Array, columns: Sequence[str], size: int) -> None:
@@ -154,10 +137,7 @@ class Ledger:
     def read(self, name: str, rows: slice, fetch: Callable[[slice], Array]) -> Array:
         """Rows of a column, checked; `fetch` reads them.
 
-        Raises
-        ------
-        DamageError
-            If some of their blocks are not what was written.
+        Raises `DamageError` if some of their blocks are not what was written.
         """
         whole = self.covering(rows)
         values = fetch(whole)

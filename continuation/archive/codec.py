@@ -52,10 +52,7 @@ class UnknownError(LookupError):
 def path_of(thing: Any) -> str:
     """``module:name`` of a class or function that can be imported under that name.
 
-    Raises
-    ------
-    UnstorableError
-        For one that is local to a function, made by lambda, or defined in a script.
+    Raises `UnstorableError` for one that is local to a function, made by lambda, or defined in a script.
     """
     module, name = getattr(thing, "__module__", None), getattr(thing, "__qualname__", None)
     if not isinstance(module, str) or not isinstance(name, str):
@@ -73,11 +70,8 @@ def path_of(thing: Any) -> str:
 def encode(value: Any, place: Place, name: str = "value") -> Any:
     """JSON for a value; see the module's first line.
 
-    Raises
-    ------
-    UnstorableError
-        If some part of it is neither number, text, container, array, attrs class, importable function nor
-        `SupportsArchive`.
+    Raises `UnstorableError` if some part of it is neither number, text, container, array, attrs class, importable
+    function nor `SupportsArchive`.
     """
     if value is None or isinstance(value, str):
         return value

@@ -188,15 +188,7 @@ class Contents:
     # -- tables -----------------------------------------------------------------------------------------------
 
     def read(self, table: str, name: str, rows: slice) -> Array:
-        """Committed rows of a column, checked.
-
-        Parameters
-        ----------
-        table : str
-            ``"point"`` or ``"path"``.
-        name : str
-        rows : slice
-        """
+        """Committed rows of a column of the table ``"point"`` or ``"path"``, checked."""
 
         def fetch(rows: slice) -> Array:
             return self._fetch(table, name, rows)
@@ -295,8 +287,9 @@ def _layout(file: Any, limit: int) -> Layout:
     def named(prefix: str) -> tuple[str, ...]:
         return tuple(sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix)))
 
-    y, state = dataset(file, "y", np.dtype("f8"), (None, None)), dataset(
-        file, "controller_state", np.dtype("f8"), (None, None)
+    y, state = (
+        dataset(file, "y", np.dtype("f8"), (None, None)),
+        dataset(file, "controller_state", np.dtype("f8"), (None, None)),
     )
     if 8 * (y.shape[1] + state.shape[1]) > limit:
         raise StructureError(f"it claims {y.shape[1]} unknowns, and is too small for one point of them")

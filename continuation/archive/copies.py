@@ -25,17 +25,9 @@ _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
 
 @frozen(eq=False)
 class Share:
-    """What is copied of one archive.
+    """What is copied of one archive: the rows of its paths from number `first` on, by column, and of their points.
 
-    Attributes
-    ----------
-    source : Contents
-    paths : mapping of str to ndarray
-        The rows of the paths, column by column.
-    points : slice
-        The rows of their points; of the last path perhaps the first ones only.
-    first : int
-        The number of the first path in the source.
+    Of the last path it may be the first points only.
     """
 
     source: Contents
@@ -45,12 +37,7 @@ class Share:
 
 
 def check_level(compression: Any) -> None:
-    """Raise unless gzip knows the level.
-
-    Parameters
-    ----------
-    compression : int
-    """
+    """Raise unless gzip knows the level."""
     if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
         raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
 
@@ -107,10 +94,7 @@ def write_copy(
 ) -> Store:
     """Concatenate shares into a new file, which is still open.
 
-    Raises
-    ------
-    ArchiveError
-        If the archives differ in the number of unknowns, or the file cannot be written.
+    Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
     """
     sources = [share.source for share in shares]
     problem = leading(sources).problem()

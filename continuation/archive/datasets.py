@@ -31,10 +31,7 @@ class StructureError(ValueError):
 def member(group: Any, name: str) -> Any:
     """A group or dataset in a group, by a hard link.
 
-    Raises
-    ------
-    StructureError
-        If there is none of that name, or it is a link to somewhere else.
+    Raises `StructureError` if there is none of that name, or it is a link to somewhere else.
     """
     raw = name.encode()
     if raw not in group.id:
@@ -52,13 +49,7 @@ def names(group: Any) -> list[str]:
 
 
 def subgroup(group: Any, name: str) -> Any:
-    """A group in a group.
-
-    Raises
-    ------
-    StructureError
-        If it is anything else.
-    """
+    """A group in a group; `StructureError` if it is anything else."""
     found = member(group, name)
     if not isinstance(found, h5py.Group):
         raise StructureError(f"{name} is no group")
@@ -70,21 +61,9 @@ def dataset(
 ) -> Any:
     """A dataset in a group, its storage checked.
 
-    Parameters
-    ----------
-    group : h5py.Group
-    name : str
-    kind : dtype, optional
-        What it holds; any numbers without it.
-    shape : sequence of int or None, optional
-        Its shape; None for a length that is checked when rows are read.
-    limit : int
-        Bytes that it may unfold to where it is compressed.
-
-    Raises
-    ------
-    StructureError
-        If it is something else, or could be larger than what is stored of it.
+    Without a `kind` it holds any numbers; a length of None is checked when rows are read; `limit` counts the bytes that
+    it may unfold to where it is compressed. Raises `StructureError` if it is something else, or could be larger than
+    what is stored of it.
     """
     found = member(group, name)
     if not isinstance(found, h5py.Dataset):
@@ -115,10 +94,7 @@ def dataset(
 def check_size(found: Any, claimed: int, limit: int = LIMIT) -> None:
     """Whether so many bytes may be read of a dataset.
 
-    Raises
-    ------
-    StructureError
-        If less is stored, or more than the limit would unfold from what is.
+    Raises `StructureError` if less is stored, or more than the limit would unfold from what is.
     """
     stored = found.id.get_storage_size()
     if claimed <= stored:

@@ -29,18 +29,9 @@ FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError
 
 
 def open_for_reading(file: str | PathLike[str], *, truncated: bool = False) -> tuple[Any, Image]:
-    """The open HDF5 file, and the bytes under it.
+    """The open HDF5 file, and the bytes under it; where the end is missing, with zeros there if `truncated`.
 
-    Parameters
-    ----------
-    file : path
-    truncated : bool
-        Whether a file whose end is missing is read all the same, with zeros there.
-
-    Raises
-    ------
-    ArchiveError
-        For a file that is missing, unreadable, not HDF5, truncated, foreign, or of a newer schema.
+    Raises `ArchiveError` for a file that is missing, unreadable, not HDF5, truncated, foreign, or of a newer schema.
     """
     name = File(file)
     image = Image(name)
@@ -112,17 +103,7 @@ def _check_schema(name: File, opened: Any) -> None:
 
 
 def check_writable(file: File) -> None:
-    """Whether a file may be replaced.
-
-    Parameters
-    ----------
-    file : pathlib.Path
-
-    Raises
-    ------
-    ArchiveError
-        If it is read-only, or its directory is.
-    """
+    """Whether a file may be replaced; `ArchiveError` if it is read-only, or its directory is."""
     # The mode too, since root may write everything: who took the right away meant it.
     if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
         raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")

@@ -26,12 +26,7 @@ from continuation.path import Path
 class Growing:
     """An archive of finished paths: a kill loses none that was added. As a context manager it is closed at the end.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-    title : str
-    pieces : bool
-        Whether kinks are kept with their switches and rays.
+    With `pieces` kinks are kept with their switches and rays.
     """
 
     file: File

@@ -27,20 +27,8 @@ _HEAP = b"GCOL"
 class Image:
     """A file opened for reading, as it would be if its writer had closed it.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-
-    Attributes
-    ----------
-    closed_by_writer : bool
-    missing : int
-        Bytes that the file should have at its end and has not; they read as zeros.
-
-    Raises
-    ------
-    ArchiveError
-        If it is no regular file, may not be read, or is not HDF5 as far as its first bytes tell.
+    `missing` bytes, which the file should have at its end and has not, read as zeros. Raises `ArchiveError` if it is no
+    regular file, may not be read, or is not HDF5 as far as its first bytes tell.
     """
 
     def __init__(self, file: File) -> None:
@@ -118,13 +106,7 @@ class Image:
 
 
 class Sink:
-    """A new file that HDF5 writes to through Python: a write that fails is kept in memory, and told by `check`.
-
-    Parameters
-    ----------
-    file : pathlib.Path
-        Must not exist.
-    """
+    """A new file that HDF5 writes to through Python: a write that fails is kept in memory, and told by `check`."""
 
     def __init__(self, file: File) -> None:
         self.file, self._at, self._length = file, 0, 0
@@ -153,7 +135,7 @@ class Sink:
         return bytes(buffer)
 
     def readinto(self, buffer: bytearray) -> int:
-        """Fill the buffer; what could not be written is read all the same, so that HDF5 can close in peace."""
+        """Fill the buffer; what could not be written is read all the same, so that HDF5 can close the file."""
         view = memoryview(buffer).cast("B")
         got = os.pread(self.descriptor, len(view), self._at)
         view[: len(got)] = got
@@ -200,7 +182,7 @@ class Sink:
 
 
 def to_nowhere(descriptor: int) -> None:
-    """Let the descriptor of a file stand for another one, which nobody sees."""
+    """Let the descriptor of a file stand for another file, which is thrown away."""
     # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
     limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
     if limited or not hasattr(os, "memfd_create"):
@@ -244,12 +226,9 @@ def _check(file: File, head: bytes) -> None:
 
 
 def _check_heap(heap: memoryview) -> None:
-    """Whether the objects of a global heap, which has no checksum, fill it: HDF5 goes round for ever in one of zeros.
+    """Whether the objects of a global heap, which has no checksum, fill it: in one of zeros HDF5 loops without end.
 
-    Raises
-    ------
-    OSError
-        If they do not.
+    Raises `OSError` if they do not.
     """
     (size,) = struct.unpack_from("<Q", heap, 8)
     at = 16

@@ -12,14 +12,7 @@ from continuation.archive.store import Store
 def create(target: File, *arguments: Any, **options: Any) -> Store:
     """A new file, live from the moment on at which it has its name; arguments as for `Store`.
 
-    Parameters
-    ----------
-    target : pathlib.Path
-
-    Raises
-    ------
-    ArchiveError
-        If the file exists or cannot be made.
+    Raises `ArchiveError` if the file exists or cannot be made.
     """
     check_new(target)
     with beside(target) as part:
@@ -27,15 +20,7 @@ def create(target: File, *arguments: Any, **options: Any) -> Store:
 
 
 def publish_live(store: Store, target: File, *, replace: bool = False) -> Store:
-    """Let a file written beside go live, and give it its name.
-
-    Parameters
-    ----------
-    store : Store
-    target : pathlib.Path
-    replace : bool
-        As for `publish`.
-    """
+    """Let a file written beside go live, and give it its name, as `publish` does."""
     part = store.file
     try:
         store.go_live()

@@ -18,21 +18,10 @@ _TAKEN = (errno.EAGAIN, errno.EACCES)
 
 
 class Lock:
-    """A lock on a file, held until `close`, or until the process is gone.
+    """A lock on a file, held until `close`, or until the process is gone; `taken` is False where somebody else has it.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-
-    Attributes
-    ----------
-    taken : bool
-        False where somebody else has it. Where the file system knows no locks it counts as taken.
-
-    Raises
-    ------
-    ArchiveError
-        If the file cannot be opened for writing.
+    Where the file system knows no locks it counts as taken. Raises `ArchiveError` if the file cannot be opened for
+    writing.
     """
 
     def __init__(self, file: File) -> None:
@@ -90,19 +79,8 @@ def is_held(file: File) -> bool:
 def locked(file: File, descriptor: int, writer: str, *, force: bool = False) -> Lock:
     """The lock on a file that is to be replaced; by force also where another has it.
 
-    Parameters
-    ----------
-    file : pathlib.Path
-    descriptor : int
-        Of the file as it was read.
-    writer : str
-        Who wrote it last, for the message.
-    force : bool
-
-    Raises
-    ------
-    ArchiveError
-        If its writer is at work, or the file was replaced this very moment.
+    `descriptor` is of the file as it was read, `writer` who wrote it last. Raises `ArchiveError` if its writer is at
+    work, or the file was replaced this very moment.
     """
     lock = Lock(file)
     if not force and not lock.taken:

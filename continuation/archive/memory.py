@@ -20,14 +20,7 @@ from continuation.path import LocatedEvent, Path
 
 
 def rows_of(path: Path, pieces: bool = False) -> list[Row]:
-    """Steps and located events in the order of the path.
-
-    Parameters
-    ----------
-    path : Path
-    pieces : bool
-        With the switches and the rays of its kinks.
-    """
+    """Steps and located events in the order of the path; with the switches and the rays of its kinks if `pieces`."""
     waiting: list[LocatedEvent] = list(path.events)
     rows = []
     for step in path.steps:
@@ -43,15 +36,7 @@ def rows_of(path: Path, pieces: bool = False) -> list[Row]:
 
 
 def layout_of(path: Path, title: str, pieces: bool = False) -> tuple[Layout, dict[str, Any]]:
-    """What a file has columns for that begins with a path, and its attributes.
-
-    Parameters
-    ----------
-    path : Path
-    title : str
-    pieces : bool
-        Whether kinks are kept with their switches and rays.
-    """
+    """What a file has columns for that begins with a path, and its attributes; with those of kinks if `pieces`."""
     observed = tuple(path.steps[0].observed) if path.steps else ()
     tangents = bool(path.steps) and bool(np.isfinite(path.steps[0].tangent).all())
     unknowns = path.steps[0].y.size if path.steps else 1
@@ -70,12 +55,7 @@ def _tables(path: Path) -> tuple[Layout, dict[str, Any], dict[str, Any], list[st
 
 
 def dataset_of(path: Path) -> Any:
-    """The path as an `xarray.Dataset`.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """The path as an `xarray.Dataset`."""
     layout, points, paths, names, attributes = _tables(path)
     return frames.dataset(
         Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]),
@@ -87,12 +67,7 @@ def dataset_of(path: Path) -> Any:
 
 
 def dataframe_of(path: Path) -> Any:
-    """The path as a `pandas.DataFrame`, with the homotopy's names where it has any, and the events' names.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """The path as a `pandas.DataFrame`, with the homotopy's names where it has any, and the events' names."""
     layout, points, _, names, _ = _tables(path)
     frame = frames.dataframe(Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]))
     frame["event"] = [names[k] if k >= 0 else "" for k in points.get("event_index", ())]
@@ -148,15 +123,7 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
 
 
 def append(store: Store, path: Path, source: str) -> None:
-    """Write a path behind those that a file holds, in one commit.
-
-    Parameters
-    ----------
-    store : Store
-    path : Path
-    source : str
-        Where it was written first.
-    """
+    """Write a path behind those that a file holds, in one commit; `source` is where it was written first."""
     held, rows = store.committed, rows_of(path, store.layout.pieces)
     row = {**record.of_path(path, None, ()), "path": held.paths, "member": held.paths, "n_points": len(rows)}
     points = to_columns(rows, held.paths, store.layout, store.name_event) if rows else None

@@ -87,14 +87,8 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
 def gather(files: Sequence[File], target: File, *, finished: bool = False) -> None:
     """Merge the parts of a sweep, in the order of its members: of each the path that was finished, or what there is.
 
-    Parameters
-    ----------
-    files : sequence of pathlib.Path
-        What workers wrote, also those that were killed; later attempts at a member may be in other files.
-    target : pathlib.Path
-        Not made if there is nothing to go into it.
-    finished : bool
-        Leave out the paths that have no end.
+    The files are those of all workers, also of killed ones; later attempts at a member may be in other files. Paths
+    without an end are left out if `finished`. Where there is nothing, no target is made.
     """
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]

@@ -50,21 +50,7 @@ def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> Non
 
 
 def read_problem(group: Any, checked: bool, limit: int) -> tuple[str, dict[str, Any]]:
-    """The same two things, from a file; no description where it has none.
-
-    Parameters
-    ----------
-    group : h5py.Group or None
-    checked : bool
-        Whether there are checksums.
-    limit : int
-        Bytes that a compressed array may unfold to.
-
-    Raises
-    ------
-    ValueError
-        If they are not what was written.
-    """
+    """The same two things, from a file; no description where it has none; `ValueError` where they were changed."""
     if group is None:
         return json.dumps({"unstorable": "the file holds no problem"}), {}
     description = str(group.attrs["description"])

@@ -121,13 +121,7 @@ def scalars(homotopy: Any) -> dict[str, float]:
 
 
 def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """The parameters that an archive holds as numbers, texts, lists and small arrays; what is larger is left out.
-
-    Parameters
-    ----------
-    attributes : mapping
-        Of the archive.
-    """
+    """The parameters that an archive holds as numbers, texts, lists and small arrays; what is larger is left out."""
     try:
         tree = json.loads(str(attributes.get("parameters", "{}")))
     except ValueError:
@@ -158,12 +152,7 @@ def readable(value: Any) -> Any:
 def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, Any]) -> dict[str, Any]:
     """The attributes of a new archive; without a tracer (no path ever began) those of the library alone.
 
-    Parameters
-    ----------
-    tracer : Tracer or None
-    title : str
-    made_with : mapping
-        Parameters of the homotopy, where its attributes do not say them.
+    `made_with` holds parameters of the homotopy, where its attributes do not say them.
     """
     attributes: dict[str, Any] = {
         "Conventions": "CF-1.11",

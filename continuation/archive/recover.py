@@ -81,9 +81,7 @@ def _ended(name: File, force: bool) -> File:
             share = everything(archive)
             interrupt(share.paths)
             slots = kept(archive.checkpoint())
-            put(
-                real, lambda part: write_copy([share], part, attributes=attributes, checkpoints=slots), replace=True
-            )
+            put(real, lambda part: write_copy([share], part, attributes=attributes, checkpoints=slots), replace=True)
     return name
 
 
@@ -113,20 +111,9 @@ def kept(checkpoint: Checkpoint | None) -> dict[int, bytes]:
 
 
 def own(contents: Contents, file: File, *, force: bool = False) -> Lock:
-    """The right to replace a file that was read.
+    """The right to replace a file (no link to it) that was read; by force also if its writer seems to be at work.
 
-    Parameters
-    ----------
-    contents : Contents
-    file : pathlib.Path
-        The file itself, no link to it.
-    force : bool
-        Also if its writer seems to be at work.
-
-    Raises
-    ------
-    ArchiveError
-        If it may not be written, is being written, or was replaced since it was opened.
+    Raises `ArchiveError` if it may not be written, is being written, or was replaced since it was opened.
     """
     check_writable(file)
     return locked(file, contents.descriptor, f"process {contents.attributes.get('process', 'unknown')}", force=force)

@@ -182,10 +182,7 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
     """The homotopy, made of what the file says of it; `known` is the `registry`.
 
-    Raises
-    ------
-    ArchiveError
-        If it was not stored, or is not among what is trusted.
+    Raises `ArchiveError` if it was not stored, or is not among what is trusted.
     """
     try:
         tree: Any = checkpoint.run["homotopy"]

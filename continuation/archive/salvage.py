@@ -21,11 +21,7 @@ Spans = Sequence[tuple[int, int]]
 def salvaged(contents: Contents, lost: Mapping[str, Spans]) -> list[Share]:
     """The sound rows, path by path: each from its first point to the one before its first damaged block.
 
-    Parameters
-    ----------
-    contents : Contents
-    lost : mapping of str to sequence of (int, int)
-        The unsound blocks of the tables ``"point"`` and ``"path"``.
+    `lost` has the unsound blocks of the tables ``"point"`` and ``"path"``.
     """
     committed = contents.committed
     sound = _outside(lost["point"], committed.points)

@@ -95,8 +95,13 @@ POINT_COLUMNS = (
     Column("residual_norm", "f8", "1", "largest component of the residual"),
     Column("orientation", "i1", "1", "sign of the determinant of [H'; tangent']; 0 where it is unknown"),
     Column("kind", "i1", "1", "what the point is", more=_flags(tuple(kind.flag for kind in Kind))),
-    Column("role", "i1", "1", "accepted step, or event located between two steps",
-           more=_flags(("accepted_step", "located_event", "kink_part"), (ACCEPTED, LOCATED, KINK_PART))),
+    Column(
+        "role",
+        "i1",
+        "1",
+        "accepted step, or event located between two steps",
+        more=_flags(("accepted_step", "located_event", "kink_part"), (ACCEPTED, LOCATED, KINK_PART)),
+    ),
     Column("event_index", "i2", "1", "number of the event in event_name; -1 where there is none"),
     Column("event_monitor", "f8", "1", "value of the event's monitor at the located point; NaN where there is none"),
     Column("corrector_iterations", "i2", "1", "iterations of the corrector; -1 at located events"),
@@ -119,8 +124,14 @@ KINK_COLUMNS = (
 
 PATH_COLUMNS = (
     Column("path", "i8", "1", "number of the path", ("path",), {"cf_role": "trajectory_id"}),
-    Column("status", "i1", "1", "how the path ended", ("path",),
-           _flags(tuple(s.flag for s in Status), tuple(int(s) for s in Status))),
+    Column(
+        "status",
+        "i1",
+        "1",
+        "how the path ended",
+        ("path",),
+        _flags(tuple(s.flag for s in Status), tuple(int(s) for s in Status)),
+    ),
     Column("message", f"utf8:{TEXT}", "1", "how the path ended, in words", ("path",)),
     Column("member", "i8", "1", "index of the homotopy in its sweep; the number of the path outside of one", ("path",)),
     Column("seed", "i8", "1", "seed of the homotopy's random numbers; -1 where there are none", ("path",)),
@@ -134,8 +145,13 @@ PATH_COLUMNS = (
 
 ORIGIN_COLUMNS = (
     Column("homotopy", "utf8:160", "1", "class of the homotopy", ("path",)),
-    Column("source", "utf8:160", "1", "identifier of the file that the path was written to, its number there, and the "
-           "file's name then", ("path",)),
+    Column(
+        "source",
+        "utf8:160",
+        "1",
+        "identifier of the file that the path was written to, its number there, and the file's name then",
+        ("path",),
+    ),
 )
 """A merged file keeps them for each path; files of before have none."""
 
@@ -195,15 +211,8 @@ class Layout:
 def check_names(prefix: str, names: Iterable[str]) -> None:
     """Whether names can be those of columns ``<prefix><name>`` in a file that every tool reads.
 
-    Parameters
-    ----------
-    prefix : str
-    names : iterable of str
-
-    Raises
-    ------
-    ValueError
-        If one is empty, longer than 100 bytes, not text, or holds a slash, a NUL or another control character.
+    Raises `ValueError` if one is empty, longer than 100 bytes, not text, or holds a slash, a NUL or another control
+    character.
     """
     for name in names:
         if not isinstance(name, str) or not name or not name.isprintable() or "/" in name or name != name.strip():

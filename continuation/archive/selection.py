@@ -66,10 +66,8 @@ class Selection:
 def selected(archive: Archive, status: Any, kind: Any, event: Any, parameter: Any) -> Selection:
     """What `Archive.select` returns, with its arguments.
 
-    Raises
-    ------
-    TypeError, ValueError
-        If one of them is nothing of its kind, or the event does not occur in the file at all.
+    Raises `TypeError` or `ValueError` if one of them is nothing of its kind, or the event does not occur in the file at
+    all.
     """
     paths = np.ones(len(archive), dtype=bool)
     if status is not None:

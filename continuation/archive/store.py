@@ -45,31 +45,11 @@ Block = Mapping[str, np.ndarray[Any, Any]]
 
 
 class Store:
-    """A file being written. It is made by Python's hand (`Sink`), and either finished so, or goes live under SWMR.
+    """A file being written. HDF5 writes it through `Sink`; it is finished so, or goes live under SWMR.
 
-    Parameters
-    ----------
-    part : pathlib.Path
-        Must not exist.
-    layout : Layout
-    attributes : mapping
-        Of the root group.
-    problem : tuple of (str, dict), optional
-        What `problem_data` returned.
-    compression : int
-        Level of gzip; 0 for none.
-    durable : bool
-        Wait for the disk at each commit.
-
-    Attributes
-    ----------
-    file : pathlib.Path
-        Its name, in messages.
-
-    Raises
-    ------
-    ArchiveError
-        If the file cannot be written.
+    The part must not exist. `problem` is what `problem_data` returned, `compression` a level of gzip or 0, and a
+    durable store waits for the disk at each commit; `file` is its name in messages. Raises `ArchiveError` if it cannot
+    be written.
     """
 
     def __init__(
@@ -121,13 +101,7 @@ class Store:
         self._h5.swmr_mode = True
 
     def finish(self, *, sync: bool = True) -> None:
-        """Close the file, on the disk when this returns.
-
-        Raises
-        ------
-        OSError
-            If some of it could not be written.
-        """
+        """Close the file, on the disk when this returns; `OSError` if some of it could not be written."""
         sink = self._sink
         assert sink is not None
         try:

@@ -46,14 +46,7 @@ class Opener(Protocol):
 def kept_every(keep: str) -> int:
     """How many steps apart those lie that stay in memory: 1 for ``"all"``, 0 for ``"ends"``, k for ``"every k"``.
 
-    Parameters
-    ----------
-    keep : str
-
-    Raises
-    ------
-    ValueError
-        For anything else.
+    Raises `ValueError` for anything else.
     """
     if keep in ("all", "ends"):
         return int(keep == "all")
@@ -67,16 +60,8 @@ class StoredSteps(Sequence[Step]):
     """The steps of a path as a sequence: some in memory, the others read from the file.
 
     While the path is traced, `append` adds to it, and what is not yet committed is in memory. A step that is read has
-    the segment to the step before only if the archive holds tangents.
-
-    Parameters
-    ----------
-    opener : callable
-    file : pathlib.Path
-    path : int
-        Its number in the file.
-    every : int
-        As `kept_every` has it; 0 keeps the first and the last.
+    the segment to the step before only if the archive holds tangents. `every` is as `kept_every` has it; 0 keeps the
+    first and the last.
     """
 
     def __init__(self, opener: Opener, file: File, path: int, every: int) -> None:

@@ -65,13 +65,7 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
 
 
 def is_registered(path: str) -> bool:
-    """Whether an installed package registers the class of a homotopy, so that it needs no trust of the caller's.
-
-    Parameters
-    ----------
-    path : str
-        ``module:class``.
-    """
+    """Whether an installed package registers ``module:class``, so that it needs no trust of the caller's."""
     return _registered(path) is not None
 
 
@@ -93,9 +87,7 @@ def _registered(path: str) -> type | None:
     return None
 
 
-def decode(
-    tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | None = None, hint: Any = Any
-) -> Any:
+def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | None = None, hint: Any = Any) -> Any:
     """The value that `continuation.archive.codec.encode` described.
 
     Parameters
@@ -246,8 +238,10 @@ def _is(value: Any, hint: Any) -> bool:
         return isinstance(value, int) and not isinstance(value, bool)
     if isinstance(origin, type):
         protocol = getattr(origin, "_is_protocol", False)
-        return bool(isinstance(value, origin)) if not protocol or getattr(origin, "_is_runtime_protocol", False) else (
-            not isinstance(value, (str, int, float, dict, list, tuple, type(None)))
+        return (
+            bool(isinstance(value, origin))
+            if not protocol or getattr(origin, "_is_runtime_protocol", False)
+            else (not isinstance(value, (str, int, float, dict, list, tuple, type(None))))
         )
     # A type variable, or what only a type checker knows: numbers, containers and trusted objects are all there is.
     return True

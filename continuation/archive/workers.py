@@ -25,19 +25,9 @@ _LOOK = 0.2
 
 @frozen(eq=False)
 class Batch:
-    """Homotopies for one worker.
+    """Homotopies for one worker, the number of the first in the sweep, and the file for their paths.
 
-    Attributes
-    ----------
-    homotopies : sequence
-    first : int
-        The number of the first in the sweep.
-    file : pathlib.Path or None
-        For their paths.
-    stop : pathlib.Path or None
-        A file whose existence ends the worker, wherever it is.
-    options : dict
-        Of the tracer.
+    A file `stop` ends the worker, wherever it is, by its existence.
     """
 
     homotopies: Sequence[Any]

@@ -22,10 +22,7 @@ Maker = Callable[[Size, bool], Sequence[Study]]
 def catalogue() -> dict[str, EntryPoint]:
     """The ready studies by name, in alphabetical order; none is imported yet.
 
-    Raises
-    ------
-    ValueError
-        If two distributions provide a study of the same name.
+    Raises `ValueError` if two distributions provide a study of the same name.
     """
     found = grouped(entry_points(group=GROUP))
     for name, points in found.items():

@@ -85,14 +85,7 @@ class Precision:
 
 
 def piled(rows: Sequence[Row], error: str, work: str) -> bool:
-    """Whether nearly all errors of a panel are round-off.
-
-    Parameters
-    ----------
-    rows : sequence of Row
-    error, work : str
-        Names in `Row.errors` and `WORK`.
-    """
+    """Whether nearly all errors of a panel are round-off."""
     found = [point[0] for row in rows if (point := coordinates(row, error, work)) is not None]
     return bool(found) and sum(e <= FLOOR for e in found) >= PILED * len(found)
 
@@ -147,14 +140,8 @@ def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, wo
 class _Band:
     """The left part of a panel, where errors are round-off: there a point's x is the column of its method.
 
-    Attributes
-    ----------
-    smallest, largest : float
-        Error in the panel.
-    count : int
-        Methods.
-    fraction : float
-        Of the points that are in the band; where there are none, there is no band.
+    Smallest and largest are errors in the panel, `count` its methods, `fraction` what part of the points is in the
+    band; where that is 0 there is no band.
     """
 
     smallest: float

@@ -14,18 +14,7 @@ from continuation.chart.table import Table, runs, summary
 def report(study: Study, results: Results, folder: File) -> list[File]:
     """Write ``NAME.h5``, ``NAME.csv``, ``NAME.md`` and one ``NAME-FIGURE.png`` a figure; what is there is replaced.
 
-    Parameters
-    ----------
-    study : Study
-    results : Results
-        Of the study.
-    folder : pathlib.Path
-        Exists.
-
-    Returns
-    -------
-    list of pathlib.Path
-        The files. Without matplotlib there are no figures among them.
+    The folder exists. Returned are the files; without matplotlib there are no figures among them.
     """
     stored = folder / f"{study.name}.h5"
     stored.unlink(missing_ok=True)

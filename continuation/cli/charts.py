@@ -70,25 +70,8 @@ def chart_presets(
 ) -> None:
     """Chart the presets on the path of one homotopy, a ladder of tolerances each, against a reference.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    title : str
-        Its name and options.
-    course : mapping
-        What belongs to the path, as for `continuation.trace`: target, direction, events.
-    method : mapping
-        What every method has, as for `continuation.trace`: the budget.
-    rungs : sequence of float
-        Tolerances.
-    folder : pathlib.Path
-    out : text stream
-        For the tables.
-
-    Raises
-    ------
-    ArithmeticError
-        If the path at the reference's tolerance does not arrive.
+    `course` has the options that belong to the path (target, direction, events), `method` those of every method (the
+    budget). Raises `ArithmeticError` if the path at the reference's tolerance does not arrive.
     """
     from continuation import chart, presets
 

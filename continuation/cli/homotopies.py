@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from continuation import plugins
 from continuation.cli.archives import complaints
 from continuation.cli.making import homotopy_of, refused, unknown
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, paint, parsed, positive
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, above_zero, paint, parsed, positive
 
 if TYPE_CHECKING:
     from continuation.budget import Budget
@@ -53,10 +53,10 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller")
     parser.add_argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none")
     parser.add_argument("--direction", type=int, choices=(-1, 1), help="of the parameter's first movement")
-    parser.add_argument("--tolerance", metavar="EPS", type=_above_zero, default=1e-8, help="default: 1e-8")
+    parser.add_argument("--tolerance", metavar="EPS", type=above_zero, default=1e-8, help="default: 1e-8")
     parser.add_argument("--turning-points", metavar="N", type=positive, help="end at the N-th turning point")
     parser.add_argument("--budget-steps", metavar="N", type=positive, help="accepted steps; default: 10000")
-    parser.add_argument("--budget-seconds", metavar="S", type=_above_zero, help="wall-clock time; default: no limit")
+    parser.add_argument("--budget-seconds", metavar="S", type=above_zero, help="wall-clock time; default: no limit")
     parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
     parser.add_argument("--cite", action="store_true", help="print BibTeX for what the run used as well")
     parser.set_defaults(run=_trace)
@@ -259,8 +259,4 @@ def _number_or_none(text: str) -> float:
 
 
 def _tolerances(text: str) -> tuple[float, ...]:
-    return tuple(_above_zero(part) for part in text.split(","))
-
-
-def _above_zero(text: str) -> float:
-    return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
+    return tuple(above_zero(part) for part in text.split(","))

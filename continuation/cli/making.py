@@ -21,12 +21,7 @@ DOOR = (
 
 
 def importable(name: str) -> None:
-    """Let ``module:object`` be found in the working directory, which a program started by its script does not see.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """Let ``module:object`` be found in the working directory, which a program started by its script does not see."""
     if ":" in name and os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
 
@@ -34,23 +29,9 @@ def importable(name: str) -> None:
 def homotopy_of(
     name: str, texts: Sequence[str], known: Mapping[str, Any] | None = None, group: str = plugins.GROUP
 ) -> tuple[Any, Mapping[str, Any]]:
-    """The homotopy, or the scene, that NAME KEY=VALUE ... stand for, and the options read.
+    """The homotopy, or the scene, that NAME KEY=VALUE ... stand for, and the options read; `known` ones hold otherwise.
 
-    Parameters
-    ----------
-    name : str
-        As `continuation.plugins.find` takes it.
-    texts : sequence of str
-        ``KEY=VALUE``.
-    known : mapping, optional
-        Options that hold where no text says otherwise.
-    group : str
-        Of `continuation.plugins`.
-
-    Raises
-    ------
-    UsageError
-        Naming the homotopy or the option.
+    Raises `UsageError`, naming the homotopy or the option.
     """
     importable(name)
     with unknown(name):
@@ -91,12 +72,7 @@ def _literal(text: str) -> Any:
 
 @contextmanager
 def unknown(name: str) -> Iterator[None]:
-    """Report a name that no homotopy has.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """Report a name that no homotopy has."""
     try:
         yield
     except plugins.PluginError as error:
@@ -105,13 +81,7 @@ def unknown(name: str) -> Iterator[None]:
 
 @contextmanager
 def refused(name: str) -> Iterator[None]:
-    """Report as a usage error what a trace refuses, and what the plug-in raises, with its place in the source.
-
-    Parameters
-    ----------
-    name : str
-        Of the homotopy.
-    """
+    """Report as a usage error what a trace refuses, and what the plug-in raises, with its place in the source."""
     try:
         yield
     except (UsageError, OSError):

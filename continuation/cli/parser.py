@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
 from collections.abc import Callable
@@ -67,15 +68,7 @@ class Subparsers(Protocol):
 
 
 def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
-    """A word in green or red on a terminal; as it is elsewhere, and where NO_COLOR is set (https://no-color.org).
-
-    Parameters
-    ----------
-    text : str
-    good : bool
-    stream : text stream, optional
-        stdout by default.
-    """
+    """A word in green or red on a terminal; as it is elsewhere, and where NO_COLOR is set (https://no-color.org)."""
     stream = sys.stdout if stream is None else stream
     if not stream.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
         return text
@@ -91,6 +84,11 @@ def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], ex
     except ValueError:
         pass
     raise argparse.ArgumentTypeError(f"expected {expected}, found {text!r}")
+
+
+def above_zero(text: str) -> float:
+    """A positive number, for the `type` of an argument."""
+    return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
 
 
 def positive(text: str) -> int:

@@ -154,14 +154,8 @@ def _approximate(system: CountedSystem, r: Array) -> Array:
 def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> bool:
     """Whether the segment lies near the path: two points of different branches, or of an S, are joined by no arc.
 
-    One residual and one solve with the factorisation at hand estimate how far the segment is off at a place.
-
-    Parameters
-    ----------
-    solver : PathSolver
-    arc : Arc
-    distance : float
-        How far the prediction of its end was off, in the metric.
+    One residual and one solve with the factorisation at hand estimate how far the segment is off at a place. The
+    distance is how far the prediction of its end was off, in the metric.
     """
     weights = arc.a.weights
     length = norm(weights, arc.b.u - arc.a.u)

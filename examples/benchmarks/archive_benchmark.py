@@ -1,7 +1,7 @@
 """The archive, measured: cost a step, and of checksums; memory of a long path; kills; many small paths.
 
-    python examples/benchmarks/archive_benchmark.py [cost] [checksums] [memory] [kills] [small] [--points N]
-        [--kills N] [--damage N] [--seed S]
+python examples/benchmarks/archive_benchmark.py [cost] [checksums] [memory] [kills] [small] [--points N]
+    [--kills N] [--damage N] [--seed S]
 """
 
 from __future__ import annotations
@@ -54,8 +54,10 @@ def cost(folder: Path) -> None:
         for durable in (False, True):
             runs = [_cost(folder / f"{unknowns}{durable}{k}.h5", unknowns, steps, durable) for k in range(7)]
             walls, processor = [run[0] for run in runs], min(run[1] for run in runs)
-            print(f"  N = {unknowns:<5} {'durable' if durable else 'default':<8} {min(walls):6.1f} "
-                  f"{statistics.median(walls):6.1f}; {processor:.1f}")
+            print(
+                f"  N = {unknowns:<5} {'durable' if durable else 'default':<8} {min(walls):6.1f} "
+                f"{statistics.median(walls):6.1f}; {processor:.1f}"
+            )
 
 
 def _cost(file: Path, unknowns: int, steps: int, durable: bool) -> tuple[float, float]:
@@ -95,7 +97,7 @@ def _unsealed(block, start: int):
 
 
 class Round:
-    """Two unknowns on the unit circle, which the parameter goes round for ever."""
+    """Two unknowns on the unit circle, which the parameter goes round without end."""
 
     target = None
 
@@ -206,8 +208,10 @@ def small(folder: Path, count: int = 10_000) -> None:
     grouped = time.perf_counter()
     archive.path(count // 2)
     read = time.perf_counter()
-    print(f"  ours: open {1e3 * (opened - begin):.1f} ms, group {1e3 * (grouped - opened):.1f} ms, "
-          f"one path {1e3 * (read - grouped):.1f} ms; {longest.max():.0f} steps at most")
+    print(
+        f"  ours: open {1e3 * (opened - begin):.1f} ms, group {1e3 * (grouped - opened):.1f} ms, "
+        f"one path {1e3 * (read - grouped):.1f} ms; {longest.max():.0f} steps at most"
+    )
     archive.close()
     for engine in ("h5netcdf", "netcdf4"):
         begin = time.perf_counter()
@@ -216,8 +220,9 @@ def small(folder: Path, count: int = 10_000) -> None:
             frame = data[["arclength", "path_index"]].to_dataframe()
             frame.groupby("path_index").arclength.max()
             grouped = time.perf_counter()
-        print(f"  xarray, {engine}: open {1e3 * (opened - begin):.0f} ms, "
-              f"group by path {1e3 * (grouped - opened):.0f} ms")
+        print(
+            f"  xarray, {engine}: open {1e3 * (opened - begin):.0f} ms, group by path {1e3 * (grouped - opened):.0f} ms"
+        )
 
 
 PARTS = {"cost": cost, "checksums": checksums, "memory": memory, "kills": kills, "small": small}

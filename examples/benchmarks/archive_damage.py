@@ -1,6 +1,6 @@
 """Damaged archives by the thousand: each operation gives an error or the right data, soon, and in little memory.
 
-    python examples/benchmarks/archive_benchmark.py --damage 1000
+python examples/benchmarks/archive_benchmark.py --damage 1000
 """
 
 from __future__ import annotations
@@ -179,7 +179,7 @@ def case(judge: Judge, file: Path) -> dict[str, str]:
         os.write(theirs, pickle.dumps(found))
         os._exit(0)
     os.close(theirs)
-    # Seconds of the processor: the machine may be busy with something else. Who sleeps for ever uses none.
+    # Seconds of the processor: the machine may be busy with something else. One that only waits uses none.
     late = "" if select.select([ours], [], [], 20 * SECONDS)[0] else "HANGS"
     if late:
         os.kill(process, signal.SIGKILL)

@@ -100,7 +100,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             methods.append(rivals.scipy_loop())
         # Where no chart of times is drawn, the counts of one run are all there is to know.
         timed = size == "full" or name == "presets"
-        # The accuracy of a series is its own; the tolerance hardly matters to it, and a series is dear.
+        # The accuracy of a series is its own; the tolerance hardly matters to it, and a series is expensive.
         own = rungs[:: 2 if name == "series" else 1]
         found.append(
             Study(

@@ -62,20 +62,9 @@ FAMILIES: Mapping[str, Draw] = {
 
 
 def planted(family: str, n: int, seed: int) -> LCP:
-    """A problem of a family with a strictly complementary solution planted, so that it has one.
+    """A problem of one of `FAMILIES` with a strictly complementary solution planted; the seed decides the rest.
 
-    Parameters
-    ----------
-    family : str
-        One of `FAMILIES`.
-    n : int
-    seed : int
-        Decides everything, with the family and n.
-
-    Raises
-    ------
-    ValueError
-        For another family.
+    Raises `ValueError` for another family.
     """
     if family not in FAMILIES:
         raise ValueError(f"family: expected one of {', '.join(FAMILIES)}, found {family!r}")

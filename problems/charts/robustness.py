@@ -19,7 +19,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     families = ("semidefinite", "N") if size == "smoke" else [name for name in FAMILIES if name != "obstacle"]
     methods = [
         *(path(one.title, one.make) for one in HOMOTOPIES.values()),
-        # The same path, several times as dear in time: for reports.
+        # The same path in several times the time: for reports.
         *((path("KKT, series", HOMOTOPIES["kkt"].make, preset=continuation.SERIES),) if size == "full" else ()),
         solver("KKT, finish", homotopy="kkt"),
         solver("solve, auto", restarts=5),

@@ -38,12 +38,7 @@ _BEGINNINGS = {b"PK": ".npz", b"\x93NUMPY": ".npy", b"\x89HDF": ".h5", b"%%Matri
 
 @contextmanager
 def file_of(name: str) -> Iterator[str]:
-    """The file of that name; for ``-`` one with what comes on stdin, in a format that its first bytes tell.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """The file of that name; for ``-`` one with what comes on stdin, in a format that its first bytes tell."""
     if name != "-":
         yield name
         return

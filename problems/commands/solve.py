@@ -13,7 +13,7 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
 from continuation.cli.archives import complaints
-from continuation.cli.parser import paint, parsed
+from continuation.cli.parser import above_zero, paint, parsed
 from problems.commands import scene
 from problems.commands.arguments import PROBLEM_FORMATS, file_of, named
 from problems.lcp.data.problem import MixedLCP
@@ -55,7 +55,7 @@ def register(subparsers: Subparsers) -> None:
         "--seconds",
         dest="seconds",
         metavar="S",
-        type=_positive,
+        type=above_zero,
         help="wall-clock time; default: work that takes about a minute",
     )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
@@ -101,10 +101,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _tolerance(text: str) -> float:
     return parsed(text, float, lambda value: 0.0 < value < 1.0, "a number between 0 and 1")
-
-
-def _positive(text: str) -> float:
-    return parsed(text, float, lambda value: 0.0 < value < math.inf, "a positive number")
 
 
 def _counted(text: str) -> int:

@@ -28,24 +28,12 @@ _NONNEGATIVE = st.integers(0, 3)
 
 
 def orders_of(n: Order) -> st.SearchStrategy[int]:
-    """Orders, also where one number is given.
-
-    Parameters
-    ----------
-    n : int or strategy of int
-    """
+    """Orders, also where one number is given."""
     return st.just(n) if isinstance(n, int) else n
 
 
 def square(draw: Draw, n: int, entry: st.SearchStrategy[int] = _ENTRY) -> Rows:
-    """Any entries.
-
-    Parameters
-    ----------
-    draw : callable
-    n : int
-    entry : strategy of int
-    """
+    """Any entries."""
     return [[draw(entry) for _ in range(n)] for _ in range(n)]
 
 

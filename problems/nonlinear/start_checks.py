@@ -29,15 +29,7 @@ def start_vector(a: Any) -> Array:
 
 
 def value_at(F: Function, a: Array) -> Array:
-    """F(a), finite and of the shape of `a`.
-
-    Raises
-    ------
-    TypeError
-        If F is not callable, or returns no numpy array.
-    ValueError
-        If F(a) is no finite real vector, or not of the shape of `a`.
-    """
+    """F(a), finite and of the shape of `a`; else `TypeError` or `ValueError`, by name."""
     require_callable("F", F)
     value: Any = quiet(F)(a.copy())
     if not isinstance(value, np.ndarray):

@@ -36,12 +36,7 @@ class Turns:
 def arc_length_method(load: Callable[[Any], float], named: Callable[[Any, Turns], Quantities]) -> Rival:
     """The rival for scenes whose path turns in a fold and then comes to a bound.
 
-    Parameters
-    ----------
-    load : callable
-        A scene to the load at which its answer is asked for.
-    named : callable
-        A scene and the turns to the quantities of its answer.
+    `load` takes a scene to the load at which its answer is asked for, `named` a scene and the turns to its quantities.
     """
     return Rival("arc length (Crisfield)", "", lambda scene: named(scene, follow(scene.problem(), load(scene))))
 
@@ -49,17 +44,8 @@ def arc_length_method(load: Callable[[Any], float], named: Callable[[Any, Turns]
 def follow(problem: NormalMap, load: float) -> Turns:
     """Follow the path on spheres about its last point, with the active set of that point.
 
-    A step that leaves the set is made shorter, to end where it does; from there the next set goes on.
-
-    Parameters
-    ----------
-    problem : NormalMap
-    load : float
-
-    Raises
-    ------
-    ArithmeticError
-        If Newton's method fails, or the path does not turn, come to a bound, and reach the load.
+    A step that leaves the set is made shorter, to end where it does; from there the next set goes on. Raises
+    `ArithmeticError` if Newton's method fails, or the path does not turn, come to a bound, and reach the load.
 
     References
     ----------

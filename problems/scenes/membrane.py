@@ -21,16 +21,7 @@ from problems.scenes.scene import Quantities, Rival, Unknown, positive
 def radial(n: int, width: float) -> tuple[Array, Any]:
     """Radii 0, h, ..., (n - 1) h and -(r u')' on them, by finite volumes, for u = 0 at the width.
 
-    Parameters
-    ----------
-    n : int
-    width : float
-
-    Returns
-    -------
-    r : ndarray, shape (n,)
-    A : scipy sparse array, shape (n, n)
-        Symmetric; times the volumes, which are those of rings over 2 pi.
+    The matrix is sparse and symmetric: rows are times the volumes, which are those of rings over 2 pi.
     """
     h = width / n
     r = np.asarray(h * np.arange(n), dtype=float)

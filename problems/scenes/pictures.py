@@ -11,34 +11,14 @@ from continuation.drawing import COLOURS
 
 
 def arrow(axes: Any, start: tuple[float, float], along: tuple[float, float], k: int, label: str = "") -> None:
-    """An arrow in the units of the axes; none where it has no length.
-
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    start, along : (float, float)
-    k : int
-        Which colour.
-    label : str
-        In the legend.
-    """
+    """An arrow in the units of the axes, in colour k, with a label in the legend; none where it has no length."""
     if np.hypot(*along) > 0.0:
         axes.quiver(*start, *along, angles="xy", scale_units="xy", scale=1.0, width=0.008, color=COLOURS[k], zorder=3)
     axes.plot([], [], color=COLOURS[k], label=label)
 
 
 def rectangle(axes: Any, place: Array, width: float, height: float, **style: Any) -> None:
-    """A body whose middle is at (x, y) and which is turned by an angle.
-
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    place : ndarray, shape (3,)
-        x, y and the angle.
-    width, height : float
-    **style
-        For ``axes.fill``.
-    """
+    """A body whose middle is at (x, y) and which is turned by an angle; the style is for ``axes.fill``."""
     x, y, angle = place
     corners = 0.5 * np.array([[-width, width, width, -width], [-height, -height, height, height]])
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

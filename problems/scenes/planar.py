@@ -59,34 +59,18 @@ def time_step(bodies: Sequence[Body], contacts: Sequence[Contact], friction: flo
 
 
 def free_motion(u: Array) -> Array:
-    """The vector q that belongs to the velocities at the contacts without any impulse.
-
-    Parameters
-    ----------
-    u : ndarray, shape (2 c,)
-        Normal and tangential, in turns.
-    """
+    """The vector q that belongs to the velocities, normal and tangential in turns, without any impulse."""
     return np.concatenate([u[::2], u[1::2], -u[1::2], np.zeros(u.size // 2)])
 
 
 def impulses(x: Array) -> Array:
-    """Normal and tangential impulses, in turns, shape (2 c,), of a solution of a time step.
-
-    Parameters
-    ----------
-    x : ndarray, shape (4 c,)
-    """
+    """Normal and tangential impulses, in turns, shape (2 c,), of a solution of a time step."""
     c = x.size // 4
     return np.stack([x[:c], x[c : 2 * c] - x[2 * c : 3 * c]], axis=1).ravel()
 
 
 def contact_unknowns(contacts: int) -> tuple[Unknown, ...]:
-    """Those of a time step.
-
-    Parameters
-    ----------
-    contacts : int
-    """
+    """Those of a time step."""
     return (
         Unknown("normal impulses", contacts, "what keeps bodies apart"),
         Unknown("tangential impulses", 2 * contacts, "friction, one for each of the two directions of an edge"),

@@ -21,15 +21,7 @@ from problems.scenes.scene import Quantities, Rival, Unknown, numbers
 def critical_line(mean: Array, covariance: Array) -> Path:
     """Markowitz' critical line: min x'Sx/2 - t m'x, x >= 0, e'x = 1, from the best asset alone to least variance.
 
-    Parameters
-    ----------
-    mean : ndarray, shape (n,)
-    covariance : ndarray, shape (n, n)
-
-    Returns
-    -------
-    Path
-        Of weights, and the multiplier of the budget.
+    The path is one of weights, and of the multiplier of the budget.
 
     References
     ----------

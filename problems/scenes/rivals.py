@@ -24,15 +24,7 @@ SWEEPS = 200_000
 
 
 def of_problem(name: str, module: str, method: Callable[[Any], Array]) -> Rival:
-    """A rival that takes the problem of a scene and returns its unknowns, or the first of them.
-
-    Parameters
-    ----------
-    name, module : str
-        As for `Rival`.
-    method : callable
-        The problem to a vector.
-    """
+    """A rival that takes the problem of a scene and returns its unknowns, or the first of them."""
 
     def run(scene: Any) -> Quantities:
         found: Quantities = scene.answer(Point(np.asarray(method(scene.problem()), dtype=float)))
@@ -53,24 +45,14 @@ def _arrived(x: Any, well: bool, message: object) -> Array:
 
 
 def by_quantecon(problem: Any) -> Array:
-    """Lemke's method on tables, compiled.
-
-    Parameters
-    ----------
-    problem : LCP
-    """
+    """Lemke's method on tables, compiled."""
     found = conditions(problem)
     result = import_module("quantecon.optimize").lcp_lemke(_dense(found.A), found.q, max_iter=100 * found.n)
     return _arrived(result.z, result.success, f"status {result.status}")
 
 
 def by_tables(problem: Any) -> Array:
-    """Lemke's method on tables of numpy.
-
-    Parameters
-    ----------
-    problem : LCP
-    """
+    """Lemke's method on tables of numpy."""
     result = lemke(conditions(problem))
     return _arrived(result.x, result.solved, result.message)
 
@@ -111,12 +93,7 @@ def _gauss_seidel(problem: Any) -> Array:
 
 
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
-    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a symmetric problem with bounds.
-
-    Parameters
-    ----------
-    problem : Program or MixedLCP
-    """
+    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a symmetric problem with bounds."""
     found = conditions(problem)
     if not isinstance(problem, Program):
         none = sp.csr_array((0, found.n))

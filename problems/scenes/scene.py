@@ -150,12 +150,7 @@ def solve(scene: Any) -> Any:
 
 
 def conditions(problem: Any) -> Any:
-    """The complementarity problem that is solved: of a program its optimality conditions, else the problem itself.
-
-    Parameters
-    ----------
-    problem : LCP, MixedLCP, Program or homotopy
-    """
+    """The complementarity problem that is solved: of a program its optimality conditions, else the problem itself."""
     return problem.problem if isinstance(problem, Program) else problem
 
 
@@ -196,14 +191,7 @@ def memory(problem: Any) -> int:
 
 
 def numbers(name: str, default: tuple[float, ...]) -> Any:
-    """A field with a tuple of finite numbers, so that a scene is a value that can be compared.
-
-    Parameters
-    ----------
-    name : str
-        Of the field, for the message.
-    default : tuple of float
-    """
+    """A field with a tuple of finite numbers, so that a scene is a value that can be compared."""
 
     def convert(value: Any) -> tuple[float, ...]:
         return tuple(finite_vector(name, value).tolist())
@@ -212,23 +200,12 @@ def numbers(name: str, default: tuple[float, ...]) -> Any:
 
 
 def positive(default: float) -> Any:
-    """A field with a positive number.
-
-    Parameters
-    ----------
-    default : float
-    """
+    """A field with a positive number."""
     return field(default=default, validator=POSITIVE_FINITE)
 
 
 def mismatch(scene: Any, solution: Any) -> float:
-    """How far an answer is from the exact one, relative to each quantity; NaN where none is known.
-
-    Parameters
-    ----------
-    scene : Scene
-    solution : Solution, Path or other
-    """
+    """How far an answer is from the exact one, relative to each quantity; NaN where none is known."""
     return error(scene.answer(solution), scene.exact())
 
 

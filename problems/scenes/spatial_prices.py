@@ -16,15 +16,9 @@ from problems.scenes.scene import Quantities, Rival, Unknown, numbers, positive
 
 
 def trade(supply: tuple[Array, Array], demand: tuple[Array, Array], freight: Array) -> LCP:
-    """The flows from m places of supply to k of demand, by rows, with linear prices and costs of freight.
+    """The flows from m places of supply to k of demand, by rows, with linear prices and costs of freight, shape (m, k).
 
-    Parameters
-    ----------
-    supply : (ndarray, ndarray)
-        Prices at no supply, and by how much they rise with each unit; shape (m,).
-    demand : (ndarray, ndarray)
-        Prices at no demand, and by how much they fall; shape (k,).
-    freight : ndarray, shape (m, k)
+    Supply and demand are the prices at no supply or demand, and by how much they rise or fall with each unit.
     """
     (a, b), (c, e) = supply, demand
     out, to = np.kron(np.eye(a.size), np.ones((1, c.size))), np.kron(np.ones((1, a.size)), np.eye(c.size))
@@ -84,7 +78,7 @@ class SpatialPrices:
         return trade(supply, (np.array(self.bids), np.full(k, self.fall)), self._costs)
 
     def answer(self, solution: Any) -> Quantities:
-        """Flows, and prices at both ends. Flows on equally dear ways may be exchanged; prices and the trade may not."""
+        """Flows, and prices at both ends. Flows on ways of equal cost may be exchanged; prices and the trade not."""
         flows = np.asarray(solution.x).reshape(len(self.offers), len(self.bids))
         return {
             "flows": flows, "offers": np.array(self.offers) + self.rise * flows.sum(axis=1),

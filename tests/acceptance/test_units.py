@@ -1,8 +1,5 @@
 """The same path in any units, wherever zero is: steps, events, ends and what is said of them."""
 
-import sys
-from pathlib import Path as File
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -22,9 +19,9 @@ from continuation import (
 )
 from problems.bifurcation import Bratu1D
 
-sys.path.insert(0, str(File(__file__).parents[2] / "examples" / "benchmarks" / "units"))
-import bends
-import run
+from ..util import benchmark
+
+bends, run = benchmark("units/bends.py"), benchmark("units/run.py")
 
 PRESETS = (FAST, DEFAULT, CONSERVATIVE, SERIES)
 every_preset = pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.name)

@@ -1,13 +1,12 @@
 """The engine and the solver do what they did: see `record.py`, which wrote down status, events, ends and counts."""
 
-import importlib.util
 from pathlib import Path
 
 import pytest
 
-spec = importlib.util.spec_from_file_location("behaviour_record", Path(__file__).with_name("record.py"))
-record = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(record)
+from ..util import load
+
+record = load(Path(__file__).with_name("record.py"))
 
 
 @pytest.mark.parametrize("preset", record.PRESETS, ids=lambda preset: preset.name)

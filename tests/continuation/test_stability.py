@@ -1,8 +1,5 @@
 """Stability along paths: Hopf points in closed form, counts that are stored, kept and drawn, and what a count shows."""
 
-import runpy
-from pathlib import Path as File
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -14,7 +11,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.linear import Symmetric, factor_bordered
 
-from ..util import every_preset
+from ..util import benchmark, every_preset
 
 
 def hopf_points(path):
@@ -204,8 +201,7 @@ def test_a_pair_that_crosses_and_becomes_real_before_a_turning_point_is_seen(pre
 
 
 def test_the_benchmark_runs(capsys):
-    file = File(__file__).parents[2] / "examples" / "benchmarks" / "stability" / "brusselator.py"
-    runpy.run_path(str(file))["main"](20, 1)
+    benchmark("stability/brusselator.py").main(20, 1)
     *compared, first, second, third = capsys.readouterr().out.splitlines()
     assert [line.split(",")[1] for line in compared] == [" 0 Hopf points", " 2 Hopf points", " 2 Hopf points"]
     for line in (first, second, third):
@@ -311,10 +307,3 @@ def test_a_scalar_of_the_homotopy_with_the_same_name_is_refused():
 
     with pytest.raises(ValueError, match="observe: expected each name once, found 'unstable' of an event too"):
         trace(Counting(), observers=[Stability()])
-
-
-@pytest.mark.parametrize("options", [{"side": 0}, {"side": 2}, {"k": 0}, {"terminal": -1}])
-def test_bad_options_are_refused(options):
-    for part in (Stability, HopfPoint):
-        with pytest.raises(ValueError, match=next(iter(options))):
-            part(**options)

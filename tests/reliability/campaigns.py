@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import importlib.util
 import io
 import os
 import resource
@@ -27,38 +26,19 @@ from continuation.controllers import Bounds, Fixed
 from problems import lcp
 from problems.bifurcation import Cusp, ExponentialCosine
 
-BENCHMARKS = Path(__file__).parents[2] / "examples" / "benchmarks"
+from ..util import benchmark, in_child
+
 HOMOTOPY = ExponentialCosine(3)
 OPTIONS: dict[str, Any] = {"controller": Fixed(bounds=Bounds(initial=0.02))}
 
 
 @frozen
 class Found:
-    """What a campaign came to.
-
-    Attributes
-    ----------
-    done, wrong : int
-    text : str
-        The figures, in one line.
-    """
+    """What a campaign came to: how many were done, how many were wrong, and the figures in one line."""
 
     done: int
     wrong: int
     text: str
-
-
-def benchmark(name: str) -> Any:
-    """A module of the benchmarks, by its path below them."""
-    file = BENCHMARKS / name
-    sys.path.insert(0, str(file.parent))
-    spec = importlib.util.spec_from_file_location(file.stem, file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[file.stem] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 def printed(run: Callable[[], Any]) -> tuple[Any, list[str]]:
@@ -110,23 +90,6 @@ def bad_input(folder: Path, size: int) -> Found:
     wrong = sum(seen.values()) - seen["refused"]
     others = "; ".join(what for what in seen if what != "refused")
     return Found(sum(seen.values()), wrong, f"{seen['refused']} refused by name in one line; {others or 'no other'}")
-
-
-def in_child(work: Callable[[], object]) -> int:
-    """The exit status of a process that does it: 0, 7 for an ArchiveError of one line, 8 for anything else."""
-    process = os.fork()
-    if process:
-        return os.waitpid(process, 0)[1]
-    status = 0
-    try:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        work()
-    except ArchiveError as error:
-        status = 7 if "\n" not in str(error) else 8
-    except BaseException:
-        status = 8
-    finally:
-        os._exit(status)
 
 
 def _prefix(file: Path, whole: Any, least: int = 0) -> bool:

@@ -25,11 +25,11 @@ from .kinds import KINDS
 
 
 class Call(NamedTuple):
-    """A call that is right, and the kinds of its arguments."""
+    """A call that is right, and of its arguments the kinds, or what is wrong for one alone."""
 
     function: Callable[..., Any]
     right: Mapping[str, Any]
-    kinds: Mapping[str, str]
+    kinds: Mapping[str, str | tuple[Any, ...]]
 
 
 class World(NamedTuple):
@@ -69,6 +69,8 @@ def parts() -> Iterator[Call]:
     yield Call(c.Budget, {}, dict.fromkeys(("steps", "seconds", "factorizations", "arclength"), "positive"))
     yield Call(c.Tolerance, {}, {"relative": "fraction", "residual": "positive"})
     yield Call(Bounds, {}, {"minimum": "positive, finite", "maximum": "positive", "initial": "positive or None"})
+    yield Call(Bounds, {"initial": 0.1}, {"minimum": (1.0,)})
+    yield Call(Bounds, {"minimum": 0.01}, {"maximum": (0.001,)})
     yield Call(Limits, {}, {"rows": "count", "nbytes": "count", "seconds": "not negative or inf"})
     ending = {"terminal": "from 0", "direction": "sign"}
     yield Call(c.TurningPoint, {}, {"component": "integer", **ending})
@@ -121,6 +123,7 @@ def engine(w: World) -> Iterator[Call]:
     right = {"homotopy": w.homotopy}
     flags = {"progress": "truth", "certified": "truth", "archive": "name of a new file"}
     yield Call(c.trace, right, {**options, **RUN, **flags})
+    yield Call(c.trace, right, {"max_step": (1e-30,)})
     yield Call(traced, right, {**OPTIONS, **COURSE, **RUN})
     both = {name: kind for name, kind in options.items() if name != "direction"}
     yield Call(c.trace_both, right, {**both, "progress": "truth", "archive": "name of a new file"})
@@ -135,12 +138,15 @@ def engine(w: World) -> Iterator[Call]:
     yield Call(c.audit, on_path, {**kinds, "metric": "metric", "tolerance": "tolerance", "backwards": "truth"})
     yield Call(c.certify, on_path, kinds)
     yield Call(c.refine, {**on_path, "s": 0.1}, {**kinds, "s": "finite", "tolerance": "tolerance"})
+    yield Call(c.refine, {**on_path, "s": 0.1}, {"s": (1e9,)})
+    yield Call(c.Path(), {}, {"s": (0.0,)})
     yield Call(
         c.solve_at, {**right, "lam": 0.1}, {"homotopy": "homotopy", "lam": "finite", "guess": "vector of one",
                                             "tolerance": "tolerance"},
     )  # fmt: skip
     branch = {"homotopy": w.pitchfork, "event": w.branch}
     yield Call(c.switch_branch, branch, {"homotopy": "homotopy", "event": "event", "step": "positive, finite"})
+    yield Call(c.switch_branch, branch, {"event": (w.event,)})
     yield Call(c.branch_directions, branch, {"homotopy": "homotopy", "event": "event"})
     yield Call(c.check_jacobian, right, {"homotopy": "homotopy", "u": "point of two"})
     yield Call(c.cite, {"source": w.path}, {"source": "source"})
@@ -157,12 +163,14 @@ def engine(w: World) -> Iterator[Call]:
     yield Call(c.HopfPoint, {}, {**watch, "direction": "sign"})
     yield Call(
         c.diagram, {"homotopy": w.pitchfork, "box": {"lam": (-1.0, 1.0)}},
-        {"homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
+        {"box": ({"lam": (0.0, 2.0)},), "starts": ([3],), "direction": (1,),
+         "homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
          "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values",
          "resume": "truth"},
     )  # fmt: skip
     yield Call(
-        c.Deflated, {**right, "known": [np.zeros(1)]},
+        c.Deflated,
+        {**right, "known": [np.zeros(1)]},
         {"homotopy": "homotopy", "known": "known points", "power": "positive, finite", "shift": "not negative"},
     )
     yield Call(check_homotopy, right, {"steps": "count or None"})
@@ -173,6 +181,7 @@ def solver(w: World) -> Iterator[Call]:
     """The LCP."""
     data = {"A": np.eye(2), "q": -np.ones(2)}
     yield Call(lcp.LCP, data, {"A": "matrix", "q": "vector", "primal": "from 0"})
+    yield Call(lcp.LCP, data, {"q": (np.array(["-1e4000", "1"], np.longdouble),)})
     yield Call(
         lcp.MixedLCP, data,
         {"A": "matrix", "q": "vector", "lower": "lower", "upper": "upper", "primal": "from 0"},
@@ -183,22 +192,29 @@ def solver(w: World) -> Iterator[Call]:
               "restarts": "count or None", "archive": "name of a new file", "progress": "truth",
               "executor": "executor", "x0": "start of an LCP"}  # fmt: skip
     yield Call(lcp.solve, right, {**kinds, **search, **limits, **OPTIONS})
+    by_path = {"problem": w.problem, "homotopy": "kkt"}
+    yield Call(lcp.solve, by_path, {**search, **limits, **OPTIONS, "target": "target", "direction": "sign"})
+    larger = lcp.solve(lcp.LCP(np.eye(3), -np.ones(3)))
+    yield Call(lcp.solve, right, {"guess": (larger,), "colour": ("red",)})
     yield Call(
         lcp.solve_many, {"A": np.eye(2), "q": -np.ones((3, 2))},
         {"A": "matrix", "q": "vectors", "tolerance": "tolerance of a solution", "budget": "budget",
          "executor": "executor"},
     )  # fmt: skip
     yield Call(lcp.Solver, {"A": np.eye(2)}, {"A": "matrix", "tolerance": "tolerance of a solution"})
-    yield Call(lcp.Solver(np.eye(2)).solve, {"q": -np.ones(2)}, {"q": "vector"})
+    yield Call(lcp.Solver(np.eye(2)).solve, {"q": -np.ones(2)}, {"q": "vector", "active": ([True],)})
     yield Call(lcp.solutions, right, {**kinds, "enumerate_faces": "truth", **limits})
     along = {"problem": w.problem, "d": np.ones(2)}
     yield Call(
         lcp.along, along,
         {**kinds, "d": "vector", "t": "interval", "level": "level", "budget": "budget",
-         "archive": "name of a new file"},
+         "archive": "name of a new file", "ray": ([1.0],)},
     )  # fmt: skip
+    yield Call(lcp.along, {**along, "t": (1.0, 0.0)}, {"x": (np.ones(2),), "level": (1.0,)})
     line = {**along, "path": lcp.along(**along)}
     yield Call(lcp.prove_path, line, {**kinds, "d": "vector", "path": "path", "level": "level"})
+    longer = lcp.along(lcp.LCP(np.eye(3), -np.ones(3)), np.ones(3))
+    yield Call(lcp.prove_path, line, {"path": (longer,)})
     for certify in (lcp.certify, lcp.certify_exactly):
         yield Call(certify, {**right, "x": np.ones(2)}, {**kinds, "x": "vector"})
     for function in (
@@ -238,7 +254,7 @@ def others() -> Iterator[Call]:
     yield Call(nonlinear.bratu_under_obstacle, {}, {"n": "count", "psi": "finite", **target})
     yield Call(
         nonlinear.NormalMap, {"F": len, "x0": np.ones(2), "lam0": 0.0},
-        {"F": "function", "x0": "vector of any size", "lam0": "finite", **target},
+        {"F": "function", "x0": "vector of any size", "lam0": "finite", "lower": (np.inf,), **target},
     )  # fmt: skip
     right = {"F": np.cos, "lower": np.zeros(2)}
     yield Call(nonlinear.MixedComplementarity, right, {"F": "function", "jacobian": "function or None"})
@@ -253,7 +269,7 @@ REFUSALS = (TypeError, ValueError, LookupError, ArchiveError)
 
 
 def verdict(call: Call, argument: str, value: Any) -> str:
-    """What comes of a case: "refused", or what is wrong."""
+    """What comes of a case: "refused", by the name of the argument and what was expected, or what is wrong."""
     with warnings.catch_warnings(record=True) as leaked:
         warnings.simplefilter("always")
         try:
@@ -262,6 +278,7 @@ def verdict(call: Call, argument: str, value: Any) -> str:
         except REFUSALS as error:
             text = str(error.args[0] if isinstance(error, KeyError) and error.args else error)
             clear = text.startswith(f"{argument}: ") and "\n" not in text and len(text) < 400
+            clear &= "expected" in text or "not finite" in text
             found = "refused" if clear else f"OBSCURE: {type(error).__name__}: {text[:100]!r}"
         except Exception as error:
             found = f"OBSCURE: {type(error).__name__}: {str(error)[:100]!r}"
@@ -278,7 +295,7 @@ def cases() -> Iterator[tuple[Call, str, Any]]:
     """Each call with each argument replaced by each value of its kind."""
     for call in calls():
         for argument, kind in call.kinds.items():
-            for value in KINDS[kind]:
+            for value in KINDS[kind] if isinstance(kind, str) else kind:
                 yield call, argument, value
 
 

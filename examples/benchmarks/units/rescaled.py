@@ -20,17 +20,7 @@ SHIFTS = -2.0, 6.0
 
 @frozen(eq=False)
 class Rescaled:
-    """The same path in other units.
-
-    Attributes
-    ----------
-    homotopy : Homotopy
-        With a Jacobian.
-    D, c, E : ndarray, shape (N,)
-        y = D y0 + c, and the equations are multiplied by E.
-    a, b : float
-        lam = a lam0 + b.
-    """
+    """The same path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
 
     homotopy: Any
     D: Array
@@ -77,15 +67,7 @@ def plain(homotopy: Any) -> Rescaled:
 
 
 def rescaled(homotopy: Any, extent: Array, generator: np.random.Generator) -> Rescaled:
-    """In random units, with zero at a random place.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    extent : ndarray, shape (N + 1,)
-        Of the path, by which shifts are measured.
-    generator : numpy.random.Generator
-    """
+    """In random units, with zero at a random place; shifts are measured by the path's extent."""
     n = extent.size - 1
     D, E = (10.0 ** generator.uniform(-DECADES, DECADES, n) for _ in range(2))
     a = float(10.0 ** generator.uniform(-DECADES, DECADES))

@@ -17,14 +17,7 @@ Bound = tuple[int | None, int | None]
 
 @frozen
 class FacePoint:
-    """A solution found on one face.
-
-    Parameters
-    ----------
-    x, w : tuple of Fraction, length n
-    only : bool
-        Whether the face holds no other solution.
-    """
+    """A solution found on one face, and whether that holds no other."""
 
     x: Point
     w: Point
@@ -76,15 +69,7 @@ def piece_point(
 ) -> FacePoint | None:
     """The same with bounds, in integers over `unit`: x_i at the lower one where the state is -1, the upper one for 1.
 
-    Parameters
-    ----------
-    entries, q : rows of integers
-        Of w = entries x + q.
-    bounds : sequence of Bound
-        Times `unit`.
-    unit : int
-        Positive.
-    state : sequence of int
+    Entries and q are those of w = entries x + q, and the bounds are times `unit`.
     """
     inside = tuple(i for i, s in enumerate(state) if s == 0)
     ends = [0 if s == 0 else bounds[i][s > 0] for i, s in enumerate(state)]
@@ -179,12 +164,7 @@ def _can_move(piece: Piece, x: Sequence[Fraction], w: Point) -> bool:
 
 
 def bounds_over(values: Sequence[tuple[float, float]]) -> tuple[list[Bound], int]:
-    """Bounds as integers over the least common denominator; an infinite one is None.
-
-    Parameters
-    ----------
-    values : sequence of (lower, upper)
-    """
+    """Bounds (lower, upper) as integers over the least common denominator; an infinite one is None."""
     exact = [tuple(Fraction(v) if math.isfinite(v) else None for v in pair) for pair in values]
     unit = math.lcm(*(v.denominator for pair in exact for v in pair if v is not None))
     whole = [[None if v is None else int(v * unit) for v in pair] for pair in exact]

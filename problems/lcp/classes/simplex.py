@@ -36,14 +36,7 @@ def at_most(row: Sequence[int], right: int = 0) -> Constraint:
 
 
 def feasible_point(constraints: Sequence[Constraint], n: int) -> Point | None:
-    """A point x >= 0 that satisfies every constraint exactly, or None when there is none.
-
-    Parameters
-    ----------
-    constraints : sequence of Constraint
-        Each with a row of n integers.
-    n : int
-        Number of variables, all nonnegative.
+    """A point x >= 0, of n numbers, that satisfies every constraint exactly, or None when there is none.
 
     References
     ----------

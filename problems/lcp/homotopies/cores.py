@@ -51,14 +51,7 @@ class Recent(Generic[System]):
     found: tuple[bytes, float, System] | None = None
 
     def at(self, y: Array, lam: float, make: Callable[[Array, float], System]) -> System:
-        """The system at a point, made of a copy of y.
-
-        Parameters
-        ----------
-        y : ndarray
-        lam : float
-        make : callable
-        """
+        """The system at a point, made of a copy of y."""
         found, entries = self.found, y.tobytes()
         if found is None or found[:2] != (entries, lam):
             self.found = found = entries, lam, make(y.copy(), lam)
@@ -103,13 +96,7 @@ class Pairs:
 
 @_silently
 def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate every p: what is left keeps the symmetry of the core.
-
-    Parameters
-    ----------
-    s, x, c : Array of shape (n,)
-        Of the pairs ``s v + x p - c l = r``.
-    """
+    """Eliminate every p of the pairs ``s v + x p - c l = r``: what is left keeps the symmetry of the core."""
     f = 1.0 / x
     ones, zeros = np.ones_like(x), np.zeros_like(x)
     return Pairs(ones, -s * f, zeros, f, c, parity(np.count_nonzero(x < 0.0)))
@@ -117,12 +104,9 @@ def second_eliminated(s: Array, x: Array, c: Array) -> Pairs:
 
 @_silently
 def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
-    """Eliminate the unknown with the larger coefficient: no cancellation, and either coefficient may be zero.
+    """Eliminate of ``s v + x p - c l = r`` the unknown with the larger coefficient.
 
-    Parameters
-    ----------
-    s, x, c : Array of shape (n,)
-        Of the pairs ``s v + x p - c l = r``.
+    There is no cancellation, and either coefficient may be zero.
     """
     swapped = np.abs(x) < np.abs(s)
     pivot = np.where(swapped, s, x)
@@ -142,29 +126,15 @@ def larger_eliminated(s: Array, x: Array, c: Array) -> Pairs:
 
 
 def parity(count: int | np.intp) -> int:
-    """1 for an even number of changes of sign, else -1.
-
-    Parameters
-    ----------
-    count : int
-    """
+    """1 for an even number of changes of sign, else -1."""
     return -1 if count % 2 else 1
 
 
 @frozen(eq=False, slots=False)
 class Full:
-    """The full bordered system, known by its products.
+    """The full bordered system, known by its products: `apply` takes z to H' z, ``(N + 1,) -> (N,)``.
 
-    Attributes
-    ----------
-    apply : callable
-        z -> H' z, ``(N + 1,) -> (N,)``.
-    border : Array
-        (N + 1,).
-    point : tuple of Array
-        The unknowns, block by block.
-    coefficients : tuple of Array
-        More of what stands in the pairs.
+    The point has the unknowns, block by block; the coefficients are more of what stands in the pairs.
     """
 
     apply: Callable[[Array], Array]
@@ -296,21 +266,10 @@ class CoreSystem:
 def core_system(
     full: Full, quick: BorderedSystem | None, make_robust: Callable[[], BorderedSystem], refine: bool
 ) -> BorderedSystem:
-    """The system to solve with: the quick core alone, or both, corrected.
+    """The system to solve with: the quick core alone, or both, corrected; without `refine` the quick core as it is.
 
-    Parameters
-    ----------
-    full : Full
-    quick : BorderedSystem or None
-    make_robust : callable
-        Called only where the quick core fails.
-    refine : bool
-        Whether solutions are corrected in full; without it a quick core is taken as it is.
-
-    Raises
-    ------
-    SingularError
-        If there is no quick core and the robust one has no factorisation: said here, not at the first solve.
+    Raises `SingularError` if there is no quick core and the robust one has no factorisation: said here, not at the
+    first solve.
     """
     if quick is not None and not refine:
         return quick

@@ -86,12 +86,5 @@ def observed(problem: MixedLCP, x: Array) -> dict[str, float]:
 
 
 def convolved(a: Array, b: Array, k: int) -> Array:
-    """``sum_{j=1..k-1} a_j b_{k-j}``, shape (n,): what is known of coefficient k of a product of two series.
-
-    Parameters
-    ----------
-    a, b : Array
-        Coefficients of the factors, shape (order + 1, n).
-    k : int
-    """
+    """``sum_{j=1..k-1} a_j b_{k-j}``, shape (n,): what is known of coefficient k of a product of two series."""
     return np.asarray(np.einsum("jn,jn->n", a[1:k], b[k - 1 : 0 : -1]))

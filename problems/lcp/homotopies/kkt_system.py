@@ -180,18 +180,8 @@ class Augmented:
 def factor_kkt(system: KKTSystem, border: Array, refine: bool = True) -> BorderedSystem:
     """The bordered system at a point, of order 3n + 1 for an LCP, from a factorisation of order n + 1 (or 2n + 1).
 
-    Parameters
-    ----------
-    system : KKTSystem
-    border : Array
-    refine : bool
-        Whether solutions are corrected in full. Without it they are those of the core of order n + 1, where there is
-        one.
-
-    Raises
-    ------
-    SingularError
-        If no core has a factorisation.
+    Without `refine` solutions are those of the core of order n + 1, where there is one. Raises `SingularError` if no
+    core has a factorisation.
     """
     x, z2 = system.sizes
     full = Full(system.apply, border, (x, system.z1, z2, system.t), (system.rest,))
@@ -234,15 +224,7 @@ def _reduced(system: KKTSystem, border: Array) -> Reduced | None:
 class WithoutActivities:
     """A core without the activities of rows with two sides: their block is diagonal, as only a row of mu has one.
 
-    Attributes
-    ----------
-    kept, gone : ndarray of int
-    diagonal : Array
-        Of that block.
-    matrix, column, row
-        With the activities, and its borders.
-    core : BorderedSystem
-        Of the Schur complement.
+    The matrix and its borders are those with the activities; the core is of the Schur complement.
     """
 
     kept: NDArray[np.intp]

@@ -108,19 +108,8 @@ def factor_pairs(system: PairSystem, border: Array, refine: bool = True) -> Bord
 
     With y eliminated the core is alpha A + beta I + gamma diag(y/x), with s/(x-l) + t/(u-x) for y/x: Cholesky if A is
     symmetric positive semidefinite and alpha, beta, gamma >= 0. Else of each index the unknown with the larger
-    coefficient is kept, for LU.
-
-    Parameters
-    ----------
-    system : PairSystem
-    border : Array
-    refine : bool
-        Whether solutions are corrected in full. Without it they are those of the definite core, where there is one.
-
-    Raises
-    ------
-    SingularError
-        If no core has a factorisation.
+    coefficient is kept, for LU. Without `refine` solutions are those of the definite core, where there is one. Raises
+    `SingularError` if no core has a factorisation.
     """
     full = Full(system.apply, border, (system.sizes, system.y))
 
@@ -151,21 +140,9 @@ def _definite(system: PairSystem, border: Array) -> ReducedPairs | None:
 class WithoutActivities:
     """A core without the activities of rows with two sides: of r and mu one unknown k is kept, order n + 1 - m.
 
-    The row of r, ``d dr + e dmu = rho``, is solved for the unknown with the larger coefficient: dr = p k + pr rho,
-    dmu = q k + qr rho. So no number is divided by a small one, and no entry fills.
-
-    Attributes
-    ----------
-    ranges : Ranges
-    p, q, pr, qr : Array
-        One for each pair.
-    times : callable
-        The product with the matrix, n by n.
-    column, row : Array
-        The borders.
-    sign : int
-        Of the whole determinant.
-    core : BorderedSystem
+    The row of r, ``d dr + e dmu = rho``, is solved for the unknown with the larger coefficient: dr = p k + pr rho and
+    dmu = q k + qr rho. So no number is divided by a small one, and no entry fills. `times` is the product with the
+    matrix, `sign` that of the whole determinant.
     """
 
     ranges: Ranges

@@ -16,13 +16,7 @@ AWAY = 1e-6
 
 
 def exact_end(problem: MixedLCP, x: Array) -> str:
-    """What is proved of the end x of a path, in rational arithmetic; empty where nothing is.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x : ndarray, shape (n,)
-    """
+    """What is proved of the end x of a path, in rational arithmetic; empty where nothing is."""
     found = certify_exactly(problem, x)
     if not found.solves:
         return ""
@@ -39,10 +33,6 @@ def kkt_form(homotopy: Any) -> Quadratic:
 
     With bounds x stands for the distances from them, and ``(width - z2) t - lam c3`` is added for boxes; the row of an
     index without bounds is ``A x + q + lam (rho - give z0) + (lam) (give z2)``.
-
-    Parameters
-    ----------
-    homotopy : KKTHomotopy
     """
     problem, rows, n, N = homotopy.problem, homotopy.rows, homotopy.n, homotopy.rows.size
     A, q, sides = _dense(problem.A), problem.q, rows.sides
@@ -84,12 +74,7 @@ def kkt_form(homotopy: Any) -> Quadratic:
 
 
 def pairs_form(homotopy: Any) -> Quadratic:
-    """``sign (goal + lam (origin - goal))`` and ``gap y - lam c``, for the homotopies in (x, y).
-
-    Parameters
-    ----------
-    homotopy : TwoVectorHomotopy
-    """
+    """``sign (goal + lam (origin - goal))`` and ``gap y - lam c``, for the homotopies in (x, y)."""
     problem, blend, sides, n = homotopy.problem, homotopy.blend, homotopy.sides, homotopy.n
     A, count = _dense(problem.A), sides.index.size
     pull = sides.sign[:, None] * np.eye(n)[sides.index]

@@ -54,29 +54,13 @@ class Registered:
     bounds: bool = False
 
     def from_x0(self, problem: MixedLCP, x0: Array | None, structure: Structure) -> LCPHomotopy:
-        """The homotopy from x0, or its own start.
-
-        Parameters
-        ----------
-        problem : MixedLCP
-        x0 : ndarray or None
-        structure : Structure
-            Of the problem.
-        """
+        """The homotopy from x0, or its own start."""
         return self.make(problem, x0, structure=structure)
 
     def at(self, problem: MixedLCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:
-        """The homotopy at a start of all four vectors, feasible or not.
+        """The homotopy at a start of all four vectors, feasible or not; one in (x, y) takes x0 and w0 of it.
 
-        Parameters
-        ----------
-        problem : MixedLCP
-        start : Start
-            A homotopy in (x, y) takes x0 and w0 of it.
-        structure : Structure
-            Of the problem.
-        refine : bool
-            Whether its bordered solves are corrected to round-off.
+        `refine` says whether its bordered solves are corrected to round-off.
         """
         if self.make is KKTHomotopy:
             return KKTHomotopy(problem, start.x0, start.z1, start.z2, start.w0, structure=structure, refine=refine)

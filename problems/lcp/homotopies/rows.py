@@ -22,12 +22,7 @@ _NONE = np.zeros(0)
 
 @frozen(eq=False, slots=False)
 class Rows:
-    """What the rows of a problem ask for.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    """
+    """What the rows of a problem ask for."""
 
     problem: MixedLCP | LCP
 
@@ -75,12 +70,7 @@ class Rows:
         return lower, upper
 
     def split(self, y: Array) -> tuple[Array, Array, Array, Array]:
-        """The blocks x, z1, z2 and t of y, or of increments of it, as views.
-
-        Parameters
-        ----------
-        y : ndarray
-        """
+        """The blocks x, z1, z2 and t of y, or of increments of it, as views."""
         n, m, k = self._ends
         return y[:n], y[n:m], y[m:k], y[k:]
 
@@ -95,13 +85,7 @@ class Rows:
         return 2 * self.problem.n + self.sides.index.size + self.boxed.size
 
     def raised(self, w: Array, t: Array) -> Array:
-        """What z is complementary to: w, and s = w + t in a box.
-
-        Parameters
-        ----------
-        w : ndarray, shape (n,)
-        t : ndarray, one a box
-        """
+        """What z is complementary to: w, and s = w + t in a box."""
         if not self.boxed.size:
             return w
         raised = w.copy()
@@ -109,26 +93,14 @@ class Rows:
         return raised
 
     def inside(self, z: Array, s: Array, t: Array) -> Array:
-        """What has to be positive: s, z and, in boxes, t and u - l - z.
-
-        Parameters
-        ----------
-        z, s : ndarray, shape (n,)
-        t : ndarray, one a box
-        """
+        """What has to be positive: s, z and, in boxes, t and u - l - z."""
         inside = self.moved(z, s, t)
         if self.boxed.size:
             inside[-self.boxed.size :] += self.width
         return inside
 
     def moved(self, z: Array, s: Array, t: Array) -> Array:
-        """How `inside` changes with increments of z, s and t.
-
-        Parameters
-        ----------
-        z, s : ndarray, shape (n,)
-        t : ndarray, one a box
-        """
+        """How `inside` changes with increments of z, s and t."""
         if self.problem.standard:
             return np.concatenate([s, z])
         bounded = ~self.free
@@ -140,16 +112,7 @@ class RowPairs:
     """The linearised rows, ``factor dw + rest k - c l = r``, for an unknown k of each, once those of boxes are solved.
 
     In a box ``(u - l - z) dt - t dz - c3 l = r3`` gives dz = a k + e (r3 + c3 l) and dt = b k + f (r3 + c3 l); where
-    there is none, k = dz.
-
-    Attributes
-    ----------
-    rows : Rows
-    factor, rest, c : ndarray, shape (n,)
-    inner : Pairs or None
-        The a, b, e, f of boxes; None where there are none.
-    taken : ndarray
-        What r3 takes from r in a box.
+    there is none, k = dz. `inner` has the a, b, e, f of boxes, `taken` what r3 takes from r in a box.
     """
 
     rows: Rows
@@ -202,14 +165,8 @@ class RowPairs:
 def row_pairs(rows: Rows, factor: Array, rest: Array, c: Array, z: Array, t: Array, c3: Array) -> RowPairs:
     """Solve the equations of boxes for the unknown with the larger coefficient.
 
-    Parameters
-    ----------
-    rows : Rows
-    factor, rest, c : ndarray, shape (n,)
-        Of ``factor (dw + dt) + rest dz - c l``, with dt in boxes.
-    z : ndarray, shape (n,)
-        The multipliers.
-    t, c3 : ndarray, one a box
+    The rows are ``factor (dw + dt) + rest dz - c l``, with dt in boxes, z their multipliers; t and c3 have one number a
+    box.
     """
     boxed = rows.boxed
     if not boxed.size:

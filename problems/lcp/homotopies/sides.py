@@ -20,12 +20,7 @@ from problems.lcp.homotopies.cores import Pairs, larger_eliminated, parity, seco
 
 @frozen(eq=False, slots=False)
 class Sides:
-    """Which bounds are finite.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    """
+    """Which bounds are finite."""
 
     problem: MixedLCP | LCP
 

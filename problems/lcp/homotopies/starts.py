@@ -56,20 +56,7 @@ class Start:
 
 
 def positive_vector(name: str, value: Any, n: int) -> Array:
-    """A copy of `value` as n positive finite floats.
-
-    Parameters
-    ----------
-    name : str
-        What the message calls it.
-    value : array_like
-    n : int
-
-    Raises
-    ------
-    ValueError
-        Naming the argument, what it held and what was expected.
-    """
+    """A copy of `value` as n positive finite floats; `ValueError`, by name, for anything else."""
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected {n} positive numbers, found a masked array with masked entries")
     try:
@@ -89,19 +76,7 @@ def positive_vector(name: str, value: Any, n: int) -> Array:
 def inside_vector(name: str, value: Any, problem: MixedLCP, bounds: tuple[Array, Array] | None = None) -> Array:
     """A copy of `value` as n finite floats strictly between the bounds; for an LCP positive ones.
 
-    Parameters
-    ----------
-    name : str
-        What the message calls it.
-    value : array_like
-    problem : MixedLCP
-    bounds : tuple of ndarray, optional
-        Others than those of the problem.
-
-    Raises
-    ------
-    ValueError
-        Naming the argument, what it held and what was expected.
+    The bounds may be others than those of the problem. Raises `ValueError`, by name, for anything else.
     """
     if problem.standard:
         return positive_vector(name, value, problem.n)
@@ -116,13 +91,7 @@ def inside_vector(name: str, value: Any, problem: MixedLCP, bounds: tuple[Array,
 
 
 def inside_start(problem: MixedLCP, distance: float = 1.0) -> Array:
-    """The point nearest to zero at a distance from all bounds, or in the middle between two that are nearer.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    distance : float
-    """
+    """The point nearest to zero at a distance from all bounds, or in the middle between two that are nearer."""
     if problem.standard:
         return np.full(problem.n, distance)
     # Halves, as the difference of two bounds may overflow.
@@ -150,15 +119,7 @@ def relaxed_w(problem: MixedLCP, x0: Array, margin: float | Array) -> Array:
 def centred(problem: MixedLCP, x0: Array, w0: Array) -> Start:
     """The start whose products x0 z1 and w0 z2 all equal the geometric mean of the x0_i w0_j.
 
-    With bounds x0 stands for the distances from them; in a box s z2 = t (u - l - z2).
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x0 : Array of shape (n,)
-        Between the bounds.
-    w0 : Array
-        Positive, one a bound.
+    With bounds x0 stands for the distances from them, and w0 has a number for each; in a box s z2 = t (u - l - z2).
     """
     gaps = Sides(problem).gaps(x0)
     product = _product(gaps, w0)
@@ -198,12 +159,6 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
     """The centred start at a point, feasible where that is; in boxes s and t are such that z2 = x0 - l.
 
     With s - t = w there paths of 24 monotone problems with all kinds of bounds take a tenth more factorisations.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x0 : ndarray, shape (n,)
-        Between the bounds.
     """
     sides = Sides(problem)
     w0, gaps = relaxed_w(problem, x0, natural_units(problem)[1]), sides.gaps(x0)
@@ -250,18 +205,7 @@ def _random_inside(problem: MixedLCP, generator: np.random.Generator, x: float, 
 
 
 def kkt_start(problem: MixedLCP, x0: Any, z1: Any, z2: Any, w0: Any) -> Start:
-    """The given vectors, checked, with the defaults of `KKTHomotopy` for the others.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x0, z1, z2, w0 : array_like or None
-
-    Raises
-    ------
-    ValueError
-        Naming the vector, what it held and what was expected.
-    """
+    """The given vectors, checked, with the defaults of `KKTHomotopy` for the others; `ValueError` names a bad one."""
     rows = Rows(problem)
     bounds = rows.sides.index.size
     given = {

@@ -145,13 +145,7 @@ def _float(value: Fraction) -> float:
 
 
 def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
-    """Whether the problem has at most as many pieces as an LCP of that order has faces.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    order : int
-    """
+    """Whether the problem has at most as many pieces as an LCP of that order has faces."""
     return problem.n <= PER_PIECE * order and problem.pieces <= 1 << order
 
 

@@ -18,21 +18,9 @@ from continuation.archive.atomic import beside
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
 
+from ...util import in_child
+
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.02))}
-
-
-def in_child(work):
-    """The exit status of a process that does `work`: 0, 7 for an ArchiveError of one line, 8 for anything else."""
-    process = os.fork()
-    if process:
-        return os.waitpid(process, 0)[1]
-    try:
-        work()
-    except ArchiveError as error:
-        os._exit(7 if "\n" not in str(error) else 8)
-    except BaseException:
-        os._exit(8)
-    os._exit(0)
 
 
 def killed(file, steps=30):

@@ -77,12 +77,6 @@ def test_an_archive_that_is_gone_says_so(tmp_path):
         _ = found.u
 
 
-@pytest.mark.parametrize("keep", ["some", "every 0", "every", "every -1", 3, None])
-def test_what_can_be_kept(tmp_path, keep):
-    with pytest.raises(ValueError, match="keep: expected"):
-        PathLog(tmp_path / "run.h5", keep=keep)
-
-
 def test_memory_does_not_grow_with_the_path(tmp_path):
     """Of Python's own, which is counted exactly: a list of steps takes more than a kilobyte a step.
 

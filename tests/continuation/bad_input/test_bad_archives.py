@@ -10,7 +10,7 @@ from continuation.archive import Limits, PathLog, describe, export, merge, open_
 from continuation.events import Monitor
 from problems.bifurcation import Cusp, ExponentialCosine
 
-from .util import refused
+from ...util import refused
 
 CUSP, NAN = Cusp(), np.nan
 
@@ -92,7 +92,7 @@ OTHERS = {
     **{f"seconds {value!r}": ("seconds", lambda value=value: Limits(seconds=value)) for value in (NAN, -1, "a")},
     **{
         f"keep {value!r}": ("keep", lambda value=value: PathLog("l.h5", keep=value))
-        for value in ("some", "every 0", None, 3)
+        for value in ("some", "every 0", "every", "every -1", None, 3)
     },
     "a path described": ("archive", lambda: describe("good.h5")),
     "no budget": ("half.h5", lambda: resume("half.h5")),
@@ -103,6 +103,7 @@ OTHERS = {
     "start": ("start", lambda: resume("half.h5", budget=Budget(), start=(np.zeros(2), np.ones(2)))),
     "state": ("state", lambda: resume("half.h5", budget=Budget(), state=None)),
     "trust": ("trust", lambda: resume("half.h5", budget=Budget(), trust=[5])),
+    "what is kept": ("keep", lambda: resume("half.h5", budget=Budget(), keep="some")),
     "another homotopy": ("homotopy", lambda: resume("half.h5", ExponentialCosine(1), budget=Budget())),
     "another size": ("homotopy", lambda: resume("half.h5", ExponentialCosine(3), budget=Budget())),
     "a class": ("homotopy", lambda: resume("half.h5", Cusp, budget=Budget())),

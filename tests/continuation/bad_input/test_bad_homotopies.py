@@ -6,7 +6,7 @@ import scipy.sparse as sp
 
 from continuation import trace
 
-from .util import refused
+from ...util import refused
 
 
 class Line:
@@ -39,6 +39,7 @@ STARTS = {
     "an infinite parameter": (ZEROS, np.inf),
     "a matrix": (np.zeros((2, 1)), 0.0),
     "no unknowns": (np.zeros(0), 0.0),
+    "unknowns alone": ZEROS,
     "text": (["a", "b"], 0.0),
     "complex unknowns": (ZEROS + 1j, 0.0),
     "a complex parameter": (ZEROS, 1j),

@@ -1,8 +1,5 @@
 """Proofs of paths: complete where the path is one, refused where it is not, and checked again from a file."""
 
-import sys
-from pathlib import Path as File
-
 import numpy as np
 import pytest
 from attrs import evolve
@@ -16,10 +13,9 @@ from problems.bifurcation import Aircraft, Bratu1D, Circle, Cusp, ExponentialCos
 from problems.lcp import LCP, homotopies
 from problems.lcp.data.problem import MixedLCP
 
-sys.path.insert(0, str(File(__file__).parents[3] / "examples" / "benchmarks" / "proof"))
+from ...util import benchmark
 
-import corrupted  # found by that line only
-
+corrupted = benchmark("proof/corrupted.py")
 EXAMPLES = [e for value in vars(paper).values() if isinstance(value, tuple) for e in value if hasattr(e, "true_class")]
 
 

@@ -5,7 +5,6 @@ import subprocess
 import sys
 from importlib.metadata import EntryPoint
 
-import h5py
 import numpy as np
 import pytest
 
@@ -125,44 +124,6 @@ def test_a_matrix_market_file_and_q(run, tmp_path):
     np.testing.assert_allclose(json.loads(out)["x"], [0.5, 0], atol=1e-10)
 
 
-def test_bad_problems_are_one_line_that_names_the_argument(run, tmp_path, second):
-    np.savez(tmp_path / "nan.npz", A=[[np.nan]], q=[1.0])
-    np.savez(tmp_path / "wide.npz", A=np.ones((2, 3)), q=[1.0, 2.0])
-    np.savez(tmp_path / "short.npz", A=np.eye(2), q=[1.0])
-    np.savez(tmp_path / "empty.npz", A=np.zeros((0, 0)), q=np.zeros(0))
-    (tmp_path / "words.npz").write_text("no archive")
-    (tmp_path / "problem.doc").write_text("")
-    np.save(tmp_path / "negative.npy", [1.0, -1.0])
-    np.save(tmp_path / "three.npy", np.ones(3))
-    np.save(tmp_path / "outside.npy", [0.1, 1.0])
-    (tmp_path / "old.h5").write_text("")
-    cases = [
-        ((tmp_path / "gone.npz",), "FILE: expected a file, found nothing"),
-        ((tmp_path / "words.npz",), "FILE: expected a .npz file, found one that cannot be read"),
-        ((tmp_path / "problem.doc",), "FILE: expected one of .npz, .json"),
-        ((tmp_path / "nan.npz",), "FILE: A: expected finite numbers, found nan"),
-        ((tmp_path / "wide.npz",), "FILE: A: expected a square matrix, found shape (2, 3)"),
-        ((tmp_path / "short.npz",), "FILE: q: expected 2 numbers, one a row of A, found 1"),
-        ((tmp_path / "empty.npz",), "FILE: A: expected a square matrix, found shape (0, 0)"),
-        ((second, "--q", tmp_path / "gone.npy"), "--q: expected a file, found nothing"),
-        ((second, "--q", tmp_path / "three.npy"), "--q: expected 2 numbers, one a row of A, found 3"),
-        ((second, "--x0", tmp_path / "three.npy"), "--x0: expected 2 numbers, found 3"),
-        ((second, "--x0", tmp_path / "negative.npy"), "--x0: expected a strictly feasible start (or --relaxed)"),
-        ((second, "--x0", tmp_path / "outside.npy"), "--x0: expected a strictly feasible start (or --relaxed), found"),
-        ((second, "--x0", tmp_path / "negative.npy", "--homotopy", "kkt", "--relaxed"), "--x0: expected positive"),
-        ((second, "--homotopy", "simplex"), "--homotopy: invalid choice: 'simplex' (choose from"),
-        ((second, "--archive", tmp_path / "old.h5"), "--archive: expected a new file, found an existing one"),
-        ((second, "--archive", tmp_path / "no" / "run.h5"), "--archive: expected a file in an existing directory"),
-        ((second, "--plot", tmp_path / "path.doc"), "--plot: expected a name in .png, .pdf, .svg"),
-        ((second, "--plot", tmp_path / "no" / "path.png"), "--plot: expected a file in an existing directory"),
-        ((), "the following arguments are required: FILE"),
-    ]
-    for arguments, message in cases:
-        status, _, err = run("solve", *arguments)
-        assert status == BAD_INPUT, arguments
-        assert message in err
-
-
 # -- classify and paper ---------------------------------------------------------------------------------------
 
 
@@ -179,26 +140,6 @@ def test_classify_takes_a_matrix_alone(run, tmp_path):
     status, out, _ = run("classify", tmp_path / "a.txt")
     assert status == SUCCESS
     assert out.startswith("PSD")
-
-
-def test_classify_names_bad_input(run, tmp_path):
-    np.savetxt(tmp_path / "a.txt", np.ones((2, 3)))
-    assert "FILE: expected a file, found nothing" in run("classify", tmp_path / "gone.npz")[2]
-    status, _, err = run("classify", tmp_path / "a.txt")
-    assert status == BAD_INPUT
-    assert "FILE: " in err
-    assert "(2, 3)" in err
-
-
-def test_paper_names_bad_input(run, tmp_path):
-    (tmp_path / "file").write_text("")
-    status, _, err = run("paper", "--output", tmp_path / "file")
-    assert status == BAD_INPUT
-    assert "--output: expected a directory, or a new one" in err
-    status, _, err = run("paper", "--output", tmp_path, "--methods", "kkt,gauss")
-    assert status == BAD_INPUT
-    assert "--methods: expected all or some of kkt, wang" in err
-    assert "'gauss'" in err
 
 
 # -- archives -------------------------------------------------------------------------------------------------
@@ -264,37 +205,6 @@ def test_export_and_merge(run, archive, tmp_path):
     status, _, err = run("merge", tmp_path / "again.h5", tmp_path / "both.h5", other)
     assert status == BAD_INPUT
     assert err.endswith(f"its path 0 is path 1 of {tmp_path / 'both.h5'} as well; expected each path once\n")
-
-
-def test_bad_archives_are_one_line_that_names_the_argument(run, archive, tmp_path):
-    (tmp_path / "text.h5").write_text("no archive")
-    (tmp_path / "there.h5").write_text("")
-    with h5py.File(tmp_path / "foreign.h5", "w") as file:
-        file["y"] = [1.0]
-    cases = [
-        (("inspect", tmp_path / "gone.h5"), "FILE: "),
-        (("inspect", tmp_path / "text.h5"), "is not an HDF5 file"),
-        (("inspect", tmp_path / "foreign.h5"), "not an archive of paths"),
-        (("plot", tmp_path / "text.h5", "--output", tmp_path / "p.png"), "FILE: "),
-        (("plot", archive, "--output", tmp_path / "p.doc"), "--output: expected a name in .png, .pdf, .svg"),
-        (("plot", archive, "--output", tmp_path / "p.png", "--path", 1), "--path: expected a number below 1, found 1"),
-        (("plot", archive, "--output", tmp_path / "p.png", "--components", "7"), "--components: expected numbers from"),
-        (("plot", archive, "--output", tmp_path / "p.png", "--components", "x"), "--components: expected numbers like"),
-        (("plot", archive, "--against", "time"), "--against: invalid choice: 'time'"),
-        (("resume", archive), "nothing to resume"),
-        (("resume", archive, "--steps", 0), "--steps: expected a positive integer, found '0'"),
-        (("recover", tmp_path / "text.h5"), "FILE: "),
-        (("export", archive, tmp_path / "run.doc"), "TARGET: expected a suffix .nc"),
-        (("export", archive, tmp_path / "there.h5"), "TARGET: "),
-        (("export", archive, tmp_path / "r.nc", "--compression", 11), "--compression: expected a level from 0 to 9"),
-        (("merge", tmp_path / "there.h5", archive), "OUT: "),
-        (("merge", tmp_path / "new.h5"), "the following arguments are required: FILE"),
-        (("sing",), "invalid choice: 'sing'"),
-    ]
-    for arguments, message in cases:
-        status, _, err = run(*arguments)
-        assert status == BAD_INPUT, arguments
-        assert message in err
 
 
 def test_one_log_may_be_inspected_while_it_grows(run, tmp_path):

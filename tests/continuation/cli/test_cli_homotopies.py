@@ -114,13 +114,6 @@ def test_trace_as_json_with_another_target(run):
     assert 0.5 * x - x**3 + 0.1 == pytest.approx(0, abs=1e-12)
 
 
-def test_a_path_that_does_not_arrive_exits_with_one(run):
-    status, out, _ = run("trace", "circle", "--budget-steps", 3)
-    assert status == FAILURE
-    assert "BUDGET_EXHAUSTED" in out
-    assert run("trace", "circle")[0] == SUCCESS
-
-
 def test_a_homotopy_without_target_is_asked_for_none(run):
     status, out, _ = run("trace", "pitchfork", "--target", "none", "--budget-steps", 5, "--direction", "-1")
     assert status == FAILURE
@@ -166,30 +159,3 @@ def test_a_bug_in_a_plugin_is_not_taken_for_bad_input(run, home):
     assert err.count("\n") == 1
     assert err.startswith("continuation: my_homotopies:Buggy: UFuncTypeError: ufunc 'add'")
     assert "(my_homotopies.py, line " in err
-
-
-def test_bad_input_is_one_line(run, home):
-    cases = [
-        (("trace", "nosuch"), "nosuch: no homotopy of this name is installed"),
-        (("trace", "bratu1d"), "did you mean bratu-1d"),
-        (("trace", "bratu-1d", "n=0"), "n: expected at least 1, found 0"),
-        (("trace", "bratu-1d", "n=many"), "n: expected an integer, found 'many'"),
-        (("trace", "bratu-1d", "m=3"), "m: expected an option of bratu-1d (n=100, target=None)"),
-        (("trace", "bratu-1d", "n"), "KEY=VALUE: expected an option like n=10, found 'n'"),
-        (("trace", "bratu-1d", "n=1", "n=2"), "n: expected one value, found two"),
-        (("trace", "kkt", "file=gone.npz"), "file: expected a file"),
-        (("trace", "kkt", "example=11"), "example: expected a number from 1 to 10, found 11"),
-        (("trace", "my_homotopies:Empty"), "homotopy: expected a method `start`, found none on Empty"),
-        (("trace", "my_homotopies:Gone"), "my_homotopies:Gone: cannot be loaded: AttributeError"),
-        (("trace", "circle", "--target", "soon"), "--target: expected a finite number or none, found 'soon'"),
-        (("trace", "circle", "--tolerance", "0"), "--tolerance: expected a positive number"),
-        (("trace", "circle", "--chart-tolerances", "1e-6,0"), "--chart-tolerances: expected a positive number"),
-        (("trace", "circle", "--chart", home / "my_homotopies.py"), "--chart: expected a directory"),
-        (("trace", "circle", "--plot", "path.txt"), "--plot: expected a name in .png"),
-        (("trace", "circle", "--archive", home / "my_homotopies.py"), "--archive: "),
-        (("check", "circle", "radius=2"), "radius: expected an option of circle (none)"),
-    ]
-    for arguments, message in cases:
-        status, _, err = run(*arguments)
-        assert status == BAD_INPUT, arguments
-        assert message in err, arguments

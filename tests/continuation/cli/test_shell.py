@@ -141,13 +141,6 @@ def test_a_problem_comes_on_stdin(run, monkeypatch, form):
     assert json.loads(out)["x"] == pytest.approx([0.5, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize("bad", [("--tolerance", 2), ("--seed", -1), ("--restarts", 1.5), ("--seconds", 0)])
-def test_bad_numbers_name_their_option(run, tmp_path, bad):
-    status, _, err = run("solve", tmp_path / "gone.npz", *bad)
-    assert status == BAD_INPUT
-    assert f"{bad[0]}" in err
-
-
 def test_colours_are_for_terminals(monkeypatch):
     monkeypatch.delenv("NO_COLOR", raising=False)
     monkeypatch.setenv("TERM", "xterm")

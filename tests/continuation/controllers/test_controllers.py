@@ -148,21 +148,3 @@ def test_curvature_extrapolates_linearly():
     doubled = 2.0 * sin(angle) / h
     ahead = doubled + 0.5 * (doubled - curvature)
     assert second.h == pytest.approx(min(sqrt(2.0 * 1e-2 / ahead), 0.4 / ahead))
-
-
-@pytest.mark.parametrize(
-    ("make", "name"),
-    [
-        (lambda: Bounds(minimum=0.0), "minimum"),
-        (lambda: Bounds(minimum=1.0, initial=0.1), "minimum"),
-        (lambda: Bounds(minimum=0.01, maximum=0.001), "maximum"),
-        (lambda: Bounds(initial=-1.0), "initial"),
-        (lambda: Geometric(ratio=1.0), "ratio"),
-        (lambda: IterationCount(target=0), "target"),
-        (lambda: AllgowerGeorg(deceleration=1.0), "deceleration"),
-        (lambda: Curvature(growth=1.0), "growth"),
-    ],
-)
-def test_bad_settings_are_named(make, name):
-    with pytest.raises(ValueError, match=name):
-        make()

@@ -167,18 +167,3 @@ def test_the_residual_is_judged_where_a_bound_is_given(corrector):
     assert early.converged
     assert late.converged
     assert early.residual_norm > 1e-9 >= late.residual_norm
-
-
-@pytest.mark.parametrize(
-    ("make", "name"),
-    [
-        (lambda: BorderedNewton(reuse=-0.1), "reuse"),
-        (lambda: BorderedNewton(reuse=1.1), "reuse"),
-        (lambda: BorderedNewton(max_iterations=0), "max_iterations"),
-        (lambda: Chord(max_contraction=0.0), "max_contraction"),
-        (lambda: Broyden(max_iterations=-1), "max_iterations"),
-    ],
-)
-def test_bad_settings_are_named(make, name):
-    with pytest.raises(ValueError, match=name):
-        make()

@@ -186,9 +186,3 @@ def test_an_avoided_branch_point_is_not_crossed(imperfection, preset):
     x = path.endpoint.y[0]
     assert np.sign(x) == np.sign(imperfection)
     assert abs(x) > 0.9
-
-
-def test_switching_elsewhere_is_refused():
-    path = trace(from_functions(lambda y, lam: y * y + lam * lam - 1.0, start=([1.0], 0.0), target=None))
-    with pytest.raises(ValueError, match="event: expected a branch point"):
-        switch_branch(Pitchfork(), path.turning_points[0])

@@ -1,9 +1,6 @@
 """Crossings: no branch switched in silence, none missed, none invented, no path stuck there."""
 
-import importlib.util
-import sys
 import warnings
-from pathlib import Path as File
 
 import numpy as np
 import pytest
@@ -16,9 +13,9 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import branch_point_near, row_sizes
 
-from ...util import every_preset
+from ...util import benchmark, every_preset
 
-BENCHMARK = File(__file__).parents[3] / "examples" / "benchmarks" / "crossings"
+campaign = benchmark("crossings/run.py")
 
 
 def branch_points(path):
@@ -256,21 +253,9 @@ def test_where_the_derivative_vanishes_altogether_there_is_no_simple_branch_poin
         assert branch_point_near(evaluator, u, np.array([0.0, 0.0, 1.0]), np.ones(3), rows) is None
 
 
-@pytest.fixture(scope="module")
-def campaign():
-    sys.path.insert(0, str(BENCHMARK))
-    try:
-        spec = importlib.util.spec_from_file_location("crossings_campaign", BENCHMARK / "run.py")
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(BENCHMARK))
-    return module
-
-
 @pytest.mark.parametrize("preset", [continuation.DEFAULT, continuation.CONSERVATIVE], ids=lambda preset: preset.name)
 @pytest.mark.parametrize("family", ["transversal", "pitchfork", "arm", "transcritical"])
-def test_random_crossings_in_random_units(campaign, family, preset):
+def test_random_crossings_in_random_units(family, preset):
     rng = np.random.default_rng(21)
     for _ in range(4):
         problem = campaign.FAMILIES[family](rng, int(rng.integers(1, 9)), float(rng.choice([0.0, 6.0])))

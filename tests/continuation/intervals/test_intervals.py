@@ -1,8 +1,6 @@
 """Interval arrays: no value outside, numpy's functions as jets have them, and what is not defined stays undefined."""
 
-import sys
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,10 +9,9 @@ import scipy.sparse as sp
 from continuation import intervals, jets
 from continuation.intervals import Interval, UndecidedError, enclose, jacobian
 
-sys.path.insert(0, str(Path(__file__).parents[3] / "examples" / "benchmarks" / "proof"))
+from ...util import benchmark
 
-import functions as campaign  # ruff's isort sees the folder only here
-
+campaign = benchmark("proof/functions.py")
 RNG = np.random.default_rng(5)
 X = RNG.normal(size=6)
 M = RNG.normal(size=(6, 6))

@@ -118,12 +118,3 @@ def test_a_rough_history_lowers_the_degree():
     here = history[-1]
     point = linearize(evaluator, here.u, np.ones(2), here.tangent)
     assert len(Polynomial(5).prepare(evaluator, point, history).coefficients) < 6
-
-
-@pytest.mark.parametrize(
-    ("make", "name"),
-    [(lambda: Polynomial(1), "degree"), (lambda: RungeKutta(3), "order"), (lambda: AdamsBashforth(5), "order")],
-)
-def test_bad_settings_are_named(make, name):
-    with pytest.raises(ValueError, match=name):
-        make()

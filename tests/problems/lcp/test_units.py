@@ -1,9 +1,7 @@
 """Units must not matter: scaling, certificates and outcomes are the same for LCP(q, A) and LCP(D q, D A E)."""
 
-import importlib.util
 import warnings
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,36 +16,29 @@ from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.farkas import FloatFarkas, infeasibility
 from problems.lcp.reference.enumeration import exhaust
 
+from ...util import benchmark
 from .util import powers
 
 Outcome = lcp.Outcome
-BENCHMARK = Path(__file__).parents[3] / "examples" / "benchmarks" / "lcp" / "units.py"
-
-
-@pytest.fixture(scope="module")
-def benchmark():
-    spec = importlib.util.spec_from_file_location("units_benchmark", BENCHMARK)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+campaign = benchmark("lcp/units.py")
 
 
 @pytest.mark.parametrize(("mode", "number"), [("units", 60), ("factor", 20), ("truth", 60)])
-def test_the_benchmark_of_units_finds_nothing_wrong(benchmark, capsys, mode, number):
-    run, _ = benchmark.MODES[mode]
+def test_the_benchmark_of_units_finds_nothing_wrong(capsys, mode, number):
+    run, _ = campaign.MODES[mode]
     assert run(number, 3) == 0, capsys.readouterr().out
 
 
-def test_the_benchmark_can_fail(benchmark, monkeypatch):
-    monkeypatch.setattr(benchmark, "same_outcome", lambda one, other, exact: False)
-    assert benchmark.units(3, 0) == 3
+def test_the_benchmark_can_fail(monkeypatch):
+    monkeypatch.setattr(campaign, "same_outcome", lambda one, other, exact: False)
+    assert campaign.units(3, 0) == 3
 
 
 @pytest.mark.parametrize("power", [-990, -40, 3, 900])
-def test_a_common_factor_changes_no_digit_where_active_sets_come_before_units(benchmark, power):
+def test_a_common_factor_changes_no_digit_where_active_sets_come_before_units(power):
     """Of games with several solutions another one was found, where the factor made the entries not about 1."""
     for seed in range(12):
-        A, q = benchmark.game(13 + seed, np.random.default_rng(seed))
+        A, q = campaign.game(13 + seed, np.random.default_rng(seed))
         one, other = lcp.solve(lcp.LCP(A, q)), lcp.solve(lcp.LCP(np.ldexp(A, power), np.ldexp(q, power)))
         assert one.outcome is other.outcome
         assert one.x.tobytes() == other.x.tobytes()

@@ -1,8 +1,5 @@
 """The guess of an active set by projected gradients: right where that is easy, and worth its cost elsewhere."""
 
-import runpy
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -10,8 +7,9 @@ from problems import lcp
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER
 
-BENCHMARK = Path(__file__).parents[4] / "examples" / "benchmarks" / "mixed" / "programs.py"
-random_data = runpy.run_path(str(BENCHMARK))["problem"]
+from ....util import benchmark
+
+random_data = benchmark("mixed/programs.py").problem
 
 
 def test_a_diagonal_matrix_needs_one_step_in_any_units():

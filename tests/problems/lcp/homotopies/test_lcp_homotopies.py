@@ -138,12 +138,6 @@ def test_published_products():
 
 
 @every
-def test_bad_problem(make):
-    with pytest.raises(TypeError, match="problem: expected an LCP, found tuple"):
-        make((np.eye(2), np.ones(2)))
-
-
-@every
 def test_the_structure_of_a_matrix_is_shared(make):
     structure = lcp.Structure(lcp.LCP(np.eye(4), np.ones(4)))
     other = {"w0" if make is lcp.KKTHomotopy else "y0": np.ones(4)}

@@ -1,8 +1,5 @@
 """Problems with bounds against enumeration, closed forms and other software; what is claimed is true."""
 
-import runpy
-from pathlib import Path
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -15,10 +12,10 @@ from problems.lcp.mixed_strategies import mixed_lcps, planted_mixed_lcps, progra
 from problems.lcp.proof.farkas import farkas
 from problems.lcp.reference.enumeration import exhaust
 
+from ....util import benchmark
 from .util import orders
 
-BENCHMARK = Path(__file__).parents[4] / "examples" / "benchmarks" / "mixed" / "pieces.py"
-random_problem = runpy.run_path(str(BENCHMARK))["random_problem"]
+random_problem = benchmark("mixed/pieces.py").random_problem
 
 
 def test_no_outcome_is_false_where_all_pieces_are_tried():

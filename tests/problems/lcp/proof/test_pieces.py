@@ -1,8 +1,5 @@
 """What floats with error bounds exclude holds no solution in exact arithmetic, and they exclude nearly all of it."""
 
-import runpy
-from pathlib import Path
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -13,8 +10,9 @@ from problems.lcp.mixed_strategies import mixed_lcps
 from problems.lcp.proof.pieces import doubtful
 from problems.lcp.reference.enumeration import exhaust
 
-BENCHMARK = Path(__file__).parents[4] / "examples" / "benchmarks" / "mixed" / "pieces.py"
-random_problem = runpy.run_path(str(BENCHMARK))["random_problem"]
+from ....util import benchmark
+
+random_problem = benchmark("mixed/pieces.py").random_problem
 
 
 def test_the_outcome_is_that_of_exact_arithmetic_alone():

@@ -60,10 +60,3 @@ def test_a_far_guess_harms_nothing():
         A, q, random = moving(seed, 6)
         far = solve(LCP(np.eye(6), random.normal(size=6)))
         assert solve(LCP(A, q), guess=far).x == pytest.approx(solve(LCP(A, q)).x, abs=1e-11)
-
-
-def test_bad_input_is_refused():
-    with pytest.raises(TypeError, match="guess: expected a Solution, found ndarray"):
-        solve(LCP(np.eye(2), [-1.0, -1.0]), guess=np.zeros(2))
-    with pytest.raises(ValueError, match="guess: expected a solution of 2 unknowns, found one of 1"):
-        solve(LCP(np.eye(2), [-1.0, -1.0]), guess=solve(LCP([[1.0]], [-1.0])))

@@ -76,20 +76,6 @@ def test_what_is_unsolvable_is_said_so():
     assert solver.solve([-1.0, 1.0]).solved
 
 
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda: lcp.Solver([[1.0, 2.0]]), "A"),
-        (lambda: lcp.Solver([[np.nan]]), "A"),
-        (lambda: lcp.Solver(np.eye(2)).solve([1.0]), "q"),
-        (lambda: lcp.Solver(np.eye(2)).solve([-1.0, 1.0], active=[True]), "active"),
-    ],
-)
-def test_bad_input_is_refused_by_name(call, name):
-    with pytest.raises(ValueError, match=name):
-        call()
-
-
 def test_a_problem_without_unknowns():
     nothing = lcp.LCP(np.zeros((0, 0)), [])
     found = lcp.solve(nothing)

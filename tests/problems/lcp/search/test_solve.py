@@ -274,26 +274,6 @@ def test_a_message_begins_with_what_the_outcome_means():
         assert solution.message.startswith(f"{outcome} ")
 
 
-@pytest.mark.parametrize(
-    ("call", "error", "name"),
-    [
-        (lambda: lcp.solve([[1.0]]), TypeError, "problem"),
-        (lambda: lcp.solve(PD, "newton"), ValueError, "homotopy"),
-        (lambda: lcp.solve(PD, x0=[1.0, -1.0, 1.0]), ValueError, "x0"),
-        (lambda: lcp.solve(PD, "kkt", x0=[1.0, 0.0, 1.0]), ValueError, "x0"),
-        (lambda: lcp.solve(PD, x0=[1.0]), ValueError, "x0"),
-        (lambda: lcp.solve(PD, "kkt", colour="red"), TypeError, "colour"),
-        (lambda: lcp.solve(PD, tolerance=-1.0), ValueError, "tolerance"),
-        (lambda: lcp.solve(PD, restarts=-1), ValueError, "restarts"),
-        (lambda: lcp.solve(PD, executor=object()), TypeError, "executor"),
-        (lambda: lcp.solve(PD, "kkt", target=0.5), TypeError, "target"),
-    ],
-)
-def test_bad_input_is_refused_by_name(call, error, name):
-    with pytest.raises(error, match=name):
-        call()
-
-
 def test_a_path_is_traced_where_one_is_asked_for():
     for problem in (PD, lcp.LCP(np.eye(2), [1.0, 2.0]), lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])):
         plain, wanted = lcp.solve(problem), lcp.solve(problem, path=True)
