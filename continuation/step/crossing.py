@@ -164,7 +164,7 @@ class Crossings:
             if whole:
                 return None
             if not (places or doubtful):
-                return self._left(arc, attempt) if before and not series and len(looked) >= len(LOOKS) else None
+                return self._left(arc, attempt) if before and not series else None
         found = None
         if places or flipped:
             t = self._refined(arc, attempt, prediction, (passed or inside or places or guesses or [LOOKS[0]])[0])

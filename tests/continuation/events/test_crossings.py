@@ -273,11 +273,40 @@ def test_random_crossings_in_random_units(family, preset):
     ],
     ids=lambda value: getattr(value, "name", str(value)),
 )
-def test_between_two_crossings_graphs_are_nearer_than_predictions(campaign, family, seed, k, preset):
+def test_between_two_crossings_graphs_are_nearer_than_predictions(family, seed, k, preset):
     """Each of these left its graph at the second crossing, or (the last) stopped in the first one."""
     *_, problem = campaign.drawn(family, k + 1, seed)
     assert len(problem.crossings) == 2
     assert campaign.judged(problem, False, preset)[0] == ""
+
+
+def test_a_graph_is_not_left_where_a_prediction_lands_on_the_other():
+    """Behind the crossing at -0.103 the two are nearer than a prediction is to either, which the corrector likes."""
+    own, other = np.array([1.8268, -3.0783, 0.9581]), np.array([0.00696, 0.13183, 0.03856])
+
+    def graph(c, t):
+        return c[0] * t + c[1] * t**2 * 0.5 + c[2] * (np.sin(2.0 * t) - 2.0 * t) * 0.3
+
+    def slope(c, t):
+        return c[0] + c[1] * t + c[2] * (2.0 * np.cos(2.0 * t) - 2.0) * 0.3
+
+    def off(y, t):
+        return y[0] - graph(own, t), y[0] - graph(own + other, t)
+
+    path = trace(
+        from_functions(
+            lambda y, t: np.stack([np.prod(off(y, t))]),
+            lambda y, t: (
+                np.array([[sum(off(y, t))]]),
+                np.array([-slope(own, t) * off(y, t)[1] - slope(own + other, t) * off(y, t)[0]]),
+            ),
+            start=([graph(own, -1.9317)], -1.9317),
+        ),
+        target=2.0,
+        preset=continuation.DEFAULT,
+    )
+    assert [event.lam for event in branch_points(path)] == pytest.approx([-0.103108114843, 0.0], abs=1e-11)
+    assert path.endpoint.y[0] == pytest.approx(graph(own, 2.0))
 
 
 @pytest.mark.parametrize(
