@@ -140,4 +140,6 @@ def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
     if array.dtype.kind not in "fiu":
         found = f"{array.dtype} numbers" if array.dtype.kind == "c" else " ".join(repr(value).split())[:200]
         raise ValueError(f"{name}: expected real numbers, found {found}")
-    return array.astype(float)
+    with np.errstate(over="ignore"):
+        # A longdouble that no float holds becomes infinite, which is for the caller to refuse.
+        return array.astype(float)

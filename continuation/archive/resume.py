@@ -33,8 +33,14 @@ from continuation.step.options import OBSERVER, Options, documented, each
 from continuation.step.tracer import Observer, Tracer
 
 RESUMABLE = (
-    Status.TRACING, Status.INTERRUPTED, Status.BUDGET_EXHAUSTED, Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN,
-    Status.PREDICTOR_FAILED, Status.ABANDONED, Status.RAISED,
+    Status.TRACING,
+    Status.INTERRUPTED,
+    Status.BUDGET_EXHAUSTED,
+    Status.STEP_TOO_SMALL,
+    Status.LEFT_DOMAIN,
+    Status.PREDICTOR_FAILED,
+    Status.ABANDONED,
+    Status.RAISED,
 )
 
 _YOUNGER = ("guards",)

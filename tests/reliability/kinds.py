@@ -29,7 +29,7 @@ def vectors(n: int) -> tuple[Any, ...]:
         "a", None, 5.0, {}, {1, 2}, len, [NAN] * n, [INF] * n, [1j] * n, ["a"] * n, [None] * n, np.ones(n + 1),
         np.ones((n, n)), np.zeros(n, "M8[s]"), np.ma.masked_array(np.ones(n), np.ones(n)), [[1.0], [1.0, 2.0]],
         [10**400] * n, np.array([object()] * n), [True] * n, (value for value in [1.0] * n), ["-5"] * n,
-        sp.csr_array(np.ones((1, n))), dict.fromkeys(range(n), 1.0),
+        sp.csr_array(np.ones((1, n))), dict.fromkeys(range(n), 1.0), np.array(["1e4000"] * n, np.longdouble),
     )  # fmt: skip
 
 

@@ -57,16 +57,10 @@ class Start:
 
 def positive_vector(name: str, value: Any, n: int) -> Array:
     """A copy of `value` as n positive finite floats; `ValueError`, by name, for anything else."""
-    if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
-        raise ValueError(f"{name}: expected {n} positive numbers, found a masked array with masked entries")
-    try:
-        array = np.array(value)
-    except ValueError as error:
-        raise ValueError(f"{name}: expected {n} positive numbers ({error})") from None
-    if array.dtype.kind not in "fiu" or array.shape != (n,):
-        raise ValueError(f"{name}: expected {n} positive numbers, found shape {array.shape} of dtype {array.dtype}")
-    array = array.astype(float)
-    bad = ~(np.isfinite(array) & (array > 0.0))
+    array = finite_vector(name, value)
+    if array.size != n:
+        raise ValueError(f"{name}: expected {n} positive numbers, found {array.size}")
+    bad = array <= 0.0
     if bad.any():
         i = int(np.argmax(bad))
         raise ValueError(f"{name}: expected positive finite numbers, found {array[i]} at index {i}")
