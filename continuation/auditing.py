@@ -209,8 +209,7 @@ def _meets(solver: PathSolver, knot: Knot, before: Linearization, after: Lineari
     if _same(after.weights, after, knot, solver.tolerance):
         return True
     arc = Arc(before, after, before.border, hermite(before.u, before.tangent, after.u, after.tangent, before.border))
-    unit = evolve(knot, tangent=knot.tangent / norm(after.weights, knot.tangent))
-    return passes_start(solver, unit, after.weights, arc)
+    return passes_start(solver, knot, arc)
 
 
 def _same(weights: Array, point: Linearization | LocatedEvent, knot: Knot, tolerance: Tolerance) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from continuation.arrays import Array
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.metric import inner, norm
 from continuation.point.arc import Arc
@@ -29,25 +28,28 @@ def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
     return norm(point.weights, point.tangent - v) <= PARALLEL
 
 
-def passes_start(solver: PathSolver, origin: Knot, weights: Array, arc: Arc) -> bool:
+def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
     """Whether the arc passes through the start in the start's direction.
 
     The plane through the start and orthogonal to its tangent must be crossed from behind, near the start; the crossing
-    is then corrected in that plane and must be the start itself.
+    is then corrected in that plane and must be the start itself. Both in the metric of the arc: that of the start knows
+    only how far the path went there, and near a turning point its plane is crossed once more.
     """
-    behind = inner(weights, origin.tangent, arc.a.u - origin.u)
-    ahead = inner(weights, origin.tangent, arc.b.u - origin.u)
+    weights = arc.a.weights
+    v = origin.tangent / norm(weights, origin.tangent)
+    behind = inner(weights, v, arc.a.u - origin.u)
+    ahead = inner(weights, v, arc.b.u - origin.u)
     if not behind < 0.0 <= ahead:
         return False
     guess = arc.segment.at(behind / (behind - ahead))
     step = norm(weights, arc.b.u - arc.a.u)
     if norm(weights, guess - origin.u) > NEAR * step:
         return False
-    border = weights * origin.tangent
-    guess = guess - origin.tangent * inner(weights, origin.tangent, guess - origin.u)
+    border = weights * v
+    guess = guess - v * inner(weights, v, guess - origin.u)
     try:
         point = solver.project_and_linearize(arc.b, guess, border)
     except EvaluationError:
         return False
-    same = solver.tolerance.measure(point.u - origin.u, arc.a.weights) <= SAME_POINT
-    return same and inner(weights, point.tangent, origin.tangent) > 0.0
+    same = solver.tolerance.measure(point.u - origin.u, weights) <= SAME_POINT
+    return same and inner(weights, point.tangent, v) > 0.0

@@ -163,7 +163,7 @@ class Target:
                     raise EvaluationError("the equations do not hold where the path would take the target's value")
                 return ArcEnd(cut(arc, evolve(point, u=u)), at, kind, False, limit)
         origin = state.origin
-        if passes_start(self.solver, origin, state.origin_weights, arc):
+        if passes_start(self.solver, origin, arc):
             return ArcEnd(cut(arc, evolve(arc.b, u=origin.u, tangent=origin.tangent)), EndsAt.START, whole=False)
         return ArcEnd(arc)
 

@@ -73,6 +73,45 @@ def singular_places(
     return sorted((1.0 / values).tolist())
 
 
+def eigenvalues_along(found: dict[float, list[float]]) -> tuple[Array, Array]:
+    """The largest eigenvalue at each of some points of an arc, from its beginning; one where branches cross.
+
+    Parameters
+    ----------
+    found : dict
+        For each point the places that are seen from there; none where the eigenvalue is small.
+
+    Returns
+    -------
+    times, values : ndarray
+        Zero at zero first.
+    """
+    times = np.array([0.0, *sorted(found)])
+    return times, np.array([t / found[t][0] if t and found[t] else 0.0 for t in times])
+
+
+def peak_between(found: dict[float, list[float]], resolution: float) -> float | None:
+    """Where between points of an arc H' may be singular twice: it was nearly so, and less on either side.
+
+    Parameters
+    ----------
+    found : dict
+        As for `eigenvalues_along`.
+    resolution : float
+        Nothing is told as near as that to one of the points.
+    """
+    at, near = eigenvalues_along(found)
+    for k in range(1, near.size - 1):
+        # From there a crossing is expected before the next point, which does not show it.
+        if near[k + 1] < near[k] < 1.0 and near[k] > max(near[k - 1], at[k] / at[k + 1]):
+            # The vertex of the parabola through the three, if they are known.
+            a, b, _ = np.polyfit(at[k - 1 : k + 2] - at[k], near[k - 1 : k + 2], 2)
+            peak = at[k] - 0.5 * b / a if near[k + 1] else 0.5 * (at[k - 1] + at[k])
+            if min(abs(peak - at)) > resolution:
+                return float(peak)
+    return None
+
+
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
     """How many ranks the matrix loses at a singular place: eigenvectors of one eigenvalue found from several vectors.
 

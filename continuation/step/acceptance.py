@@ -107,7 +107,8 @@ class Examiner:
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
-                found_there = self.crossings.on_arc(part, attempt, prediction, changed, ends)
+                before = state.occurrences[index] > 0
+                found_there = self.crossings.on_arc(part, attempt, prediction, changed, ends, before)
                 if isinstance(found_there, Rejected):
                     return found_there
                 branch = found_there

@@ -15,7 +15,7 @@ from continuation.arrays import Array, largest
 from continuation.contraction import RELIABLE
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events.crossing import multiplicity, singular_places
+from continuation.events.crossing import eigenvalues_along, multiplicity, peak_between, singular_places
 from continuation.events.singularity import SimpleBranchPoint, branch_point_near, row_sizes
 from continuation.metric import norm
 from continuation.point.arc import Arc, position
@@ -35,9 +35,9 @@ EIGHTHS = (*LOOKS, 0.125, 0.375, 0.625, 0.875)
 STRIDE = 0.125
 """Between these."""
 
-NEARLY, MOST_LOOKS = 0.9, 12
-"""Between two looks lies a pair of crossings if from either side H' seems to be singular soon: from so much on, a
-parabola says where to look again, so many times in all."""
+MOST_LOOKS = 12
+"""Between two looks may lie a pair of crossings, if the first leads to expect one there, and the second knows nothing
+of it: a parabola says where to look again, so many times in all."""
 
 CHANGED = 0.25
 """Where H' has changed by more than this part half way, it is looked at on either side too, since two crossings may lie
@@ -53,8 +53,8 @@ REFINEMENTS, CLOSE = 4, 0.03
 BEYOND = 1.15
 """So far the places are believed, in arcs."""
 
-ONWARD = 0.25
-"""So far behind the arc's end, in steps, H' is compared with that there, to look back."""
+ONWARD = 0.1
+"""So far behind the arc's end, in arcs, H' is compared with that there, to look back."""
 
 TINY = 1e-3
 """Of what lies ahead of the arc's end nothing is asked."""
@@ -114,7 +114,7 @@ class Crossings:
     solver: PathSolver
 
     def on_arc(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, before: bool
     ) -> Crossed | Rejected | None:
         """The branch point on an arc, if there is one; or why the arc does not count, and which step to try.
 
@@ -129,11 +129,17 @@ class Crossings:
             Whether the determinant's sign changes from its beginning to its end.
         ends : bool
             Whether the path ends where the arc does: what lies beyond does not count.
+        before : bool
+            Whether branches have crossed on this path already.
         """
         # An arc that was cut, as at a kink, is the beginning of what was predicted.
         if arc.b is not attempt.point:
             attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
-        looked = self._looked(arc, attempt, prediction)
+        looked, series = self._looked(arc, attempt, prediction), hasattr(prediction, "segment")
+        seen = looked
+        if series:
+            # So near to the path they need not be extrapolated far: a place counts where a look is behind it.
+            looked = {at: [t for t in there if t < at + STRIDE] for at, there in seen.items()}
         places = max(([t for t in found if t < BEYOND] for found in looked.values()), key=len, default=[])
         if flipped and not places and (apply := self._derivative(arc.b.u)) is not None:
             places = singular_places(arc.a, apply, arc.b.border, 1.0)
@@ -152,19 +158,21 @@ class Crossings:
             return _rejected(attempt, Rejection.ORIENTATION, inside[0])
         if len(together) > 1:
             return self._together(arc, attempt, prediction, together, flipped)
-        changing = hasattr(prediction, "segment") or bool(looked.get(LOOKS[0]))
+        changing = series or bool(looked.get(LOOKS[0]))
         doubtful = changing and len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
+        # A series is so near to the path that its looks tell all.
+        passed = [there[0] for at, there in sorted(looked.items()) if there and there[0] <= at] if series else []
         if not flipped:
-            seen = any(found and found[0] < at for at, found in looked.items())
-            # A series is so near to the path that its looks tell all.
-            whole = hasattr(prediction, "segment") and not seen and self._continues(arc, looked)
-            if whole or not (places or doubtful):
+            whole = series and not passed and self._continues(arc, seen)
+            if whole:
                 return None
+            if not (places or doubtful):
+                return self._left(arc, attempt) if before and not series else None
         found = None
         if places or flipped:
-            t = self._refined(arc, attempt, prediction, (inside or places or guesses or [LOOKS[0]])[0])
+            t = self._refined(arc, attempt, prediction, (passed or inside or places or guesses or [LOOKS[0]])[0])
             found = self._found(arc, prediction(t * attempt.h))
-        if found is None and not flipped and (behind := self._behind(arc, attempt)) is not None:
+        if found is None and not flipped and (behind := self._behind(arc)) is not None:
             found = self._found(arc, arc.segment.at(behind))
         if found is None and flipped and inside and len(lost := self._multiple(arc, inside)) > 1:
             return self._together(arc, attempt, prediction, lost, flipped)
@@ -177,12 +185,40 @@ class Crossings:
             return _rejected(attempt, Rejection.AT_CROSSING, AWAY)
         if at > 1.0:
             # What lies beyond does not change the sign on the arc, which left its branch.
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or passed else None
         if not flipped or doubtful:
             # With a second crossing behind it the sign is that of the other branch: how well the corrector contracts
             # tells the two apart.
             return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
+        if not series and found.branch_of(arc.a) != found.branch_of(arc.b):
+            # The arc's end is on the other branch: a second crossing, of which nothing was seen, made its sign right.
+            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (at + 1.0))
+        if (between := self._more(arc, seen, at)) is not None:
+            return _rejected(attempt, Rejection.CROSSINGS, between)
         return self._point(arc, found, at)
+
+    def _left(self, arc: Arc, attempt: Arrival) -> Rejected | None:
+        """Whether an arc on which nothing was seen leads over a crossing to the other branch, as seen from its end.
+
+        Between two crossings the branches may be nearer to each other than a prediction is to either.
+        """
+        behind = self._behind(arc)
+        return None if behind is None or behind <= 0.0 else _rejected(attempt, Rejection.ORIENTATION, 0.5)
+
+    def _more(self, arc: Arc, seen: dict[float, list[float]], at: float) -> float | None:
+        """A place on the arc between the crossing found and another one; None where it explains all that was seen.
+
+        The largest eigenvalue passes one where branches cross: between two looks, or behind the last one.
+        """
+        apply = self._derivative(arc.b.u)
+        there = [] if apply is None else singular_places(arc.a, apply, arc.b.border, 1.0 / CHANGED)
+        times, values = eigenvalues_along({**seen, 1.0: there})
+        changes = [times[k : k + 2] for k in np.flatnonzero(np.diff(values > 1.0))]
+        if len(changes) > 1:
+            return float(changes[0][1])
+        if changes and not changes[0][0] - BESIDE < at < changes[0][1] + BESIDE:
+            return 0.5 * (at + float(changes[0].mean()))
+        return None
 
     def _counted(self, arc: Arc, places: list[float], flipped: bool) -> list[float]:
         """The same places, each as often as H' loses a rank there, if their number does not agree with the sign."""
@@ -239,11 +275,9 @@ class Crossings:
             found[at] = [at * t for t in singular_places(arc.a, apply, arc.a.border, ahead, turned=k)]
             if not found[LOOKS[0]] and not series and attempt.correction.contraction <= DOUBTFUL:
                 break
-            if series and len(EIGHTHS) <= len(found) == len(looks) < MOST_LOOKS and (peak := _peak(found)) is not None:
-                looks.append(peak)
-        if series:
-            # So near to the path they need not be extrapolated far: a place counts where a look is behind it.
-            found = {at: [t for t in places if t < at + STRIDE] for at, places in found.items()}
+            if series and len(EIGHTHS) <= len(found) == len(looks) < MOST_LOOKS:
+                peak = peak_between(found, APART)
+                looks += [] if peak is None else [peak]
         return found
 
     def _derivative(self, u: Array) -> Callable[[Array], Array] | None:
@@ -267,14 +301,14 @@ class Crossings:
         found = 1.0 / there[0] if there else 0.0
         return abs(found - expected) <= 0.5 * abs(1.0 - found) and abs(1.0 - found) > BESIDE
 
-    def _behind(self, arc: Arc, attempt: Arrival) -> float | None:
+    def _behind(self, arc: Arc) -> float | None:
         """Where on the arc the bordered matrix seems to have been singular, seen from its end and a little farther on.
 
         Where two branches are as near to each other as the prediction is to either, looks along the prediction tell
         little. The end is on one of them: if that comes from a crossing on the arc, the matrix there gets more regular.
         """
         b = arc.b
-        if (apply := self._derivative(b.u + ONWARD * attempt.h * b.tangent)) is None:
+        if (apply := self._derivative(arc.segment.at(1.0 + ONWARD))) is None:
             return None
         places = [1.0 + ONWARD * t for t in singular_places(b, apply, b.border, TINY, 1.0 / ONWARD)]
         return max((t for t in places if t < 1.0), default=None)
@@ -313,19 +347,6 @@ class Crossings:
         """The branch point as a point of the path, its tangent that of the branch which goes on."""
         rays = found.rays(arc.segment.derivative(at), arc.a.weights)
         return Crossed(evolve(arc.a, u=found.u, tangent=rays[1]), rays)
-
-
-def _peak(found: dict[float, list[float]]) -> float | None:
-    """Where between looks H' may be singular twice: it was nearly so, and less on either side; None if nowhere."""
-    at = np.sort([t for t, places in found.items() if places])
-    near = np.array([t / found[t][0] for t in at])
-    k = int(near.argmax()) if near.size else 0
-    if not 0 < k < near.size - 1 or not NEARLY < near[k] < 1.0:
-        return None
-    # The vertex of the parabola through the three.
-    a, b, c = np.polyfit(at[k - 1 : k + 2] - at[k], near[k - 1 : k + 2], 2)
-    peak = float(at[k] - 0.5 * b / a)
-    return peak if min(abs(peak - at)) > APART and c - 0.25 * b * b / a > near[k] else None
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:

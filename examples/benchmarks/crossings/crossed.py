@@ -142,11 +142,16 @@ def _roots(k: Array, s: Array) -> list[float]:
     return roots
 
 
-def transversal(rng: np.random.Generator, n: int, units: float) -> Crossed:
+def apart(rng: np.random.Generator, n: int, units: float) -> Crossed:
+    """As `transversal`, and the graphs differ by about 1."""
+    return transversal(rng, n, units, near=False)
+
+
+def transversal(rng: np.random.Generator, n: int, units: float, near: bool = True) -> Crossed:
     """Two graphs x_0 = f(s), g(s) that differ by 10^-2..1 and cross at most three times; the path is the first."""
     while True:
         a = rng.normal(0.0, 1.0, 3)
-        b = a + rng.normal(0.0, 1.0, 3) * 10.0 ** rng.uniform(-2.0, 0.0)
+        b = a + rng.normal(0.0, 1.0, 3) * (10.0 ** rng.uniform(-2.0, 0.0) if near else 1.0)
         begin = float(-2.0 + rng.uniform(-0.3, 0.3))
         roots, size = _roots(a - b, np.linspace(begin, 2.0, 4002)), np.abs(a - b).max()
         # Crossings that touch, or lie at the ends, are not simple or not on the way.

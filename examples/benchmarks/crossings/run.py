@@ -7,17 +7,18 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from crossed import Crossed, arm, pitchfork, transcritical, transversal
+from crossed import Crossed, apart, arm, pitchfork, transcritical, transversal
 
 import continuation as ct
 from continuation.arrays import Array
 
 FAMILIES: dict[str, Callable[..., Crossed]] = {
     "transversal": transversal,
+    "apart": apart,
     "pitchfork": pitchfork,
     "arm": arm,
     "transcritical": transcritical,
@@ -58,16 +59,21 @@ def _on(problem: Crossed) -> Any:
     return ct.Monitor(beyond, name="the end of the arm", terminal=1)
 
 
+def drawn(name: str, count: int, seed: int) -> Iterator[Crossed]:
+    """So many problems of a family, of 1 to 50 unknowns."""
+    rng = np.random.default_rng(seed)
+    for k in range(count):
+        n = int(rng.integers(1, 51)) if k % 2 else int(rng.integers(1, 6))
+        yield FAMILIES[name](rng, n, float(rng.choice([0.0, 2.0, 6.0])))
+
+
 def main(count: int, seed: int) -> None:
     """Print the counts for each family and preset."""
-    for name, family in FAMILIES.items():
+    for name in FAMILIES:
         for preset in PRESETS:
-            rng = np.random.default_rng(seed)
             wrong: Counter[str] = Counter()
             worst, factorizations, examples = 0.0, 0, []
-            for k in range(count):
-                n = int(rng.integers(1, 51)) if k % 2 else int(rng.integers(1, 6))
-                problem = family(rng, n, float(rng.choice([0.0, 2.0, 6.0])))
+            for k, problem in enumerate(drawn(name, count, seed)):
                 outcome, error, path = judged(problem, name == "arm", preset)
                 factorizations += path.counts.factorizations
                 worst = max(worst, 0.0 if np.isnan(error) else error)
