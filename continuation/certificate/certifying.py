@@ -12,9 +12,10 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.certificate.cells import Cells, between, joined
+from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Signs, pieces
 from continuation.certificate.form import SupportsQuadratic
-from continuation.certificate.krawczyk import ByIntervals, Engine
+from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts

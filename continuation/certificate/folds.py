@@ -9,7 +9,8 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
-from continuation.certificate.krawczyk import ByIntervals, Engine, Judged, solved, tangent
+from continuation.certificate.engine import Engine, Judged, solved, tangent
+from continuation.certificate.krawczyk import ByIntervals
 from continuation.intervals.calculus import along_curve
 from continuation.intervals.ends import EPS, Ends, thin
 

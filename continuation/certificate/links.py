@@ -13,7 +13,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node
-from continuation.certificate.krawczyk import Engine, tangent, up_by
+from continuation.certificate.engine import Engine, tangent, up_by
 from continuation.certificate.tubes import along, velocity
 from continuation.intervals.ends import EPS, Ends, Mask
 

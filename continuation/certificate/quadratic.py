@@ -17,9 +17,10 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs, expansion
+from continuation.certificate.engine import Judged, applied, up_by
 from continuation.certificate.form import ROUNDED, Affine, Quadratic
 from continuation.certificate.inverse import inverted, times
-from continuation.certificate.krawczyk import Judged, Several, applied, up_by
+from continuation.certificate.krawczyk import Several
 from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin
 
 ENTRIES = 1_000_000

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from continuation.certificate.cells import Cells, expansion, slabs_of
+from continuation.certificate.engine import Engine, tangent
 from continuation.certificate.folds import Piece, Turn, turns
-from continuation.certificate.krawczyk import ByIntervals, Engine, tangent
+from continuation.certificate.krawczyk import ByIntervals
 from continuation.intervals.calculus import derivatives, with_gradient
 from continuation.intervals.ends import Ends, bilinear
 

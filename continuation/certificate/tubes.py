@@ -7,8 +7,8 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, expansion, sizes, slabs_of
+from continuation.certificate.engine import Engine, Judged
 from continuation.certificate.folds import Signs, signs
-from continuation.certificate.krawczyk import Engine, Judged
 from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
 
 FLOOR = 1e-6

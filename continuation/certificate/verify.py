@@ -10,8 +10,9 @@ from attrs import evolve
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined, sizes
+from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Turn, pieces, turns
-from continuation.certificate.krawczyk import ByIntervals, Engine
+from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.switches import crossings

@@ -167,7 +167,9 @@ class Crossings:
             if whole:
                 return None
             if not (places or doubtful):
-                return self._left(arc, attempt) if before and not series else None
+                # Between two crossings the branches may be nearer to each other than a prediction is to either.
+                back = before and not series and (behind := self._behind(arc)) is not None and behind > 0.0
+                return _rejected(attempt, Rejection.ORIENTATION, 0.5) if back else None
         found = None
         if places or flipped:
             t = self._refined(arc, attempt, prediction, (passed or inside or places or guesses or [LOOKS[0]])[0])
@@ -196,14 +198,6 @@ class Crossings:
         if (between := self._more(arc, seen, at)) is not None:
             return _rejected(attempt, Rejection.CROSSINGS, between)
         return self._point(arc, found, at)
-
-    def _left(self, arc: Arc, attempt: Arrival) -> Rejected | None:
-        """Whether an arc on which nothing was seen leads over a crossing to the other branch, as seen from its end.
-
-        Between two crossings the branches may be nearer to each other than a prediction is to either.
-        """
-        behind = self._behind(arc)
-        return None if behind is None or behind <= 0.0 else _rejected(attempt, Rejection.ORIENTATION, 0.5)
 
     def _more(self, arc: Arc, seen: dict[float, list[float]], at: float) -> float | None:
         """A place on the arc between the crossing found and another one; None where it explains all that was seen.

@@ -128,7 +128,8 @@ class MixedLCP:
         ----------
         x : ndarray, shape (n,)
         """
-        return np.minimum(np.maximum(x, self.lower), self.upper)
+        above: Array = np.maximum(x, self.lower)
+        return above if self.standard else np.minimum(above, self.upper)
 
     def w(self, x: Array) -> Array:
         """A x + q, shape (n,).
@@ -312,15 +313,6 @@ class LCP(MixedLCP):
     def standard(self) -> bool:
         """True."""
         return True
-
-    def clipped(self, x: Array) -> Array:
-        """The nearest point that is not negative.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-        """
-        return np.maximum(x, 0.0)
 
     def with_q(self, q: Any) -> LCP:
         """LCP(q, A) for another q; what is known of A is not found out again.

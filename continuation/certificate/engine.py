@@ -1,0 +1,113 @@
+"""What Krawczyk's test needs to know of slabs, and what follows from it where it holds."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Slabs
+from continuation.intervals.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
+
+
+class Judged(Protocol):
+    """What is known of slabs once their derivatives have been bounded."""
+
+    @property
+    def misfit(self) -> Array:
+        """A bound of |Y G(s, p(s))|, shape (slabs, N + 1); nan where there is none."""
+        ...
+
+    @property
+    def across(self) -> Ends:
+        """The range of the last column of Y(s) over each slab, shape (slabs, N + 1)."""
+        ...
+
+    def applied(self, v: Ends) -> Ends:
+        """The range of Y(s) v over each slab, for v of that shape."""
+        ...
+
+    def spread(self, x: Array, radius: Array) -> Array:
+        """A bound of |I - Y G'(p(s) + d)| x for |d| <= radius and x >= 0; both of shape (slabs, N + 1)."""
+        ...
+
+
+class Engine(Protocol):
+    """A way to bound what Krawczyk's test needs.
+
+    Attributes
+    ----------
+    exact : bool
+        Whether bounds hold for all radii, and smaller ones need no new judgement.
+    """
+
+    exact: ClassVar[bool]
+
+    @property
+    def order(self) -> int:
+        """To which power of a slab's length |I - Y(s) G'(p(s))| falls."""
+        ...
+
+    @property
+    def most(self) -> int:
+        """Into so many slabs a cell is cut; where they do not do, a new point of the path is worth more."""
+        ...
+
+    @property
+    def fine(self) -> int:
+        """Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more."""
+        ...
+
+    def judge(self, slabs: Slabs, radius: Array) -> Judged:
+        """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
+        ...
+
+
+def up_by(x: Array, count: int) -> Array:
+    """A bound for sums of `count` products of numbers >= 0 that were rounded in any order."""
+    bound: Array = x * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
+    return bound
+
+
+def applied(Y: Array, v: Ends) -> Ends:
+    """The range of matrices times interval vectors, slab by slab."""
+    image = bilinear(np.matmul, thin(Y), Ends(v.lo[..., None], v.hi[..., None]))
+    return Ends(image.lo[..., 0], image.hi[..., 0])
+
+
+def tangent(judged: Judged, radius: Array, tube: Array) -> Ends:
+    """The tangent t of the curve, c . t = 1, over each slab, shape (slabs, N + 1); nan where unknown.
+
+    Parameters
+    ----------
+    judged : Judged
+    radius : ndarray, shape (slabs, N + 1)
+        Within which the curve lies.
+    tube : ndarray, shape (slabs, N + 1)
+        Radii with which the test holds, for a norm.
+    """
+    return solved(judged, judged.across, radius, tube)
+
+
+def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
+    """The solutions of G' z = b, all over the slab, for v that holds Y(s) b.
+
+    With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1:
+    two terms, and a geometric series, as E^3 |Y(s) b| <= theta r and E r <= kappa r.
+
+    Parameters
+    ----------
+    judged : Judged
+    v : Ends
+    radius, tube : ndarray, shape (slabs, N + 1)
+        As in `tangent`.
+    """
+    with np.errstate(all="ignore"):
+        first = judged.spread(v.magnitude(), radius)
+        second = judged.spread(first, radius)
+        kappa = (judged.spread(tube, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
+        theta = (judged.spread(second, radius) / tube).max(axis=1) * (1.0 + 4.0 * EPS)
+        factor = np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * (1.0 + 8.0 * EPS)
+        room = up_by(first + second + factor[:, None] * tube, 3)
+        return v + Ends(-room, room)
