@@ -19,7 +19,7 @@ from continuation.certificate.cells import OVERHANG, Cells
 BITS = 113
 """Of each ball's middle: twice those of a double, so that its own round-off is no matter."""
 
-PARTS, DEPTH = 4, 5
+PARTS, DEPTH = 4, 7
 """Into how many parts a slab is cut where the test fails, and how often: it is a plainer one, its preconditioner stands
 still."""
 
