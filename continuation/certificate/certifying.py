@@ -41,12 +41,18 @@ DEPTH = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
 
 
-def engines(homotopy: Any) -> tuple[Engine, ByIntervals]:
+STILL = 1e-10
+"""Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
+
+
+def engines(homotopy: Any, points: Array | None = None) -> tuple[Engine, ByIntervals]:
     """What bounds derivatives for this homotopy: by products where it is quadratic; and by intervals, which all can.
 
     Parameters
     ----------
     homotopy : Homotopy
+    points : ndarray, shape (m, N + 1), optional
+        Of the path.
 
     Raises
     ------
@@ -55,7 +61,8 @@ def engines(homotopy: Any) -> tuple[Engine, ByIntervals]:
     """
     y, lam = homotopy.start()
     start = np.append(np.asarray(y, dtype=float), float(lam))
-    plain = ByIntervals(homotopy.residual, len(start) - 1)
+    still = points is not None and bool((np.ptp(points, axis=0) <= STILL * np.abs(points).max(axis=0)).any())
+    plain = ByIntervals(homotopy.residual, len(start) - 1, still)
     if isinstance(homotopy, SupportsQuadratic):
         return ByProducts(homotopy.quadratic()), plain
     plain.probe(start)
@@ -102,7 +109,7 @@ def certify(path: Path, homotopy: Any) -> Proof:
     if isinstance(whole, Proof):
         return whole
     homotopy, path = whole
-    engine, plain = engines(homotopy)
+    engine, plain = engines(homotopy, path.u)
     cells, gaps, found = Search(engine, plain, homotopy, path).run()
     return verified(engine, plain, cells, path, homotopy, gaps, found).of_width(width)
 
@@ -134,7 +141,7 @@ def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Pr
     if isinstance(whole, Proof):
         return whole
     homotopy, path = whole
-    engine, plain = engines(homotopy)
+    engine, plain = engines(homotopy, path.u)
     proof = verified(engine, plain, cells, path, homotopy, []).of_width(width)
     if not second:
         return proof

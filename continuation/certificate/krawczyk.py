@@ -46,16 +46,20 @@ class ByIntervals:
         ``residual(y, lam)``, of the homotopy.
     unknowns : int
         N. Up to `FEW` the preconditioner follows the path.
+    still : bool
+        Whether some component stands still along all of the path: it has no size then in which to take differences of
+        second derivatives, and the preconditioner stays as it is.
     """
 
     residual: Callable[[Any, Any], Any]
     unknowns: int
+    still: bool = False
     exact: ClassVar[bool] = False
 
     @property
     def moving(self) -> bool:
         """Whether the preconditioner follows the path."""
-        return self.unknowns <= FEW
+        return self.unknowns <= FEW and not self.still
 
     @property
     def order(self) -> int:

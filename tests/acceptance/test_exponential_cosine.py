@@ -69,7 +69,7 @@ def test_the_audit_agrees(n, backwards):
 def unguarded(monkeypatch):
     """The engine without the guards of arcs, their middle and their crossings: with either, little jumps here."""
     monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance: True)
-    monkeypatch.setattr(Crossings, "on_arc", lambda self, arc, attempt, prediction, flipped, end: None)
+    monkeypatch.setattr(Crossings, "on_arc", lambda *_: None)
 
 
 @pytest.mark.parametrize("n", [5, 6, 7, 8])
