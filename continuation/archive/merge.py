@@ -98,7 +98,7 @@ def gather(files: Sequence[File], target: File, *, finished: bool = False) -> No
             for index, (member, status) in enumerate(ends):
                 if finished and status == int(Status.TRACING):
                     continue
-                candidate = (status == int(Status.TRACING), k, index)
+                candidate = (status in (int(Status.TRACING), int(Status.INTERRUPTED)), k, index)
                 chosen[member] = min(chosen.get(member, candidate), candidate)
         shares = []
         for first, last in _runs([chosen[member][1:] for member in sorted(chosen)]):

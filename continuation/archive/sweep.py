@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import glob
 import os
 import secrets
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import suppress
 from itertools import pairwise
@@ -18,12 +17,9 @@ from typing import Any, Unpack
 from attrs import define, field
 
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.errors import ArchiveError
-from continuation.archive.locks import is_held
-from continuation.archive.merge import gather
+from continuation.archive.parts import PATIENCE, collect, end_repeats, finished
 from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
-from continuation.archive.writer import PathLog
 from continuation.checks import complain, instance_with, is_number
 from continuation.interrupted import Interrupted
 from continuation.path import Path
@@ -32,9 +28,8 @@ from continuation.step.options import Options, check_names
 
 Progress = Callable[[int, int], None]
 _PARTS_PER_WORKER = 4
-_GRACE, _PATIENCE = 0.5, 10.0
-"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s, and the rest is for the files.
-The second is for those that cannot be ended, as threads: a file is merged when its writer has left it."""
+_GRACE = 0.5
+"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s; the rest is for the files."""
 
 
 def trace_many(
@@ -134,6 +129,8 @@ def _spread(
     try:
         run.begin()
         run.mend()
+        if target is not None and not run.errors():
+            end_repeats(target, token, stop)
     except KeyboardInterrupt:
         run.stop(stop)
     finally:
@@ -142,7 +139,7 @@ def _spread(
     found = run.results
     stopped = run.stopped or any(result.stopped for result in found.values() if isinstance(result, Result))
     if target is not None:
-        _collect(batches, run.errors(), target, token, stopped)
+        collect(batches, run.errors(), target, token, stopped)
     if stopped:
         raise _interrupted([path for k in sorted(found) for path in getattr(found[k], "paths", ())])
     return Result([] if target is not None else run.paths())
@@ -170,15 +167,18 @@ class _Run:
         self.processes = _processes(self.executor)
         waiting = set(self.futures)
         while waiting:
-            finished, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
-            if not finished:
+            ended, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
+            if not ended:
                 # All that run have run for that long, since a worker that ends one begins the next.
                 if not _end_processes(self.executor):
                     waiting = {future for future in waiting if not future.cancel() and not future.running()}
                     continue
-                finished, waiting = wait(waiting)
-            for future in finished:
+                ended, waiting = wait(waiting)
+            for future in ended:
                 self._take(future)
+                # Dask does again what is lost with a worker while somebody holds its future.
+                del self.futures[future]
+            del ended
 
     def _take(self, future: Future[Result]) -> None:
         k = self.futures[future]
@@ -207,7 +207,7 @@ class _Run:
                                                             else "was never begun"))
             if isinstance(error, Result):
                 continue
-            written = _finished(batch)
+            written = finished(batch)
             for i in range(len(batch.homotopies)):
                 if batch.first + i not in written:
                     self.again[batch.first + i] = self._alone(batch.single(i), error)
@@ -247,7 +247,7 @@ class _Run:
         if wait(self.futures, timeout=_GRACE).not_done:
             ended = _end_processes(self.executor)
             self._join()
-            wait(self.futures, timeout=_GRACE / 4 if ended else _PATIENCE)
+            wait(self.futures, timeout=_GRACE / 4 if ended else PATIENCE)
         for future, k in self.futures.items():
             if future.done():
                 self.results[k] = _outcome(future)
@@ -313,38 +313,3 @@ def _batches(
         file = target.with_name(name) if target is not None else None
         batches.append(Batch(tasks[first:last], first, file, stop, options))
     return batches
-
-
-# -- the files of the workers ---------------------------------------------------------------------------------
-
-
-def _finished(batch: Batch) -> set[int]:
-    """The numbers of the homotopies whose paths a lost worker had finished."""
-    found: set[int] = set()
-    if batch.file is not None:
-        for file in batch.file.parent.glob(f"{glob.escape(batch.file.stem)}*{batch.file.suffix}"):
-            with suppress(ArchiveError), open_archive(file) as part:
-                ended = part.paths["status"] != int(Status.TRACING)
-                found.update(part.paths["member"][ended].tolist())
-    return found
-
-
-def _collect(
-    batches: Sequence[Batch], errors: Mapping[int, BaseException], target: File, token: str, stopped: bool
-) -> None:
-    """Merge the workers' files; what was lost is there as failures, unless Ctrl-C is why it is not there."""
-    pattern = f"{glob.escape(target.stem)}.sweep-{token}.*{glob.escape(target.suffix)}"
-    lost = target.with_name(f"{target.stem}.sweep-{token}.lost{target.suffix}")
-    if errors and not stopped:
-        tasks = {batch.first + i: homotopy for batch in batches for i, homotopy in enumerate(batch.homotopies)}
-        with PathLog(lost) as log:
-            for number, error in sorted(errors.items()):
-                log.member = number
-                log.failure(tasks[number], error)
-    files = sorted(target.parent.glob(pattern))
-    if files:
-        gather(files, target, finished=stopped)
-    # What a worker was writing when it was ended is named after its file, and nobody writes it any more.
-    parts = target.parent.glob(f".{pattern}.*.part")
-    for file in (*files, *(part for part in parts if not is_held(part))):
-        file.unlink()

@@ -5,15 +5,16 @@ import os
 import signal
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+import weakref
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
-from attrs import frozen
+from attrs import Factory, frozen
 
 from continuation import Status, trace
-from continuation.archive import open_archive, trace_many
+from continuation.archive import open_archive, sweep, trace_many
 from continuation.archive.workers import Batch, work
 from problems.bifurcation import Cusp
 
@@ -151,3 +152,67 @@ def test_a_batch_that_is_run_a_second_time(tmp_path, expected):
         for file in files:
             with open_archive(file) as archive:
                 assert [len(path) for path in archive] == [len(path) for path in expected]
+
+
+@frozen
+class SlowAgain(Cusp):
+    """Quick once, and then for longer than anybody waits."""
+
+    done: list = Factory(list)
+
+    def residual(self, y, lam):
+        if self.done:
+            time.sleep(0.02)
+        return super().residual(y, lam)
+
+
+class LosesWhatIsDone(ThreadPoolExecutor):
+    """As dask when a worker dies that had done a batch: it is begun again, while its result is here."""
+
+    def __init__(self, workers):
+        super().__init__(workers)
+        self.again = []
+
+    def submit(self, function, batch):
+        result = function(batch)
+        for homotopy in batch.homotopies:
+            homotopy.done.append(True)
+        again = super().submit(function, batch)
+        while not again.done() and not list(batch.file.parent.glob(f"{batch.file.stem}-*")):
+            time.sleep(0.01)
+        self.again.append(again)
+        future = Future()
+        future.set_result(result)
+        return future
+
+
+def test_what_is_done_again_for_nobody_is_ended(tmp_path, expected):
+    tasks = [SlowAgain(task.splitting) for task in GOOD]
+    with LosesWhatIsDone(len(GOOD)) as executor, trace_many(tasks, executor, tmp_path / "run.h5") as paths:
+        assert all(again.done() for again in executor.again)
+        assert [path.u.tolist() for path in paths] == [path.u.tolist() for path in expected]
+    assert os.listdir(tmp_path) == ["run.h5"]
+
+
+def test_what_is_here_is_asked_for_no_more(tmp_path, monkeypatch, expected):
+    # While somebody holds its future dask does again what its worker had done.
+    futures = []
+
+    class Remembers(Executor):
+        def submit(self, function, batch):
+            future = Future()
+            future.set_result(function(batch))
+            futures.append(weakref.ref(future))
+            return future
+
+    held = []
+    collect = sweep.collect
+
+    def collected(*arguments):
+        held.extend(future() for future in futures)
+        collect(*arguments)
+
+    monkeypatch.setattr(sweep, "collect", collected)
+    with Remembers() as executor, trace_many(GOOD, executor, tmp_path / "run.h5") as paths:
+        assert [path.u.tolist() for path in paths] == [path.u.tolist() for path in expected]
+    assert held == [None] * len(futures)
