@@ -1,4 +1,4 @@
-"""The campaigns of the benchmark, small: each work killed twice, each file damaged in each way once; none may go wrong."""
+"""The campaigns of the benchmark, small: each work killed twice, each file damaged in each way, and none goes wrong."""
 
 import subprocess
 import sys

@@ -62,7 +62,7 @@ def test_the_whole_curve_is_proved_and_what_is_changed_is_not(name):
     assert len(proof.turning_points) == turning
     width = path.u.shape[1]
     assert proof.node_radius.shape[1] == len(proof.radius(0.0)) == width
-    # Where much stands still, a point that is moved moves all of it, and every cell fails at every depth: of a part only.
+    # Where much stands still, one moved point moves all of it, and every cell fails at every depth: a part only.
     k, extent = len(path) // 2, np.maximum(np.ptp(path.u, axis=0), 1.0)
     part = path if turning else evolve(path, steps=list(path.steps)[k - 1 : k + 2], events=[])
     assert turning or certify(part, curve).complete
