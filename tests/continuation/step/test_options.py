@@ -156,7 +156,7 @@ def test_numbers_of_numpy_are_numbers():
 def test_a_misspelt_option_fails_in_mypy(tmp_path):
     api = pytest.importorskip("mypy.api")
     program = "import continuation\ncontinuation.trace(None, budgett=3)\ncontinuation.trace(None, tolerance=1e-6)\n"
-    # The configuration of `make types`, so that what it has left is used: without it numpy's types are read for seconds.
+    # The configuration of `make types`, so that what it has left is used: numpy's types alone take seconds.
     settings, left = tmp_path / "pyproject.toml", ROOT / ".mypy_cache"
     settings.write_text((ROOT / "pyproject.toml").read_text().replace('packages = ["continuation", "problems"]', ""))
     cache = left if left.exists() else tmp_path
