@@ -74,10 +74,6 @@ def plot_components(
     legend : bool
         Whether to name the curves.
 
-    Returns
-    -------
-    Axes
-
     Raises
     ------
     ImportError
@@ -196,10 +192,6 @@ def plot_steps(path: Path, axes: Axes | None = None) -> Axes:
     ----------
     path : Path
     axes : matplotlib Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Raises
     ------

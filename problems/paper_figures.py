@@ -26,10 +26,6 @@ def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: i
     columns : int
         Panels in a row.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ImportError

@@ -237,12 +237,7 @@ RULES: dict[str, Rule] = {
 
 
 def power_rule(exponent: float) -> Rule:
-    """u**exponent for a constant exponent; where it is no whole number, for u > 0.
-
-    Parameters
-    ----------
-    exponent : float
-    """
+    """u**exponent for a constant exponent; where it is no whole number, for u > 0."""
     r = float(exponent)
     if r == int(r):
         return _whole_rule(int(r))

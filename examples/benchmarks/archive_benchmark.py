@@ -1,21 +1,17 @@
-"""The archive, measured: cost a step, and of checksums; memory of a long path; kills; many small paths.
+"""The archive, measured: cost a step, and of checksums; memory of a long path; small paths; campaigns of kills, damage.
 
-python examples/benchmarks/archive_benchmark.py [cost] [checksums] [memory] [kills] [small] [--points N]
+python examples/benchmarks/archive_benchmark.py [cost] [checksums] [memory] [small] [--points N]
     [--kills N] [--damage N] [--seed S]
 """
 
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import os
-import random
-import signal
 import statistics
 import sys
 import tempfile
 import time
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -24,9 +20,9 @@ from archive_kills import kill
 from attrs import evolve
 
 from continuation import Budget, Step, Tracer, trace
-from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume, store
+from continuation.archive import PathLog, open_archive, store
 from continuation.controllers import Bounds, Fixed
-from problems.bifurcation import Circle, ExponentialCosine
+from problems.bifurcation import Circle
 
 
 class Diagonal:
@@ -132,55 +128,6 @@ def _resident() -> float:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
-HOMOTOPY = ExponentialCosine(5)
-OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.01))}
-
-
-def _write(file: Path, rows: int) -> None:
-    trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), **OPTIONS)
-
-
-def kills(folder: Path, count: int = 200) -> None:
-    """kill -9 at random moments, from the first millisecond on; each file recovered, compared, and resumed."""
-    begin = time.perf_counter()
-    path = trace(HOMOTOPY, **OPTIONS)
-    seconds = time.perf_counter() - begin
-    generator, context, found = random.Random(1), multiprocessing.get_context("fork"), Counter()
-    for k in range(count):
-        file = folder / f"killed{k}.h5"
-        process = context.Process(target=_write, args=(file, generator.choice([1, 2, 7, 64])))
-        process.start()
-        # Every tenth kill may fall into the making of the file, the others into its growth.
-        while k % 10 and not file.exists():
-            time.sleep(0.001)
-        time.sleep(generator.uniform(0.0, 1.2 * seconds if k % 10 else 0.05))
-        os.kill(process.pid, signal.SIGKILL)
-        process.join()
-        found[_verdict(file, path)] += 1
-    print(f"kill -9, {count} times: " + ", ".join(f"{number} {what}" for what, number in found.most_common()))
-
-
-def _verdict(file: Path, path) -> str:
-    if not file.exists():
-        return "before there was a file"
-    try:
-        recover(file)
-    except ArchiveError as error:
-        return f"before the first commit ({str(error).partition(': ')[2]})"
-    with open_archive(file) as archive:
-        if not len(archive):
-            return "recovered without a row"
-        rows = archive.path(0)
-    exact = np.array_equal(rows.u, path.u[: len(rows)]) and np.array_equal(rows.arclength, path.arclength[: len(rows)])
-    if not exact:
-        return "WRONG ROWS"
-    if rows.status is path.status:
-        return "complete"
-    again = resume(file)
-    same = np.array_equal(again.u, path.u) and again.counts == path.counts and again.status is path.status
-    return "recovered to an exact prefix and resumed to the exact path" if same else "RESUMED WRONG"
-
-
 def small(folder: Path, count: int = 10_000) -> None:
     """Ten thousand small paths in one file: how fast they are written, how large it is, how fast it is read."""
     import xarray  # which takes longer than the smallest campaign
@@ -225,7 +172,7 @@ def small(folder: Path, count: int = 10_000) -> None:
         )
 
 
-PARTS = {"cost": cost, "checksums": checksums, "memory": memory, "kills": kills, "small": small}
+PARTS = {"cost": cost, "checksums": checksums, "memory": memory, "small": small}
 
 
 def main() -> int:

@@ -1,4 +1,4 @@
-"""What a step costs beyond linear algebra, and Bratu's problem beside other software.
+"""Bratu's problem beside other software; what a step costs beyond linear algebra is in `size/step.py`.
 
     python examples/benchmarks/engine_benchmark.py [--rivals PYTHON]
 
@@ -7,10 +7,8 @@ thread; each time is processor time, the least of several runs.
 """
 
 import argparse
-import cProfile
 import json
 import os
-import pstats
 import subprocess
 import sys
 import time
@@ -23,14 +21,9 @@ import numpy as np  # noqa: E402
 from rivals import UPPER, measure  # noqa: E402
 
 import continuation  # noqa: E402
-from continuation import Budget, TargetValue, from_functions, trace  # noqa: E402
-from continuation.linear import factor_bordered  # noqa: E402
+from continuation import TargetValue, trace  # noqa: E402
 from problems.bifurcation import Bratu1D, Bratu2D  # noqa: E402
 from problems.bifurcation.truth import bratu  # noqa: E402
-
-PACKAGE = Path(continuation.__file__).parent
-STEPS = 300
-N = 10
 
 
 def fastest(function, repeats):
@@ -40,69 +33,6 @@ def fastest(function, repeats):
         function()
         best = min(best, time.process_time() - begin)
     return best
-
-
-# -- the cost of a step -----------------------------------------------------------------------------------------
-
-
-def wave():
-    """y_k = cos(lam + k), k = 1..N: a smooth path without end, with residual and derivative that cost little."""
-    eye, k = np.eye(N), np.arange(1.0, N + 1.0)
-    return from_functions(
-        lambda y, lam: y - np.cos(lam + k), lambda y, lam: (eye, np.sin(lam + k)), start=(np.cos(k), 0.0), target=None
-    )
-
-
-def cost_of_a_step(preset):
-    homotopy = wave()
-
-    def run():
-        return trace(homotopy, preset=preset, budget=Budget(steps=STEPS), events=[])
-
-    path = run()
-    whole = fastest(run, 7) / STEPS
-    y, lam = path.endpoint.y.copy(), path.endpoint.lam
-    H_y, H_lam = homotopy.jacobian(y, lam)
-    border, r = path.endpoint.tangent, homotopy.residual(y, lam)
-    system = factor_bordered(H_y, H_lam, border)
-    each = {
-        "factorizations": lambda: factor_bordered(H_y, H_lam, border),
-        "solves": lambda: system.solve(r, 0.0),
-        "residuals": lambda: homotopy.residual(y, lam),
-        "jacobians": lambda: homotopy.jacobian(y, lam),
-    }
-    counts = path.counts.as_dict()
-    outside = sum(
-        counts[name] / STEPS * fastest(lambda call=call: [call() for _ in range(1000)], 5) / 1000
-        for name, call in each.items()
-    )
-    print(f"\n{preset.name}: {1e6 * whole:.0f} us a step, of which linear algebra and homotopy {1e6 * outside:.0f} us,")
-    print(f"  beyond them {1e6 * (whole - outside):.0f} us; a step has", end="")
-    print(", ".join(f" {counts[name] / STEPS:.1f} {name}" for name in each), f"({len(path.events)} events in all)")
-    where_it_goes(run)
-
-
-def where_it_goes(run):
-    """Own time by file, from a profile (which itself slows small functions): shares, not microseconds."""
-    profile = cProfile.Profile()
-    profile.runcall(run)
-    shares = {}
-    for (file, _, name), (_, _, own, _, _) in pstats.Stats(profile).stats.items():
-        if str(PACKAGE) in file:
-            room = str(Path(file).relative_to(PACKAGE))
-        elif "attr" in file:
-            room = "attrs (evolve, constructors)"
-        elif "numpy" in file or file == "~":
-            room = f"numpy and builtins: {name}" if own > 0.03 * 0.5 else "numpy and builtins: the rest"
-        else:
-            room = "homotopy and benchmark"
-        shares[room] = shares.get(room, 0.0) + own
-    total = sum(shares.values())
-    for room, own in sorted(shares.items(), key=lambda pair: -pair[1])[:14]:
-        print(f"    {100.0 * own / total:5.1f} %  {room}")
-
-
-# -- Bratu beside others ----------------------------------------------------------------------------------------
 
 
 def ours(kind, m, preset):
@@ -132,7 +62,7 @@ def theirs(python, name, kind, m):
 def compare(python):
     cases = [("interval", 100, bratu.FOLD_1D[100][0]), ("interval", 1000, bratu.FOLD_1D[1000][0])]
     cases.append(("square", 50, bratu.FOLD_2D[50]))
-    print("\nBratu's problem through the fold to the upper branch, one thread, times relative to the plain scipy loop")
+    print("Bratu's problem through the fold to the upper branch, one thread, times relative to the plain scipy loop")
     print(f"{'problem':>13} {'software':>22} {'time':>9} {'ratio':>6} {'steps':>6} ", end="")
     print(f"{'factor.':>8} {'resid.':>7} {'error':>6}")
     for kind, m, fold in cases:
@@ -158,7 +88,4 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rivals", metavar="PYTHON", help="an interpreter that has bice and pysces")
     options = parser.parse_args()
-    print(f"The cost of a step at N = {N}, dense, {STEPS} steps")
-    for chosen in (continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE):
-        cost_of_a_step(chosen)
     compare(options.rivals)

@@ -25,10 +25,6 @@ def penalised(G: Array, c: Array) -> Path:
     G : ndarray, shape (p, p)
     c : ndarray, shape (p,)
 
-    Returns
-    -------
-    Path
-
     References
     ----------
     Osborne, Presnell and Turlach, IMA J. Numer. Anal. 20 (2000); Efron, Hastie, Johnstone and Tibshirani, Ann. Statist.

@@ -79,12 +79,7 @@ class Saddle:
 
     @classmethod
     def of(cls, problem: MixedLCP) -> Saddle | None:
-        """The program whose variables are the first `problem.primal` unknowns, or None.
-
-        Parameters
-        ----------
-        problem : MixedLCP
-        """
+        """The program whose variables are the first `problem.primal` unknowns, or None."""
         n, A = problem.primal, problem.A
         pairs = ranges(problem)
         activity, down = np.full(problem.n, -1, dtype=np.intp), np.zeros(problem.n)

@@ -276,12 +276,6 @@ def with_zeros(problem: MixedLCP, end: Certificate, tolerance: float) -> Certifi
     """The best certificate with x at the bounds where the piece of a point says so, and what is so near to them.
 
     What is at a bound is so near to it that nothing but the sign of w_i tells; in a row of zeros it is large.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    end : Certificate
-    tolerance : float
     """
     settled = problem.settled(end.x, end.w)
     exact = (certify(problem, settled, zero) for zero in (*ZEROS, tolerance))

@@ -119,13 +119,7 @@ def _text(file: str) -> Mapping[str, Any]:
 
 
 def read_hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
-    """The arrays wanted in a group of an HDF5 file: its root, or `problem` in it, where none is named.
-
-    Parameters
-    ----------
-    file : str
-    group : str, optional
-    """
+    """The arrays wanted in a group of an HDF5 file: its root, or `problem` in it, where none is named."""
     image = Image(Path(file))
     try:
         with h5py.File(image, "r") as root:

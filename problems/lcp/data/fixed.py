@@ -42,12 +42,7 @@ class WithoutFixed:
 
 
 def without_fixed(problem: MixedLCP) -> WithoutFixed:
-    """Take the fixed unknowns into q.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    """
+    """Take the fixed unknowns into q."""
     kept = np.flatnonzero(~problem.fixed)
     if not kept.size:
         return WithoutFixed(problem, None, kept)

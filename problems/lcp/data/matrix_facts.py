@@ -47,12 +47,7 @@ class MatrixFacts:
 
 
 def entry_facts(structure: Structure) -> MatrixFacts:
-    """What the entries of A tell, at a cost of O(n^2) at most.
-
-    Parameters
-    ----------
-    structure : Structure
-    """
+    """What the entries of A tell, at a cost of O(n^2) at most."""
     diagonal = structure.problem.A.diagonal()
     least, largest = _off_diagonal(structure.problem)
     return MatrixFacts(

@@ -19,10 +19,6 @@ MODEL_FORMATS = (".qps", ".mps", ".lp")
 def read_model(file: str) -> Program:
     """Read a quadratic or linear program; it is minimised, whatever sense the file has, with signs changed.
 
-    Parameters
-    ----------
-    file : str
-
     Raises
     ------
     ImportError

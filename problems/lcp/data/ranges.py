@@ -46,16 +46,7 @@ class Ranges:
     place: Indices
 
     def shifts(self, shift: float) -> Array:
-        """The shift of the diagonal in a proximal problem: none for r, which mu and its row say.
-
-        Parameters
-        ----------
-        shift : float
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
+        """The shift of the diagonal in a proximal problem: none for r, which mu and its row say."""
         each = np.full(self.A.shape[0], shift)
         each[self.activity] = 0.0
         return each
@@ -103,12 +94,7 @@ class Ranges:
 
 
 def ranges(problem: MixedLCP) -> Ranges | None:
-    """The pairs of a problem, found by its zeros; None where there is none.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    """
+    """The pairs of a problem, found by its zeros; None where there is none."""
     if problem.standard:
         return None
     free = np.isinf(problem.lower) & np.isinf(problem.upper)

@@ -247,6 +247,9 @@ class KKTHomotopy:
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for an LCP of order 3n, sparse as A is: for reference, the engine uses `bordered`."""
         s, rows, mu = self._system(y, lam), self.rows, 1.0 - lam
+        column = np.concatenate([s.column, -s.c1, s.factor * s.rho - s.c2, -s.c3])
+        if not self.problem.sparse:
+            return self._dense(s), column
         sides, eye = rows.sides, sp.eye_array(self.n, format="csr")
         pull = sp.diags_array(sides.sign) @ eye[sides.index]
         at = eye[rows.boxed]
@@ -261,8 +264,23 @@ class KKTHomotopy:
             ],
             format="csr",
         )  # fmt: skip
-        column = np.concatenate([s.column, -s.c1, s.factor * s.rho - s.c2, -s.c3])
-        return (whole if self.problem.sparse else whole.toarray()), column
+        return whole, column
+
+    def _dense(self, s: KKTSystem) -> Array:
+        """The same in numpy alone: blocks of sparse matrices cost a small problem a hundred times as much."""
+        rows, sides, mu, N = self.rows, self.rows.sides, 1.0 - s.lam, s.c1.size + s.c3.size + 2 * self.n
+        x, first, second, third = (np.arange(N + 1)[block] for block in self.places)
+        boxed = second[rows.boxed]
+        whole = np.zeros((N, N))
+        whole[: self.n, : self.n] = mu * self.structure.symmetrized
+        whole[x, x] += s.lam
+        whole[sides.index, first], whole[first, sides.index] = -mu * sides.sign, s.z1 * sides.sign
+        whole[: self.n, self.places[2]] = -mu * self.structure.transpose
+        whole[self.places[2], : self.n] = s.factor[:, None] * self.problem.A
+        whole[first, first], whole[second, second] = s.gap, s.rest
+        whole[boxed, third], whole[third, boxed] = s.factor[rows.boxed], -s.t
+        whole[third, third] = rows.width - s.z2[rows.boxed]
+        return whole
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:

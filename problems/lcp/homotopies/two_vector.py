@@ -130,13 +130,21 @@ class TwoVectorHomotopy:
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for an LCP of order 2n, sparse as A is: for reference, the engine uses `bordered`."""
-        s, sign, eye = self._system(y, lam), self.blend.sign, sp.eye_array(self.n, format="csr")
+        s, sign, n = self._system(y, lam), self.blend.sign, self.n
+        column = np.concatenate([sign * s.column, -self.c])
+        if not self.problem.sparse:
+            index, turn, force = self.sides.index, self.sides.sign, n + np.arange(self.sides.index.size)
+            dense = np.zeros((y.size, y.size))
+            dense[:n, :n] = sign * s.alpha * self.problem.A
+            dense[np.arange(n), np.arange(n)] += sign * s.beta
+            dense[index, force], dense[force, index], dense[force, force] = -sign * s.gamma * turn, s.y * turn, s.gap
+            return dense, column
+        eye = sp.eye_array(n, format="csr")
         pull = eye if self.problem.standard else sp.diags_array(self.sides.sign) @ eye[self.sides.index]
-        diagonal = sp.diags_array(np.broadcast_to(sign * s.beta, self.n))
+        diagonal = sp.diags_array(np.broadcast_to(sign * s.beta, n))
         top = [sp.csr_array(sign * s.alpha * self.problem.A) + diagonal, -sign * s.gamma * pull.T]
         whole = sp.block_array([top, [sp.diags_array(s.y) @ pull, sp.diags_array(s.gap)]], format="csr")
-        column = np.concatenate([sign * s.column, -self.c])
-        return (whole if self.problem.sparse else whole.toarray()), column
+        return whole, column
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:

@@ -15,12 +15,7 @@ from problems.lcp.pivoting.dictionary import TIE, Dictionary
 
 
 def unit_of(problem: LCP) -> float:
-    """The power of two next to the largest entry of A: in it tables are kept, so that no common factor counts.
-
-    Parameters
-    ----------
-    problem : LCP
-    """
+    """The power of two next to the largest entry of A: in it tables are kept, so that no common factor counts."""
     A = problem.A.data if problem.sparse else problem.A
     largest = max(float(A.max(initial=0.0)), -float(A.min(initial=0.0)))
     return math.ldexp(1.0, math.frexp(largest)[1]) if largest > 0.0 else 1.0

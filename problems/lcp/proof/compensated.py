@@ -56,13 +56,7 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
 
 
 def error_bound(w: Array, size: Array, terms: int) -> Array:
-    """How far a sum in twice the working precision, of so many terms with magnitudes that add up to `size`, is off.
-
-    Parameters
-    ----------
-    w, size : Array
-    terms : int
-    """
+    """How far a sum in twice the working precision, of so many terms with magnitudes that add up to `size`, is off."""
     gamma = 4.0 * (terms + 2) * _UNIT
     bound: Array = 2.0 * _UNIT * np.abs(w) + gamma * gamma * size + terms * 1e-300
     return bound

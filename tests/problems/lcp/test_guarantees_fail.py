@@ -59,7 +59,7 @@ def test_a_search_refutes_the_theorem(cls, belongs, condition, order):
 
 def test_the_search_finds_nothing_where_the_theorem_holds():
     """The same search can fail: for P0 of order 1, and for row sufficient matrices, there is nothing to find."""
-    few = settings(HUNT, max_examples=150)
+    few = settings(HUNT, max_examples=60)
     for cls, order in (("P0", 1), ("row_sufficient", 2)):
         with pytest.raises(NoSuchExample):
             find(feasible_lcps(cls, order), stationary, settings=few)
@@ -155,7 +155,7 @@ def test_a_start_beside_the_middle_turns_off_to_a_solution(preset, offset, side)
 
 
 @for_interior_paths
-@pytest.mark.parametrize("offset", [1e-7, 1e-8, 1e-9, 1e-10, 1e-12])
+@pytest.mark.parametrize("offset", [1e-7, 1e-9, 1e-12])
 def test_a_start_nearer_than_the_tolerance_turns_off_or_names_the_branch_point(preset, offset):
     """Where the two arms are as near as the tolerance a leap is possible, and never silent."""
     path = trace(KKTHomotopy(HILL, [1.0 + offset]), preset=preset)

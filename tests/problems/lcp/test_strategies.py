@@ -174,8 +174,10 @@ def test_the_hook_imports_nothing():
     subprocess.run([sys.executable, "-c", code], check=True, env=environment)
 
 
-@pytest.mark.parametrize("cls", ["P", "P0", "nondegenerate", "row_sufficient", "any"])
-@pytest.mark.parametrize("seed", range(3))
+CLASSES = "P", "P0", "nondegenerate", "row_sufficient", "any"
+
+
+@pytest.mark.parametrize(("cls", "seed"), list(zip(CLASSES, range(5))))
 def test_a_failure_of_two_rows_is_found_with_two(cls, seed):
     def coupled(A):
         return any(A[i, j] * A[j, i] != 0.0 for i in range(len(A)) for j in range(i))
@@ -184,13 +186,12 @@ def test_a_failure_of_two_rows_is_found_with_two(cls, seed):
     assert found.shape == (2, 2)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_so_is_that_of_a_problem(seed):
+def test_so_is_that_of_a_problem():
     def coupled(case):
         A = case[0].A
         return any(A[i, j] * A[j, i] != 0.0 for i in range(len(A)) for j in range(i))
 
-    found = find(mine.planted_lcps("strict", "P"), coupled, settings=HUNT, random=Random(seed))
+    found = find(mine.planted_lcps("strict", "P"), coupled, settings=HUNT, random=Random(0))
     assert found[0].n == 2
 
 
