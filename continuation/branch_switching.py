@@ -65,7 +65,7 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
             if not any(abs(float(ray @ other)) > SAME_LINE for other in found):
                 found.append(ray)
         return tuple(found)
-    _, known, *others = _rays(homotopy, event)
+    _, known, *others = crossing_rays(homotopy, event)
     return known / np.linalg.norm(known), others[0] / np.linalg.norm(others[0])
 
 
@@ -88,8 +88,22 @@ def leaving_branches(homotopy: Any, event: LocatedEvent, step: float = 1e-2) -> 
     return leaving(Evaluator(homotopy, Counts()), event.u, event.tangent, metric_at(event), step)
 
 
-def _rays(homotopy: Any, event: LocatedEvent) -> Array:
-    """Back, onward and both ways of the other branch: as they were found, or for an event of a file again."""
+def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
+    """Back, onward and both ways of the other branch: as they were found, or for an event of a file again.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    event : LocatedEvent
+        Of kind BRANCH_POINT.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the event is none, or no simple branch point.
+    ArithmeticError
+        If it comes from a file, which keeps no rays, and they are not found again.
+    """
     if not isinstance(event, LocatedEvent):
         raise complain(TypeError, "event", "a located event of a path", event)
     if event.kind != Kind.BRANCH_POINT:
@@ -153,7 +167,7 @@ def switch_branch(
         raise ValueError(f"ray: expected None, since the event is no kink, found {ray!r}")
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
         return tuple((branch.u, branch.tangent) for branch in leaving_branches(homotopy, event, step)[2:])
-    _, onward, *others = _rays(homotopy, event)
+    _, onward, *others = crossing_rays(homotopy, event)
     evaluator, weights = Evaluator(homotopy, Counts()), metric_at(event)
     return tuple(_start(evaluator, event.u, away, onward, weights, step) for away in others)
 

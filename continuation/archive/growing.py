@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from contextlib import closing
+from copy import deepcopy
 from pathlib import Path as File
 from types import TracebackType
 from typing import Any
@@ -38,19 +40,25 @@ class Growing:
     _store: Store | None = None
     _identifier: str = ""
 
-    def held(self, homotopy: Any) -> list[Path]:
-        """The paths of the file, if there is one, which goes on from now on: as a copy that takes its place."""
+    def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
+        """The paths of the file, if there is one, each whole and as it is kept; the file goes on from then on.
+
+        It goes on as a copy that takes its place when all paths have been read, in one go.
+        """
         if not self.file.exists():
-            return []
+            return
         target = File(os.path.realpath(self.file))
         with open_archive(target) as source, closing(own(source.contents, target)), beside(target) as part:
-            paths = [source.path(number, keep=self.keep) for number in range(len(source))]
-            for path in paths[-1:]:
-                check_homotopy(homotopy, path.endpoint.u, path.endpoint.residual_norm)
+            if len(source):
+                last = source[-1].endpoint
+                check_homotopy(homotopy, last.u, last.residual_norm)
+            for number, path in enumerate(source):
+                # A point that was read is part of an array, which would stay in memory with it.
+                ends = path if self.keep == "all" else deepcopy(evolve(path, steps=[path.steps[0], path.steps[-1]]))
+                yield path, self._kept(ends, number, source.points.some("role", source.rows(number)))
             attributes = {**source.attributes, **process(), **history(source.attributes, "went on")}
             store = write_copy([everything(source)], part, attributes=attributes)
             self._store, self._identifier = publish_live(store, target, replace=True), attributes["identifier"]
-            return paths
 
     def add(self, path: Path) -> Path:
         """One more path, which comes back as it is kept; the first makes the file."""
@@ -59,6 +67,9 @@ class Growing:
             self._store, self._identifier = create(self.file, layout, attributes), attributes["identifier"]
         number = self._store.committed.paths
         roles = append(self._store, path, f"{self._identifier} {number} {self.file.name}")
+        return self._kept(path, number, roles)
+
+    def _kept(self, path: Path, number: int, roles: Any) -> Path:
         if self.keep == "all":
             return path
         steps: Any = StoredSteps(open_archive, self.file, number, 0)

@@ -29,8 +29,8 @@ from continuation.labels import Labels
 from continuation.path import Path
 from continuation.status import Status
 
-_AT_ONCE = 1 << 24
-"""Numbers (of 8 bytes) that are read in one go when all paths are asked for."""
+_AT_ONCE = 1 << 22
+"""Numbers (of 8 bytes) that are read in one go when all paths are asked for: many short reads cost much more."""
 
 
 class Archive(Sequence[Path]):
@@ -154,11 +154,14 @@ class Archive(Sequence[Path]):
         )
 
     def __iter__(self) -> Iterator[Path]:
-        # Many short reads cost much more than a long one, as long as that fits.
-        if self.points.size * (self.layout.unknowns + len(self.points)) <= _AT_ONCE:
-            self.points.load()
-            self.paths.load()
-        return (self.path(i) for i in range(len(self)))
+        at_once = _AT_ONCE // (2 * self.layout.unknowns + len(self.points))
+        stop = 0
+        for i in range(len(self)):
+            if i == stop:
+                stop = max(i + 1, int(np.searchsorted(self._first_rows, self._first_rows[i] + at_once, "right")) - 1)
+                self.paths.look_ahead(slice(i, stop))
+                self.points.look_ahead(slice(self.rows(i).start, self.rows(stop - 1).stop))
+            yield self.path(i)
 
     def __repr__(self) -> str:
         state = "" if self.closed_by_writer else ", not closed by its writer"

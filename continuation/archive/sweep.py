@@ -73,7 +73,7 @@ def trace_many(
     Raises
     ------
     TypeError
-        For an option that `continuation.Tracer` does not have.
+        For an option that `continuation.Tracer` does not have, or for what is no homotopy.
     ArchiveError
         If a file to be written exists, or the disk is full.
     KeyboardInterrupt
@@ -89,6 +89,8 @@ def trace_many(
     if progress is not None and not callable(progress):
         raise complain(TypeError, "progress", "a function of (done, total)", progress)
     tasks = list(homotopies)
+    for homotopy in tasks:
+        instance_with("homotopies", homotopy, ("start", "residual"), "homotopies only")
     target = None if archive is None else as_file("archive", archive)
     if target is not None:
         check_new(target)

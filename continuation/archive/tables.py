@@ -28,6 +28,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         self.size = rows if chosen is None else len(chosen)
         self._rows, self._fetch, self._chosen = rows, fetch, chosen
         self._read: dict[str, np.ndarray[Any, Any]] = {}
+        self._ahead, self._near = slice(-1, -1), dict[str, np.ndarray[Any, Any]]()
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         if name not in self.columns:
@@ -73,7 +74,21 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         -------
         ndarray
         """
-        return self._read[name][rows] if name in self._read else self._fetch(name, rows)
+        if name in self._read:
+            return self._read[name][rows]
+        first = self._ahead.start
+        if first <= rows.start and rows.stop <= self._ahead.stop:
+            return self._near[name][rows.start - first : rows.stop - first]
+        return self._fetch(name, rows)
+
+    def look_ahead(self, rows: slice) -> None:
+        """Read some rows of all columns, and remember them until others are read ahead.
+
+        Parameters
+        ----------
+        rows : slice
+        """
+        self._ahead, self._near = rows, {name: self._fetch(name, rows) for name in self.columns}
 
     def load(self) -> None:
         """Read everything."""

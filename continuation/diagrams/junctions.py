@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 
 from continuation.arrays import Array
-from continuation.branch_switching import branch_directions, leaving_branches, metric_at, switch_branch
+from continuation.branch_switching import crossing_rays, leaving_branches, metric_at, switch_branch
 from continuation.metric import inner, norm
 from continuation.path import LocatedEvent, Path
 from continuation.status import Kind
@@ -61,20 +61,15 @@ class Junction:
     def at(cls, homotopy: Any, event: LocatedEvent, step: float) -> Junction:
         """The junction of an event, with starts along the rays that its own path does not take."""
         weights = metric_at(event)
-        own = np.array([-event.tangent, event.tangent])
         try:
             if event.kind == Kind.SINGULAR_POINT:
                 found = leaving_branches(homotopy, event, step)
                 return cls(event, weights, np.array([b.ray for b in found]), [(b.u, b.tangent) for b in found[2:]])
-            starts = list(switch_branch(homotopy, event, step))
+            rays = event.rays if event.kind == Kind.KINK else crossing_rays(homotopy, event)
+            event = evolve(event, rays=rays)
+            return cls(event, weights, np.array(rays), list(switch_branch(homotopy, event, step)))
         except ArithmeticError as error:
-            return cls(event, weights, own, [], failed=str(error))
-        rays = event.rays
-        if rays is None:
-            # A file keeps none of branch points.
-            other = branch_directions(homotopy, event)[1]
-            rays = np.array([*own, *(np.copysign(1.0, inner(weights, other, v)) * other for _, v in starts)])
-        return cls(event, weights, rays, starts)
+            return cls(event, weights, np.array([-event.tangent, event.tangent]), [], failed=str(error))
 
     def take(self, direction: Array) -> None:
         """A branch follows the ray of a direction."""

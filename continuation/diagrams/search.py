@@ -100,8 +100,8 @@ class Search:
 
     def run(self, starts: list[Any], deflate: list[float]) -> None:
         """All of it."""
-        for path in [] if self.log is None else self.log.held(self.homotopy):
-            self._recall(path)
+        for path, kept in () if self.log is None else self.log.held(self.homotopy):
+            self._recall(path, kept)
         for start in starts:
             self._begin(start)
         for lam in deflate:
@@ -126,21 +126,21 @@ class Search:
         beside = LEAVES * np.where(apart > 0.0, apart, 1.0)
         return [start, every.mean(axis=0), *(y + way * beside for y in every for way in (1.0, -1.0))]
 
-    def _recall(self, path: Path) -> None:
-        """A branch of the archive: the rays that it follows are not followed again."""
+    def _recall(self, path: Path, kept: Path) -> None:
+        """A branch of the archive, and what stays of it: the rays that it follows are not followed again."""
         self.counts = self.counts + path.counts
         self._meet(path)
         points = enumerate(path.u)
         known = [(j, k) for k, u in points for j in self.places.near(u) if j.label and (j.event.u == u).all()]
         if not known:
-            self._add(path, "", 0, kept=True)
+            self._add(kept, "", 0, held=True)
             return
         junction, number = min(known, key=lambda found: found[0].number)
         at = path.steps[number]
         junction.take(at.tangent)
         if at.index:
             junction.take(-at.tangent)
-        self._add(path, junction.label, junction.generation + 1, kept=True)
+        self._add(kept, junction.label, junction.generation + 1, held=True)
 
     def _begin(self, start: Any) -> None:
         """Both ways from a start, and all that hangs on it, unless it lies on a known branch."""
@@ -225,8 +225,8 @@ class Search:
         self.places.add(event.u, junction.weights, junction)
         return junction
 
-    def _add(self, path: Path, origin: str, generation: int, kept: bool = False) -> None:
-        """A finished branch: its junctions get labels, and it is written, if the archive has not `kept` it."""
+    def _add(self, path: Path, origin: str, generation: int, held: bool = False) -> None:
+        """A finished branch: its junctions get labels, and it is written, unless the archive has `held` it."""
         if path.status not in WHOLE:
             self.missing.append(f"a path from lam = {path.steps[0].lam:.6g} ended with: {path.message}")
         for event in meetings(path):
@@ -239,7 +239,7 @@ class Search:
             junction.label = f"{prefix}{self.labels[prefix]}"
             if junction.failed:
                 self.missing.append(f"at {junction.label}, lam = {event.lam:.6g}, {junction.failed}")
-        if self.log is not None and not kept:
+        if self.log is not None and not held:
             path = self.log.add(path)
         self.branches.append(Branch(path, origin, generation))
 

@@ -18,6 +18,7 @@ from continuation.counts import Counts
 from continuation.diagrams.branches import Diagram
 from continuation.diagrams.search import Search
 from continuation.evaluation.evaluator import Evaluator
+from continuation.events.box import is_boundless
 from continuation.homotopy import SupportsPieces
 from continuation.interrupted import Interrupted
 from continuation.path import Path
@@ -114,7 +115,7 @@ def diagram(
     if file is not None and not resume:
         check_new(file)
     box = options.get("box", getattr(homotopy, "box", None))
-    if box is None or isinstance(box, str):
+    if box is None or isinstance(box, str) or is_boundless(box):
         raise complain(ValueError, "box", 'one, as {"lam": (0, 5)}, since branches have no other end', box)
     asked: Options = {**options, "box": box, "target": options.get("target")}
     if stability is not None:

@@ -78,6 +78,16 @@ def is_inside(box: Any, labels: Labels, u: Array) -> bool:
     return all(face.monitor(u, u) * face.direction < 0.0 for _, face in _faces(box, labels, u.size))
 
 
+def is_boundless(box: Any) -> bool:
+    """Whether all that a box says is that nothing has a limit.
+
+    Parameters
+    ----------
+    box : object
+    """
+    return isinstance(box, Mapping) and all(_interval(key, pair) == (None, None) for key, pair in box.items())
+
+
 def _faces(box: Any, labels: Labels, size: int) -> list[tuple[str | int, Extreme | TargetValue]]:
     if not isinstance(box, Mapping):
         raise complain(TypeError, "box", 'a mapping like {"lam": (0, 5), 2: (None, 1)}', box)

@@ -163,7 +163,7 @@ def engine(w: World) -> Iterator[Call]:
     yield Call(c.HopfPoint, {}, {**watch, "direction": "sign"})
     yield Call(
         c.diagram, {"homotopy": w.pitchfork, "box": {"lam": (-1.0, 1.0)}},
-        {"box": ({"lam": (0.0, 2.0)},), "starts": ([3],), "direction": (1,),
+        {"box": ({"lam": (0.0, 2.0)}, {}, {"lam": (None, float("inf"))}), "starts": ([3],), "direction": (1,),
          "homotopy": "homotopy", "branches": "count", "generations": "count or None", "step": "positive, finite",
          "stability": "stability", "executor": "executor", "archive": "name of a new file", "deflate": "values",
          "resume": "truth", "keep": "text"},

@@ -108,7 +108,7 @@ KINDS: Mapping[str, tuple[Any, ...]] = {
     "name of a file": (*NO_NAMES, None),
     "name of a new file": NO_NAMES,
     "archive": (*NO_OBJECT, "a.h5"),
-    "homotopies": (None, 3, bifurcation.Cusp(), len),
+    "homotopies": (None, 3, bifurcation.Cusp(), len, [3], [bifurcation.Cusp(), None], [bifurcation.Cusp]),
     "executor": (5, "threads", [], len, c.Tracer),
     "progress": (5, "yes", True, []),
     "seconds": (*optional(NO_NUMBERS), 0, -1.0, NAN, True),

@@ -10,7 +10,7 @@ from scipy.linalg.blas import dgemm, dger
 from continuation.arrays import Array, largest
 
 ROOM = 32
-"""Rows by which the inverse grows: it is stored with room, whose zeros cost a little in every product."""
+"""Rows by which the inverse grows, or twice as many: it is stored with room, and products leave out its columns."""
 
 INEXACT = 1e-9
 """A correction by refinement above this, relative to what it corrects, has the inverse computed afresh."""
@@ -127,18 +127,16 @@ class Basis:
         k, rows, m = self.order, self.rows, right.shape[1]
         if k == 0:
             return np.zeros((0, m)), right
-        padded = np.zeros((self.inverse.shape[0], m), order="F")
-        padded[:k] = right[rows]
-        z = dgemm(-1.0, self.inverse, padded)
-        left = dgemm(1.0, self.block, z, 1.0, right)
-        fine = self.block.size <= EXTENDED
+        block, inverse = self.block[:, :k], self.inverse[:, :k]
+        z = dgemm(-1.0, inverse, right[rows])
+        left = dgemm(1.0, block, z[:k], 1.0, right)
+        fine = block.size <= EXTENDED
         for attempt in range(3):
             if fine:
-                left = (self.block.astype(np.longdouble) @ z + right).astype(float, order="F")
-            padded[:k] = left[rows]
-            correction = dgemm(1.0, self.inverse, padded)
+                left = (block.astype(np.longdouble) @ z[:k] + right).astype(float, order="F")
+            correction = dgemm(1.0, inverse, left[rows])
             z -= correction
-            left = dgemm(-1.0, self.block, correction, 1.0, left, overwrite_c=1)
+            left = dgemm(-1.0, block, correction[:k], 1.0, left, overwrite_c=1)
             if all(largest(correction[:, i]) <= INEXACT * largest(z[:, i]) for i in range(m)):
                 break
             if attempt == 1:
@@ -152,11 +150,10 @@ class Basis:
             self._grow()
         entering = self.column(column)
         self.block[:, k] = entering
-        right = np.zeros(self.inverse.shape[0])
-        right[:k] = entering[self.rows]
-        h = self.inverse @ right
-        g = self.block[row] @ self.inverse
-        pivot = entering[row] - float(self.block[row, :k] @ h[:k])
+        h = self.inverse[:, :k] @ entering[self.rows]
+        across, g = self.block[row, :k].copy(), np.empty(k + 1)
+        g[:k] = across @ self.inverse[:k, :k]
+        pivot = entering[row] - float(across @ h[:k])
         self.order += 1
         self._rows[k], self._columns[k] = row, column
         self.row_place[row] = self.column_place[column] = k
@@ -167,9 +164,7 @@ class Basis:
         """One column for another."""
         place = int(self.column_place[leaving])
         column = self.column(entering)
-        right = np.zeros(self.inverse.shape[0])
-        right[: self.order] = column[self.rows]
-        h = self.inverse @ right
+        h = self.inverse[:, : self.order] @ column[self.rows]
         pivot = h[place]
         h[place] -= 1.0
         self._update(-1.0 / pivot, h, self.inverse[place].copy())
@@ -179,8 +174,8 @@ class Basis:
 
     def exchange_row(self, leaving: int, entering: int) -> None:
         """One row for another."""
-        place = int(self.row_place[leaving])
-        g = self.block[entering] @ self.inverse
+        place, k = int(self.row_place[leaving]), self.order
+        g = self.block[entering, :k] @ self.inverse[:k, :k]
         pivot = g[place]
         g[place] -= 1.0
         self._update(-1.0 / pivot, self.inverse[:, place].copy(), g)
@@ -213,7 +208,8 @@ class Basis:
             self.block[row, place] = value
 
     def _update(self, factor: float, left: Array, right: Array) -> None:
-        dger(factor, left, right, a=self.inverse, overwrite_a=1)
+        k = self.order
+        dger(factor, left, right[:k], a=self.inverse[:, :k], overwrite_a=1)
 
     def _allocate(self, order: int) -> None:
         room = (order // ROOM + 1) * ROOM
@@ -222,5 +218,5 @@ class Basis:
 
     def _grow(self) -> None:
         block, inverse, k = self.block, self.inverse, self.order
-        self._allocate(max(2 * k, ROOM) if k < 8 * ROOM else k + 4 * ROOM)
+        self._allocate(max(2 * k, ROOM) if k < 2 * ROOM else k + 2 * ROOM)
         self.block[:, :k], self.inverse[:k, :k] = block[:, :k], inverse[:k, :k]

@@ -1,5 +1,7 @@
 """Diagrams: complete, no branch twice, and the same in several processes."""
 
+import bisect
+from collections import Counter
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 
 from continuation import Budget, Kind, Stability, diagram, from_functions
 from continuation.archive import open_archive
+from continuation.archive.contents import Contents
 from continuation.metric import norm
 from continuation.status import Status
 from problems.bifurcation import FreudensteinRoth, Pitchfork
@@ -249,6 +252,36 @@ def test_a_diagram_takes_up_as_many_comparisons_as_points(monkeypatch):
     found = diagram(Forks((1.0, 2.0, 3.0, 4.0)), box={"lam": (0.0, 6.0)})
     # Each of 40 points is met twice while branches are traced, and looked for once more at the end.
     assert len(looked) <= 5 * len(found.points)
+
+
+def test_a_diagram_goes_on_after_n_log_n_comparisons_and_a_few_reads(monkeypatch, tmp_path):
+    counts = Counter()
+
+    def counted(name, function, key=None):
+        def count(*given):
+            counts[name] += 1
+            return function(*given) if key is None else function(*given, key=key)
+
+        return count
+
+    probe = counted("probes", float)
+    for way in ("left", "right"):
+        looked = counted("bisections", getattr(bisect, f"bisect_{way}"), probe)
+        monkeypatch.setattr(f"continuation.diagrams.places.bisect_{way}", looked)
+    monkeypatch.setattr(Contents, "read", counted("reads", Contents.read))
+    reads = set()
+    for n in (2, 4):
+        asked = {"box": {"lam": (0.0, n + 2.0)}, "archive": tmp_path / f"{n}.h5", "keep": "ends"}
+        diagram(Forks(tuple(range(1, n + 1))), **asked)
+        counts.clear()
+        found = diagram(Forks(tuple(range(1, n + 1))), resume=True, **asked)
+        reads.add(counts["reads"])
+        many, points = (3**n - 1) // 2, sum(map(len, found.paths))
+        assert (len(found), len(found.points)) == (1 + many, many)
+        # Two for each point of a path and for each of three looks at a branch point, one where it is put in a list.
+        assert counts["bisections"] == 2 * points + 2 * 3 * many + 2 * many - 2
+        assert counts["probes"] <= counts["bisections"] * many.bit_length()
+    assert len(reads) == 1
 
 
 def test_a_branch_goes_through_the_point_that_it_was_found_at():

@@ -69,12 +69,12 @@ def whole():
     return diagram(homotopy, box=BOX), homotopy.calls
 
 
-@pytest.mark.parametrize("share", [0.15, 0.7])
-def test_ctrl_c_gives_what_was_found_and_the_diagram_goes_on(tmp_path, whole, share):
+@pytest.mark.parametrize(("share", "keep"), [(0.15, "all"), (0.7, "all"), (0.7, "ends")])
+def test_ctrl_c_gives_what_was_found_and_the_diagram_goes_on(tmp_path, whole, share, keep):
     found, calls = whole
     file = tmp_path / "d.h5"
     with pytest.raises(Interrupted) as stopped:
-        diagram(Stopping(int(share * calls), interrupt), box=BOX, archive=file)
+        diagram(Stopping(int(share * calls), interrupt), box=BOX, archive=file, keep=keep)
     part = stopped.value.diagram
     assert not part.complete
     assert "interrupted" in part.message
@@ -87,7 +87,7 @@ def test_ctrl_c_gives_what_was_found_and_the_diagram_goes_on(tmp_path, whole, sh
                 np.testing.assert_array_equal(stored.u, path.u)
     assert len(part) - 1 <= kept <= len(part)
     again = Stopping()
-    same(diagram(again, box=BOX, archive=file, resume=True), found)
+    same(diagram(again, box=BOX, archive=file, resume=True, keep=keep), found)
     assert again.calls < (1.05 - 0.8 * share * (kept > 0)) * calls
     with open_archive(file) as archive:
         assert len(archive) == len(found)
