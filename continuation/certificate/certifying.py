@@ -11,6 +11,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.budget import Budget
+from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Signs, pieces
@@ -24,6 +25,7 @@ from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.homotopy import SupportsPieces
 from continuation.intervals.ends import Mask
 from continuation.metric import Automatic, Metric
 from continuation.path import Path, Step, require_path
@@ -108,10 +110,25 @@ def certify(path: Path, homotopy: Any) -> Proof:
     whole = lifted(homotopy, path)
     if isinstance(whole, Proof):
         return whole
-    homotopy, path = whole
+    proof, _ = _proved(*whole, None)
+    return proof.of_width(width)
+
+
+def _proved(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, list[tuple[Any, Cells]]]:
+    """A proof, with new cells or with these; and of which residual its cells are."""
+    if isinstance(homotopy, SupportsPieces):
+        proof, arcs = by_pieces(homotopy, path, cells, _smooth)
+        return proof, [(homotopy.piece(arc.signs).residual, arc.proof.cells) for arc in arcs]
+    proof, _ = _smooth(homotopy, path, cells)
+    return proof, [(homotopy.residual, proof.cells)]
+
+
+def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engine]:
     engine, plain = engines(homotopy, path.u)
-    cells, gaps, found = Search(engine, plain, homotopy, path).run()
-    return verified(engine, plain, cells, path, homotopy, gaps, found).of_width(width)
+    if cells is not None:
+        return verified(engine, plain, cells, path, homotopy, []), engine
+    found = Search(engine, plain, homotopy, path).run()
+    return verified(engine, plain, found[0], path, homotopy, *found[1:]), engine
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
@@ -140,15 +157,14 @@ def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Pr
     whole = lifted(homotopy, path, cells)
     if isinstance(whole, Proof):
         return whole
-    homotopy, path = whole
-    engine, plain = engines(homotopy, path.u)
-    proof = verified(engine, plain, cells, path, homotopy, []).of_width(width)
+    proof, parts = _proved(*whole, cells)
+    proof = proof.of_width(width)
     if not second:
         return proof
-    places = proof.cells.place.tolist()
     doubts = [
         Gap(begin, end, "python-flint does not confirm the tube")
-        for (begin, end), good in zip(places, confirmed(homotopy.residual, proof.cells))
+        for residual, part in parts
+        for (begin, end), good in zip(part.place.tolist(), confirmed(residual, part))
         if not good
     ]
     return evolve(proof, gaps=(*proof.gaps, *doubts))

@@ -9,13 +9,13 @@ charts, the one goes on where the other ends.
 from __future__ import annotations
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node, expansion
 from continuation.certificate.engine import Engine, tangent, up_by
 from continuation.certificate.tubes import along, velocity
-from continuation.intervals.ends import EPS, Ends, Mask
+from continuation.intervals.ends import EPS, Ends, Mask, thin
 
 ROUNDS, RADII = 4, 8
 """Tests of a node, with derivatives over ever larger boxes, and radii that are tried with one of them."""
@@ -52,17 +52,19 @@ class Nodes:
         return Nodes(self.radius[index], self.tangent[index])
 
 
-def nodes(engine: Engine, cells: Cells, s: Array) -> Nodes:
-    """A point of the curve at one end of each cell.
+def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
+    """A point of the curve at one end of each cell; or the curve on a range of parameters, |u - p(s)| <= radius.
 
     Parameters
     ----------
     engine : Engine
     cells : Cells
     s : ndarray, shape (cells,)
-        0 or 1.
+        0 or 1, or near these.
+    half : float
+        Half the length of the range.
     """
-    slabs = at_node(cells, s)
+    slabs = evolve(at_node(cells, s), half=np.full(len(s), half))
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
     least = NEAR * EPS * np.abs(u) + CLOSE * cells.radius
     largest, done = ROOM * cells.radius + 4.0 * least, np.zeros(len(cells), bool)
@@ -103,6 +105,12 @@ def reach(cells: Cells, s: Array, radius: Array) -> Array:
         away = np.where(least > 0.0, off / least, np.nan) * (1.0 + 4.0 * EPS)
         wide = up_by(radius + away[:, None] * speed.magnitude(), 2)
     return np.where((away <= 0.9 * OVERHANG)[:, None], wide, np.nan)
+
+
+def distance(slabs: Slabs, u: Array) -> Array:
+    """A bound of |p(s) - u| over each slab."""
+    x = slabs.offset[:, None]
+    return (expansion(slabs).over(Ends(-x, x))[0] - thin(u)).magnitude()
 
 
 def linked(left: Cells, at: Nodes, right: Cells) -> Mask:

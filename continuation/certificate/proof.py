@@ -88,18 +88,18 @@ class Proof:
     width: int = 0
 
     @classmethod
-    def empty(cls, width: int, gap: Gap) -> Proof:
+    def empty(cls, width: int, *gaps: Gap) -> Proof:
         """One of nothing.
 
         Parameters
         ----------
         width : int
             N + 1.
-        gap : Gap
+        *gaps : Gap
         """
         rows, none = np.zeros((0, width)), np.zeros(0, dtype=np.intp)
         cells = Cells(rows, rows, rows, rows, rows, rows, none, np.zeros((0, 2)))
-        return cls(cells, rows, (gap,), (), "")
+        return cls(cells, rows, gaps, (), "")
 
     @property
     def complete(self) -> bool:

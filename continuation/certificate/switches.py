@@ -1,26 +1,29 @@
-"""The kinks of a proved path: on each piece all switches keep their signs, and one that changes does so once."""
+"""The switches along a proved arc: on it all keep their signs, and those that vanish at its ends do so once."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from continuation.certificate.cells import Cells, expansion, slabs_of
+from continuation.arrays import Array
+from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
 from continuation.certificate.engine import Engine, tangent
-from continuation.certificate.folds import Piece, Turn, turns
+from continuation.certificate.folds import Piece, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.intervals.calculus import derivatives, with_gradient
-from continuation.intervals.ends import Ends, bilinear
+from continuation.intervals.ends import Ends, bilinear, thin
+
+FEW = 4
+"""Parts of an arc of few slabs: a switch that vanishes at both ends has its sign in between."""
 
 DEPTH = 5
 """A slab on which neither a switch nor its derivative along the curve has a sign is halved so often at most."""
 
 
-def crossings(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list[Turn], list[tuple[float, float]]]:
-    """Ranges with exactly one zero of one switch, and those in which zeros could not be counted.
+def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[list[Piece]]:
+    """Of each switch, pieces of the cells in order, with its sign there or that of its derivative along the curve.
 
     The curve lies in the tubes, where the range of a switch is bounded; where that has no sign, its derivative along
-    the curve is, gradient times tangent. At a kink the tangent is bounded by the generalized Jacobian, so that a switch
-    is monotone along a curve that is Lipschitz alone.
+    the curve is, gradient times tangent.
 
     Parameters
     ----------
@@ -31,19 +34,19 @@ def crossings(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list
         Proved ones.
     """
     slabs = slabs_of(cells)
+    if len(slabs) < FEW:
+        slabs = slabs.halved(FEW)
     radius = slabs.cells.radius
     found: list[list[Piece]] = []
     for depth in range(DEPTH + 1):
         x, m = slabs.offset[:, None], radius.shape[1]
         box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
         image = switches.image(with_gradient(box.lo, box.hi))
-        value = image.ends[0]
-        sign = np.where(value.lo > 0.0, 1, np.where(value.hi < 0.0, -1, 0))
+        sign = _signs(image.ends[0])
         t = tangent(engine.judge(slabs, radius), radius, radius)
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, m)), Ends(t.lo[..., None], t.hi[..., None]))
-        bend = np.where(slope.lo[..., 0] > 0.0, 1, np.where(slope.hi[..., 0] < 0.0, -1, 0))
-        bend = np.where(sign == 0, bend, 0)
+        bend = np.where(sign == 0, _signs(Ends(slope.lo[..., 0], slope.hi[..., 0])), 0)
         keep = ((sign != 0) | (bend != 0)).all(axis=1) | (depth == DEPTH)
         found = found or [[] for _ in range(sign.shape[1])]
         for k in np.flatnonzero(keep).tolist():
@@ -53,5 +56,43 @@ def crossings(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list
         if keep.all():
             break
         slabs, radius = slabs.take(~keep).halved(2), np.repeat(radius[~keep], 2, axis=0)
-    told = [turns(sorted(one, key=lambda piece: (piece.cell, piece.lo))) for one in found]
-    return [turn for understood, _ in told for turn in understood], [place for _, more in told for place in more]
+    return [sorted(one, key=lambda piece: (piece.cell, piece.lo)) for one in found]
+
+
+def judged(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> tuple[float, float] | str:
+    """Where one switch begins and ends to have its sign surely, in cells; or why it is not proved to have it.
+
+    Parameters
+    ----------
+    found : list of Piece
+        Of that switch.
+    count : int
+        Of cells.
+    sign : int
+        What it should have on the arc.
+    at : tuple of bool
+        Whether it should vanish at the beginning, and at the end.
+    """
+    understood, unknown = turns(found)
+    first = [turn for turn in understood if turn.lo <= 0.0 <= turn.hi]
+    last = [turn for turn in understood if turn.lo <= count <= turn.hi]
+    lo, hi = max((t.hi for t in first), default=-np.inf), min((t.lo for t in last), default=np.inf)
+    between = [piece.sign for piece in found if piece.cell + piece.lo >= lo and piece.cell + piece.hi <= hi]
+    if unknown or not any(between):
+        return "kinks could not be counted"
+    if len(understood) > len(first) + len(last) or -sign in between or (bool(first), bool(last)) > at:
+        return "a kink that the path does not list"
+    if (bool(first), bool(last)) != at or any(len(some) > 1 for some in (first, last)):
+        return "a kink is listed where there is none"
+    return lo, hi
+
+
+def value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Array:
+    """Signs of the switches within radii of the middles of slabs, shape (slabs, m); 0 where there is none."""
+    zero = thin(np.zeros((len(slabs), 1)))
+    box = expansion(slabs).over(zero)[0] + Ends(-radius, radius)
+    return _signs(switches.image(with_gradient(box.lo, box.hi)).ends[0])
+
+
+def _signs(value: Ends) -> Array:
+    return np.where(value.lo > 0.0, 1, np.where(value.hi < 0.0, -1, 0))

@@ -15,9 +15,7 @@ from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.switches import crossings
 from continuation.certificate.tubes import along, check
-from continuation.homotopy import SupportsPieces
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
@@ -84,11 +82,10 @@ def verified(
     places = [_place(cells, event) for event in path.events]
     places = _on_curve(engine, cells, path.events, places)
     turning, more = _turning(cells, found or pieces(engine, plain, cells), path, places)
-    kinks, others = _kinks(engine, cells, homotopy, path, places)
-    gaps += more + others + _events(path, places)
+    gaps += more + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
     gaps += missing
-    return Proof(cells, at.radius, merged(gaps), turning, end, radius, kinks)
+    return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Cells, Nodes, Mask, Nodes]:
@@ -161,19 +158,6 @@ def _turning(
     turning = {id(event) for event in path.turning_points}
     listed = [(p, event.arclength) for p, event in zip(places, path.events) if id(event) in turning]
     gaps += _unlike(cells, understood, listed, "turning point")
-    return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
-
-
-def _kinks(
-    engine: Engine, cells: Cells, homotopy: Any, path: Path, places: list[float | None]
-) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
-    """The same of zeros of switches; several may have theirs at one kink."""
-    if not isinstance(homotopy, SupportsPieces):
-        return (), []
-    understood, unknown = crossings(engine, ByIntervals(homotopy.switches, cells.begin.shape[1] - 1), cells)
-    gaps = [Gap(*_range(cells, *place), "kinks could not be counted") for place in unknown]
-    listed = [(p, event.arclength) for p, event in zip(places, path.events) if event.kind is Kind.KINK]
-    gaps += _unlike(cells, understood, listed, "kink", shared=True)
     return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
 
 

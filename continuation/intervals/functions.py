@@ -44,14 +44,14 @@ def _mean(a: Any, axis: Any = None, *, keepdims: bool = False) -> Any:
     return _sum(a, axis, keepdims=keepdims) / count
 
 
-def _prod(a: Any, axis: Any = None) -> Any:
+def _prod(a: Any, axis: Any = None, *, keepdims: bool = False) -> Any:
     a = as_interval(a)
     axes = _axes(axis, a.ndim)
     kept = [k for k in range(a.ndim) if k not in axes]
     out: Any = as_interval(np.ones([a.shape[k] for k in kept]))
     for factor in a.transpose(*axes, *kept).reshape(-1, *(a.shape[k] for k in kept)) if a.ndim else (a,):
         out = out * factor
-    return out
+    return out.reshape([1 if k in axes else a.shape[k] for k in range(a.ndim)]) if keepdims else out
 
 
 def _norm(x: Any, ord: Any = None, axis: Any = None, *, keepdims: bool = False) -> Any:

@@ -198,7 +198,7 @@ class NormalMap:
     def residual(self, y: Array, lam: float) -> Array:
         """F(x, lam) + z - x."""
         x = self.x(y, lam)
-        value: Array = np.asarray(self.F(x, lam), dtype=float) + y - x
+        value: Array = self.F(x, lam) + y - x
         return value
 
     def switches(self, y: Any, lam: float) -> Any:

@@ -1,0 +1,202 @@
+"""Kinked paths: each smooth arc proved with the equations of its piece, and joined to the next at a zero of a switch.
+
+Near its end the curve of an arc lies in boxes p(1 - delta) and p(1 + delta) + [-r, r], on which the switch that vanishes
+at the kink has different signs: it has a zero z in between. There both pieces are the map, so that z is a zero of the
+next piece's equations as well; where the next arc's tube holds z, it lies on that arc's curve. Either curve has one zero
+of the switch there, its derivative along the curve having a sign: the one begins where the other ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from attrs import evolve, frozen
+
+from continuation.arrays import Array
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, joined
+from continuation.certificate.engine import Engine
+from continuation.certificate.krawczyk import ByIntervals
+from continuation.certificate.links import distance, nodes, reach
+from continuation.certificate.proof import Gap, Proof, merged
+from continuation.certificate.switches import judged, signs_along, value_at
+from continuation.path import LocatedEvent, Path
+from continuation.status import Kind, Status
+
+NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
+"""How far from its end the signs of a switch are asked, in lengths of the last cell: the first that will do."""
+
+Prove = Callable[[Any, Path, Cells | None], tuple[Proof, Engine]]
+
+
+@frozen(eq=False)
+class Arc:
+    """What is between two kinks.
+
+    Attributes
+    ----------
+    signs : ndarray of int
+        Of the switches.
+    proof : Proof
+    engine : Engine
+    ends : tuple of tuple of int
+        The switches that vanish where it begins, and where it ends.
+    """
+
+    signs: Array
+    proof: Proof
+    engine: Engine
+    ends: tuple[tuple[int, ...], tuple[int, ...]]
+
+
+def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> tuple[Proof, list[Arc]]:
+    """The proof of a path of a homotopy in pieces.
+
+    Parameters
+    ----------
+    homotopy : SupportsPieces
+    path : Path
+    cells : Cells or None
+        Of a proof that is checked again.
+    prove : callable
+        Proves a smooth path, or checks the cells of a proof of it.
+    """
+    switches = ByIntervals(homotopy.switches, path.u.shape[1] - 1)
+    kinks, gaps = _listed(path)
+    places = [0, *(kink.step for kink in kinks), len(path) - 1]
+    tied = [(), *(kink.switches for kink in kinks), ()]
+    arcs, others = [], [event for event in path.events if event.kind is not Kind.KINK]
+    for k, (first, last) in enumerate(pairwise(places)):
+        if first == last:  # a kink in which the path begins or ends
+            continue
+        steps, ends = path.steps[first : last + 1], (tied[k], tied[k + 1])
+        signs, told = _signs(homotopy, steps, ends)
+        gaps += told
+        begin, end = steps[0].arclength, steps[-1].arclength
+        if told:
+            gaps.append(Gap(begin, end, "it is not on one piece"))
+            continue
+        events = [e for e in others if (e.step > first or not first) and (e.step <= last or last == places[-1])]
+        known = None
+        if cells is not None:
+            known = cells.take((cells.place[:, 0] >= begin) & (cells.place[:, 1] <= end))
+        status = path.status if last == places[-1] else Status.STOPPED_AT_EVENT
+        proof, engine = prove(homotopy.piece(signs), Path(steps=_bare(steps), events=events, status=status), known)
+        arc = Arc(signs, proof, engine, ends)
+        gaps += [*proof.gaps, *_kept(arc, switches, (begin, end))]
+        arcs.append(arc)
+    by_end = {arc.proof.cells.place[-1, 1]: arc for arc in arcs if len(arc.proof.cells)}
+    by_begin = {arc.proof.cells.place[0, 0]: arc for arc in arcs if len(arc.proof.cells)}
+    crossed = []
+    for kink in kinks:
+        before, after = by_end.get(kink.arclength), by_begin.get(kink.arclength)
+        if before is None or after is None:
+            continue  # the path begins or ends there, or there is a gap
+        found = _joined(before, after, switches, kink)
+        if isinstance(found, str):
+            gaps.append(Gap(kink.arclength, kink.arclength, found))
+        else:
+            crossed.append(found)
+    if not arcs:
+        return Proof.empty(path.u.shape[1], *merged(gaps)), arcs
+    proofs = [arc.proof for arc in arcs]
+    whole = evolve(
+        proofs[-1],
+        cells=joined([proof.cells for proof in proofs]),
+        node_radius=np.concatenate([proof.node_radius for proof in proofs]),
+        gaps=merged(gaps),
+        turning_points=tuple(turn for proof in proofs for turn in proof.turning_points),
+        kinks=tuple(crossed),
+    )
+    return whole, arcs
+
+
+def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
+    """The kinks at points of the path, one a point."""
+    out: list[LocatedEvent] = []
+    gaps = []
+    for kink in sorted(path.kinks, key=lambda event: event.step):
+        step, s = path.steps[min(max(kink.step, 0), len(path) - 1)], kink.arclength
+        if kink.step != step.index or s != step.arclength or not (kink.u == step.u).all():
+            gaps.append(Gap(s, s, "a kink is listed where there is none"))
+        elif out and out[-1].step == kink.step:
+            gaps.append(Gap(s, s, "more kinks are listed"))
+        else:
+            out.append(kink)
+    return out, gaps
+
+
+def _signs(homotopy: Any, steps: list[Any], ends: tuple[tuple[int, ...], ...]) -> tuple[Array, list[Gap]]:
+    """Those of the switches between two kinks, and where the points are not on one piece."""
+    with np.errstate(all="ignore"):
+        values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
+        middle = 0.5 * (steps[0].u + steps[1].u)
+        signs = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
+    for row, end in zip((0, -1), ends):
+        values[row, list(end)] = signs[list(end)]
+    wrong = [k for k, row in enumerate(values) if not (row * signs > 0.0).all()]
+    if not wrong:
+        return signs, []
+    k = max(wrong[0], 1)
+    return signs, [Gap(steps[k - 1].arclength, steps[k].arclength, "a kink that the path does not list")]
+
+
+def _bare(steps: list[Any]) -> list[Any]:
+    """Tangents at kinks are those of one of the pieces: they are found again; such points are as good as others."""
+    out = list(steps)
+    for k in (0, -1):
+        count = max(out[k].corrector_iterations, 1)
+        out[k] = evolve(out[k], tangent=np.full_like(out[k].tangent, np.nan), corrector_iterations=count)
+    return out
+
+
+def _kept(arc: Arc, switches: ByIntervals, span: tuple[float, float]) -> list[Gap]:
+    """Where switches do not surely keep their signs, or turning points may lie beyond a kink."""
+    cells = arc.proof.cells
+    if not len(cells):
+        return []
+    gaps = []
+    for j, found in enumerate(signs_along(arc.engine, switches, cells)):
+        told = judged(found, len(cells), int(arc.signs[j]), (j in arc.ends[0], j in arc.ends[1]))
+        if isinstance(told, str):
+            gaps.append(Gap(*span, told))
+    for turn in arc.proof.turning_points:
+        if (arc.ends[0] and turn[0] <= span[0]) or (arc.ends[1] and turn[1] >= span[1]):
+            gaps.append(Gap(*turn, "turning points could not be counted"))
+    return gaps
+
+
+def _joined(before: Arc, after: Arc, switches: ByIntervals, kink: LocatedEvent) -> tuple[float, float] | str:
+    """A range of arclength with the kink in which one arc goes over into the next, or why they are not proved to."""
+    if len(kink.switches) != 1:
+        return "several switches vanish in one kink" if kink.switches else "a kink is listed where there is none"
+    j = kink.switches[0]
+    if before.signs[j] == after.signs[j]:
+        return "a kink is listed where there is none"
+    left, right = before.proof.cells.take(slice(-1, None)), after.proof.cells.take(slice(0, 1))
+    for delta in NEXT_TO.tolist():
+        u, here = left.end, np.zeros(1, dtype=np.intp)
+        sides = joined([left, left])
+        at = nodes(before.engine, sides, np.array([1.0 - delta, 1.0 + delta]))
+        window = nodes(before.engine, left, np.ones(1), delta)
+        if not (at.proved.all() and window.proved.all() and (window.radius <= left.radius).all()):
+            continue
+        room = Slabs(here, np.ones(1), np.full(1, delta), left)
+        slabs = Slabs(np.arange(2), np.array([1.0 - delta, 1.0 + delta]), np.zeros(2), sides)
+        change = value_at(switches, slabs, at.radius)[:, j]
+        if change[0] != before.signs[j] or change[1] != after.signs[j]:
+            continue
+        off = window.radius + distance(room, u)
+        if not (reach(right, np.zeros(1), off) <= right.radius).all():
+            continue
+        onward = nodes(after.engine, right, np.zeros(1), 0.9 * OVERHANG)
+        rates = [float(np.sign(t.lo[0, -1])) for t in (window.tangent, onward.tangent) if t.lo[0, -1] * t.hi[0, -1] > 0]
+        if len(rates) < 2:
+            return "whether the parameter turns in the kink is not decided"
+        if (rates[0] != rates[1]) != (kink.name == "turning kink"):
+            return "the parameter does not turn in the kink as the path says"
+        (begin, end), (_, later) = left.place[0].tolist(), right.place[0].tolist()
+        return end - delta * (end - begin), end + OVERHANG * (later - end)
+    return "two arcs are not joined in the kink"
