@@ -148,7 +148,7 @@ class Crossings:
         together = self._counted(arc, inside, flipped)
         if inside and not together:
             # Along the prediction a branch crosses, and the arc's end knows nothing of it: it is looked at from nearer.
-            return _rejected(attempt, Rejection.ORIENTATION, inside[0])
+            return _rejected(attempt, Rejection.ORIENTATION, min(inside[0], AWAY))
         if len(together) > 1:
             return self._together(arc, attempt, prediction, together, flipped)
         changing = series or bool(looked.get(LOOKS[0]))
@@ -164,7 +164,12 @@ class Crossings:
                 back = before and not series and (behind := self.looks.behind(arc)) is not None and behind > 0.0
                 return _rejected(attempt, Rejection.ORIENTATION, 0.5) if back else None
         found = None
-        if places or flipped:
+        if whole:
+            # Newton's method from outside of a pair: between the two its system is singular.
+            times, values = eigenvalues_along(seen)
+            peak = int(values.argmax())
+            found = self._found(arc, prediction(times[peak - 1 : peak + 1].mean() * attempt.h))
+        elif places or flipped:
             t = self.looks.refined(arc, attempt, prediction, (passed or inside or places or guesses or [LOOKS[0]])[0])
             found = self._found(arc, prediction(t * attempt.h))
         if found is None and not (flipped or whole) and (behind := self.looks.behind(arc)) is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -10,7 +11,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.contraction import RELIABLE
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events.crossing import peak_between, singular_places
+from continuation.events.crossing import CONVERGED, SAME, peak_between, singular_places
 from continuation.point.arc import Arc
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
@@ -36,8 +37,8 @@ before and one behind: on 3,200 steps of acceptance problems that is one in fort
 corrector contracts badly, as it does between two branches."""
 
 GROWN = 4.0
-"""Places behind the beginning are asked for so many looks back: H' is farther from singular by a quarter, as it is
-behind a pair of crossings that the look went over."""
+"""So many looks back of the beginning places are asked for: where H' is farther from singular by a quarter of what it
+was, the look may have gone over a pair of crossings."""
 
 DOUBTFUL = 0.1
 """Where the corrector contracts less well than this, and H' changes much, the arc's end must be what was expected."""
@@ -51,6 +52,9 @@ APART = 1e-3
 BESIDE = 0.1
 """From so near to a crossing, in steps, the next one begins badly: past it the factorisation at hand has a part of the
 wrong sign, and ten times too small."""
+
+NEXT = 2.0
+"""A look that was added is believed so many times as far as it is, where another one was."""
 
 REFINEMENTS, CLOSE = 4, 0.03
 """At most so many better places of one crossing are sought, until they change by less than the other."""
@@ -77,26 +81,29 @@ class Looks:
         ----------
         arc, attempt, prediction
         closely : bool
-            A second time where the first look shows none, and nearer to the beginning as long as H' is farther from
-            singular at the nearest look: half way from it a pair of crossings may lie behind, and leave no trace.
+            More looks where the first shows none, and nearer to the beginning as long as H' is farther from singular
+            there: twice as far as a pair of crossings it is as it was, and four times as far nine times as much.
         """
         contracts, size = attempt.correction.contraction <= RELIABLE, attempt.correction.contraction
         least, found = CHANGED if contracts else 0.5 * CHANGED, {}
         series = hasattr(prediction, "segment")
-        looks = list(EIGHTHS if series else LOOKS)
+        planned = EIGHTHS if series else LOOKS
+        looks = list(planned)
         for k, at in enumerate(looks):
             if (apply := self.derivative(prediction(at * attempt.h))) is None:
                 break
-            ahead = max(BEYOND / at, 1.0 / least)
-            nearest = closely and at == min(looks)
-            behind = GROWN if nearest else np.inf
-            places = [at * t for t in singular_places(arc.a, apply, arc.a.border, ahead, behind, turned=k)]
+            first = k < len(planned)
+            ahead = max(BEYOND / at, 1.0 / least) if first else NEXT
+            halved = closely and at <= (1.0 if series else 2.0) * min(looks) and math.frexp(at)[0] == LOOKS[0]
+            behind, accuracy = GROWN if halved else np.inf, CONVERGED if first else SAME
+            there = singular_places(arc.a, apply, arc.a.border, ahead, behind, accuracy, k)
+            places = [at * t for t in there]
             found[at] = [t for t in places if t > 0.0]
             if not (found[LOOKS[0]] or series or closely) and size <= DOUBTFUL:
                 break
-            if nearest and len(found[at]) < len(places) and len(looks) < MOST_LOOKS:
-                looks.append(0.5 * at)
-            if series and len(EIGHTHS) <= len(found) == len(looks) < MOST_LOOKS:
+            if halved and len(found[at]) < len(places) and 0.25 * at not in looks and len(looks) < MOST_LOOKS:
+                looks.append(0.25 * at)
+            if series and len(planned) <= len(found) == len(looks) < MOST_LOOKS:
                 peak = peak_between(found, APART)
                 looks += [] if peak is None else [peak]
         return found
