@@ -161,8 +161,8 @@ class Crossings:
                 return None
             if not (places or doubtful):
                 # Between two crossings the branches may be nearer to each other than a prediction is to either.
-                back = before and not series and (behind := self.looks.behind(arc)) is not None and behind > 0.0
-                return _rejected(attempt, Rejection.ORIENTATION, 0.5) if back else None
+                left = before and not series and (back := self.looks.behind(arc)) is not None and back > 0.0
+                return _rejected(attempt, Rejection.ORIENTATION, 0.5) if left else None
         found = None
         if whole:
             # Newton's method from outside of a pair: between the two its system is singular.
@@ -172,12 +172,14 @@ class Crossings:
         elif places or flipped:
             t = self.looks.refined(arc, attempt, prediction, (passed or inside or places or guesses or [LOOKS[0]])[0])
             found = self._found(arc, prediction(t * attempt.h))
-        if found is None and not (flipped or whole) and (behind := self.looks.behind(arc)) is not None:
-            found = self._found(arc, arc.segment.at(behind))
+        back = None if flipped or whole or found is not None else self.looks.behind(arc)
+        if back is not None:
+            found = self._found(arc, arc.segment.at(back))
         if found is None and flipped and inside and len(lost := self._multiple(arc, inside)) > 1:
             return self._together(arc, attempt, prediction, lost, flipped)
         if found is None:
-            suspect = flipped or ((inside or doubtful) and not whole)
+            # Where branches are nearly parallel Newton's method finds their crossing from nearby only.
+            suspect = flipped or ((inside or doubtful) and not whole) or (back is not None and back > 0.0)
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if suspect else None
         at = position(arc, found.u) / position(arc, arc.b.u)
         if ends and 1.0 < at <= 1.0 + AT_END:
