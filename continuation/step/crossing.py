@@ -29,6 +29,10 @@ NEAR_ARC = 2e-2
 ON_PATH = 1e-13
 """Of the path's extent: a branch point this near to a zero of H is one, whatever its equations are made of there."""
 
+AHEAD = 1.5
+"""A pair of crossings near the beginning of the next arc, where half way nothing is seen of it (in .27 of that arc at
+most), is extrapolated to less than this from half way along the arc before, if the next is not six times as long."""
+
 TOUCHES = 0.75
 """From there on a largest eigenvalue along a series may have passed one and come back between two looks an eighth of
 the arc apart, where the branches cross twice: a branch point is sought there."""
@@ -116,7 +120,8 @@ class Crossings:
         found = self._examined(arc, attempt, prediction, seen, flipped, ends, before)
         if isinstance(found, Rejected):
             return found
-        return Passed(found) if found is not None or any(seen.values()) else None
+        ahead = any(t < AHEAD for there in seen.values() for t in there)
+        return Passed(found) if found is not None or ahead else None
 
     def _examined(
         self,
