@@ -46,6 +46,7 @@ class Accepted:
     orientation: int
     monitors: tuple[float, ...]
     occurrences: tuple[int, ...]
+    near: bool
     crossing: Crossing | None = None
 
 
@@ -87,6 +88,7 @@ class Examiner:
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
         branch: Crossed | None = None
+        near = False
         kink: tuple[Linearization, tuple[int, ...]] | None = None
         try:
             if self.pieces is not None:
@@ -108,10 +110,10 @@ class Examiner:
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
                 before = state.occurrences[index] > 0
-                found_there = self.crossings.on_arc(part, attempt, prediction, changed, ends, before)
-                if isinstance(found_there, Rejected):
-                    return found_there
-                branch = found_there
+                seen = self.crossings.on_arc(part, attempt, prediction, changed, ends, before, state.near)
+                if isinstance(seen, Rejected):
+                    return seen
+                near, branch = seen is not None, None if seen is None else seen.branch
             elif flipped:
                 return _rejected(attempt, Rejection.ORIENTATION)
             if flipped:
@@ -151,7 +153,7 @@ class Examiner:
             located = [evolve(at, **known) if at.kind is Kind.BRANCH_POINT else at for at in located]
         if crossing is not None:
             located[-1] = evolve(located[-1], name=crossing.name, switches=crossing.switches, rays=crossing.rays)
-        return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
+        return Accepted(ending, attempt, located, orientation, monitors, occurred, near, crossing)
 
     def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
         """That of an arc which was cut at a kink: the target, if that is the same point, else the kink."""
