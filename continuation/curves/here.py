@@ -17,6 +17,7 @@ from continuation.curves.local import Local
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.events.singularity import full_derivative
 from continuation.linear import BorderedSystem
+from continuation.linear.entries import extended
 
 
 @frozen(eq=False, slots=False)
@@ -91,10 +92,7 @@ class Here:
                 order = self.u.size
                 return LinearOperator((order, order), lambda v: self.times(np.append(v, 0.0)), dtype=float), last
             return np.vstack([full + column * follows[:-1], rows[:, :-1]]), last
-        if sp.issparse(full):
-            top = sp.hstack([full, sp.csc_array(column)])
-            return sp.vstack([top, sp.csc_array(rows[:, :-1])], format="csc"), last
-        return np.vstack([np.hstack([full, column]), rows[:, :-1]]), last
+        return extended(full, column, rows[:, :-1]), last
 
     def bordered(self, border: Array) -> BorderedSystem:
         """The derivative with a border, factored by elimination."""

@@ -14,7 +14,8 @@ from continuation.curves.local import Local, Scaled, Tangential, last_column
 from continuation.evaluation.derivatives import by_differences, difference_along, sizes
 from continuation.events import Monitor, TargetValue, TurningPoint
 from continuation.events.singularity import full_derivative
-from continuation.linear.nullspace import bordered, factor
+from continuation.linear.entries import extended
+from continuation.linear.nullspace import factor
 
 
 @frozen(eq=False)
@@ -94,7 +95,7 @@ class AlongTangent:
             by_u, by_t = np.split(self.gradient(np.append(u, t)), 2)
             full, border = full_derivative(calculus.evaluator(mu), u), t / extent
             H_lam = extent[-1] * last_column(full) / rows
-            M = bordered(self.scaled.times(full[:, :-1]), H_lam, border[:-1], float(border[-1]))
+            M = extended(self.scaled.times(full[:, :-1]), H_lam[:, None], border[None])
             left = factor(M).solve(extent * by_t, adjoint=True)[:-1] / rows
             return np.asarray(np.append(by_u, 0.0) - calculus.second(u, mu, t, left))[None, :]
 

@@ -168,33 +168,40 @@ def _eigenvalues(
         if k == 0 and not whole:
             Q[1] = x / left_over
             continue
-        if k == 1 and left_over <= UNSEEN * right and _nothing_told(H, right, left):
-            return np.empty(0), np.empty((a.u.size, 0))
-        values, vectors = _eig(H[: k + 1, : k + 1])
-        error = np.zeros(k + 1) if whole else H[k + 1, k] * np.abs(vectors[-1])
-        told = (values.real + error > right) | (values.real - error < left)
-        known = error <= accuracy * np.abs(values)
-        before, converged = converged, bool(known[told].all())
-        if whole or (converged and (before or left_over <= UNSEEN * right)):
-            break
+        if k == 1 and _nothing_told(H, right, left):
+            if whole or left_over <= UNSEEN * right:
+                return np.empty(0), np.empty((a.u.size, 0))
+            converged = True
+        else:
+            values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
+            told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
+            before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
+            if whole or (converged and (before or left_over <= UNSEEN * right)):
+                break
         Q[k + 1] = x / left_over
-    real = np.abs(values.imag) <= error + EXHAUSTED * np.abs(values)
-    wanted = real & ((values.real > right) | (values.real < left))
-    return values[wanted].real, Q[: k + 1].T @ vectors[:, wanted].real
+    wanted = [
+        j
+        for j, (z, e) in enumerate(zip(values, errors))
+        if (z.real > right or z.real < left) and abs(z.imag) <= e + EXHAUSTED * abs(z)
+    ]
+    return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted]
 
 
-def _eig(matrix: Array) -> tuple[Array, Array]:
-    """What `numpy.linalg.eig` says of a small matrix, in a third of its time."""
+def _eig(matrix: Array, left_over: float) -> tuple[list[complex], list[float], Array]:
+    """Eigenvalues of a small matrix, what leads out of the space by their vectors, and the real parts of these.
+
+    In a fifth of the time of `numpy.linalg.eig`.
+    """
     real, imaginary, _, vectors, info = dgeev(matrix, compute_vl=0)
     if info:
         raise EvaluationError("eigenvalues of a small matrix were not found")
-    if not imaginary.any():
-        return real, vectors
-    pairs = vectors.astype(complex)
-    for j in np.flatnonzero(imaginary > 0.0):
-        pairs[:, j] += 1j * vectors[:, j + 1]
-        pairs[:, j + 1] = pairs[:, j].conj()
-    return real + 1j * imaginary, pairs
+    values, last = [complex(x, y) for x, y in zip(real.tolist(), imaginary.tolist())], vectors[-1].tolist()
+    for j, z in enumerate(values):
+        if z.imag > 0.0:
+            # A pair: its vector's real and imaginary parts stand side by side.
+            last[j] = last[j + 1] = math.hypot(last[j], last[j + 1])
+            vectors[:, j + 1] = vectors[:, j]
+    return values, [left_over * abs(x) for x in last], vectors
 
 
 def _nothing_told(H: Array, right: float, left: float) -> bool:

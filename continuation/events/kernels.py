@@ -11,6 +11,7 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.entries import extended
 
 BORDERS = 5
 """Lost ranks that can be counted: two more than are resolved (`continuation.events.multiple`), so that the message is
@@ -31,12 +32,12 @@ class Doubled:
 
     def factors(self) -> Callable[[Array, bool], Array]:
         """The solution of the system for a right-hand side, or of its transpose."""
-        if sp.issparse(self.matrix):
-            whole = sp.block_array([[self.matrix, sp.csc_array(self.columns)], [sp.csc_array(self.rows), None]])
-            factored = splu(sp.csc_array(whole))
-            return lambda r, transposed: np.asarray(factored.solve(r, "T" if transposed else "N"))
         corner = np.zeros((len(self.rows), self.columns.shape[1]))
-        factors = lu_factor(np.block([[self.matrix, self.columns], [self.rows, corner]]), check_finite=False)
+        whole = extended(self.matrix, self.columns, np.hstack([self.rows, corner]))
+        if sp.issparse(whole):
+            factored = splu(whole)
+            return lambda r, transposed: np.asarray(factored.solve(r, "T" if transposed else "N"))
+        factors = lu_factor(whole, check_finite=False)
         return lambda r, transposed: np.asarray(lu_solve(factors, r, int(transposed), check_finite=False))
 
 

@@ -14,7 +14,7 @@ from continuation.arrays import Array, dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue
-from continuation.point.arc import Arc
+from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.point.segment import Segment, hermite
@@ -174,17 +174,33 @@ def _knot(solver: PathSolver, event: Event, arc: Arc, t: float) -> tuple[Lineari
     return point, event.monitor(point.u, point.tangent)
 
 
-def _guess(event: Event, segment: Segment, ga: float, gb: float) -> float:
-    """The monitor's zero on the segment; the middle where the segment's end values do not bracket one."""
+def _guess(event: Event, segment: Segment, low: float = 0.0, high: float = 1.0) -> float | None:
+    """The monitor's zero on a part of the segment; None where the values at its ends do not bracket one."""
 
     def g(t: float) -> float:
         return event.monitor(segment.at(t), segment.derivative(t))
 
-    if g(0.0) * g(1.0) >= 0.0:
-        return 0.5
+    if g(low) * g(high) >= 0.0:
+        return None
     # A guess: where the monitor is so flat that it takes longer, the last bracket will do.
-    place = zero_between(g, 0.0, 1.0, xtol=1e-15, rtol=1e-14, disp=False)
-    return 0.5 if place is None else place
+    return zero_between(g, low, high, xtol=1e-15, rtol=1e-14, disp=False)
+
+
+def _continued(
+    event: Event, arc: Arc, replaced: tuple[Linearization, float], last: tuple[Linearization, float], room: float
+) -> tuple[Segment, float] | None:
+    """The interpolant of the last point and the one that it took the place of, and where its continuation has the zero.
+
+    None where these two are farther from each other than the `room` in which the zero lies is wide.
+    """
+    (old, before), (point, g) = replaced, last
+    way = dot(arc.border, point.u - old.u)
+    if not 0.0 < abs(way) < room or g == before:
+        return None
+    segment, until = hermite(old.u, old.tangent, point.u, point.tangent, arc.border), 1.0 + min(room / abs(way), 1.0)
+    narrow = abs(way) <= FINE * position(arc, arc.b.u)
+    t = 1.0 + g / (before - g) if narrow else _guess(event, segment, 1.0, until)
+    return None if t is None or not 1.0 < t < until else (segment, t)
 
 
 def _root(
@@ -193,41 +209,48 @@ def _root(
     """One zero: interpolate, correct, linearize, narrow; None where the monitor jumps instead, as a tangent may.
 
     The interpolant has the tangents of both ends, so each pass raises the error of the guess to about the fourth
-    power of the bracket. A pass that does not halve the monitor is followed by a bisection, or is the last one if
-    the monitor is at round-off.
+    power of the bracket; where one end of that stays, as in the method of false position, the last two points give
+    another one, which is continued. A pass of the first kind that does not halve the monitor is followed by a
+    bisection, or is the last one if the monitor is at round-off.
     """
-    a, b = arc.a, arc.b
-    best, least = (a, abs(ga)) if abs(ga) < abs(gb) else (b, abs(gb))
+    a, b = (arc.a, ga), (arc.b, gb)
+    last = best = min(a, b, key=lambda end: abs(end[1]))
     scale = max(abs(ga), abs(gb))
-    width = first = dot(arc.border, b.u - a.u)
-    bisect, stalled, noise = False, 0, None
+    width = first = position(arc, arc.b.u)
+    bisect, stalled, noise, replaced = False, 0, None, last
     for _ in range(PASSES):
-        segment = series if series is not None else hermite(a.u, a.tangent, b.u, b.tangent, arc.border)
-        series = None
         fine = width <= FINE * first
-        t = 0.5 if bisect else ga / (ga - gb) if fine else _guess(event, segment, ga, gb)
-        t = min(max(t, 1e-12), 1.0 - 1e-12)
-        point = solver.project_and_linearize(a if t < 0.5 else b, segment.at(t), arc.border, segment.derivative(t))
-        g = event.monitor(point.u, point.tangent)
-        bisect = abs(g) > HALVING * least
-        if abs(g) < least:
-            best, least = point, abs(g)
-        if ga * g > 0:
-            a, ga = point, g
+        ahead = None if bisect or fine else _continued(event, arc, replaced, last, width)
+        near = last[0]
+        if ahead is not None:
+            segment, t = ahead
         else:
-            b, gb = point, g
-        width = dot(arc.border, b.u - a.u)
-        stalled = stalled + 1 if bisect else 0
+            ua, ub = a[0], b[0]
+            segment = series if series is not None else hermite(ua.u, ua.tangent, ub.u, ub.tangent, arc.border)
+            guess = 0.5 if bisect else a[1] / (a[1] - b[1]) if fine else _guess(event, segment)
+            t = 0.5 if guess is None else min(max(guess, 1e-12), 1.0 - 1e-12)
+            near = ua if t < 0.5 else ub
+        series = None
+        point = solver.project_and_linearize(near, segment.at(t), arc.border, segment.derivative(t))
+        last = point, event.monitor(point.u, point.tangent)
+        slow = abs(last[1]) > HALVING * abs(best[1])
+        bisect, stalled = slow and ahead is None, stalled + 1 if slow else 0
+        best = min(best, last, key=lambda place: abs(place[1]))
+        if a[1] * last[1] > 0.0:
+            replaced, a = a, last
+        else:
+            replaced, b = b, last
+        width, least = dot(arc.border, b[0].u - a[0].u), abs(best[1])
         if least <= AT_ROUND_OFF * scale or (stalled >= 2 and least <= NEARLY_ZERO * scale):
             break
-        if bisect or fine:
+        if bisect or fine or least <= NEARLY_ZERO * scale:
             # As near as points are known: farther bisections would locate round-off.
             noise = solver.noise(arc.a) if noise is None else noise
-            if width <= noise or least <= noise * abs(gb - ga) / width:
+            if width <= noise or least <= noise * abs(b[1] - a[1]) / width:
                 break
-    if least > JUMP * scale and not (noise is not None and width <= noise):
+    if abs(best[1]) > JUMP * scale and not (noise is not None and width <= noise):
         return None
-    return _on_value(solver, event, best)
+    return _on_value(solver, event, best[0])
 
 
 def _on_value(solver: PathSolver, event: Event, point: Linearization) -> Linearization:

@@ -21,6 +21,7 @@ from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.events.kernels import kernels
 from continuation.linear import Banded, Symmetric
+from continuation.linear.entries import extended
 from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization
 
@@ -106,7 +107,8 @@ class ScaledDerivative:
         """H' at u, shape (N, N + 1), dense or sparse."""
         full = full_derivative(self.evaluator, u)
         if sp.issparse(full):
-            return sp.csc_array(sp.diags_array(1.0 / self.rows) @ full @ sp.diags_array(self.extent))
+            full.data *= np.repeat(self.extent, np.diff(full.indptr)) / self.rows[full.indices]
+            return full
         return full * self.extent / self.rows[:, None]
 
     def second(self, u: Array, phi: Array, w: Array) -> Array:
@@ -118,19 +120,17 @@ class ScaledDerivative:
 
 
 def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
-    """H' = [H_y, H_lam], shape (N, N + 1), dense or sparse."""
+    """H' = [H_y, H_lam], shape (N, N + 1), dense or sparse, an array of its own."""
     H_y, H_lam = evaluator.derivative(u[:-1], float(u[-1]))
     evaluator.counts.jacobians += 1
-    column = np.asarray(H_lam, dtype=float).reshape(-1, 1)
+    column = np.asarray(H_lam, dtype=float)
     if isinstance(H_y, Symmetric):
         H_y = H_y.matrix
     if isinstance(H_y, Banded):
         H_y = H_y.tosparse()
-    if sp.issparse(H_y):
-        return sp.csc_array(sp.hstack([H_y, sp.csc_array(column)]))
-    if not isinstance(H_y, np.ndarray):
+    if not (sp.issparse(H_y) or isinstance(H_y, np.ndarray)):
         raise EvaluationError("a matrix is needed here, and the Jacobian is an operator")
-    return np.hstack([H_y, column])
+    return extended(H_y, column[:, None], np.empty((0, column.size + 1)))
 
 
 def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> Array:
@@ -139,10 +139,9 @@ def row_sizes(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) ->
     for u in points:
         full = abs(full_derivative(evaluator, u))
         if sp.issparse(full):
-            found = (full @ sp.diags_array(extent)).max(axis=1).toarray().ravel()
+            np.maximum.at(sizes, full.indices, full.data * np.repeat(extent, np.diff(full.indptr)))
         else:
-            found = (full * extent).max(axis=1)
-        sizes = np.maximum(sizes, found)
+            sizes = np.maximum(sizes, (full * extent).max(axis=1))
     return np.where(sizes > 0.0, sizes, 1.0)
 
 
@@ -160,10 +159,9 @@ class Bordered:
 
     @cached_property
     def _factor(self) -> Any:
-        H, column, rows = self.matrix, self.column, self.rows
-        if sp.issparse(H):
-            return splu(sp.csc_array(sp.block_array([[H, sp.csc_array(column[:, None])], [sp.csc_array(rows), None]])))
-        whole = np.block([[H, column[:, None]], [rows, np.zeros((2, 1))]])
+        whole = extended(self.matrix, self.column[:, None], np.hstack([self.rows, np.zeros((2, 1))]))
+        if sp.issparse(whole):
+            return splu(whole)
         with warnings.catch_warnings():
             warnings.simplefilter("error", LinAlgWarning)
             try:

@@ -13,6 +13,7 @@ from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import lu_sign
+from continuation.linear.entries import extended
 from continuation.linear.superlu import SuperLU
 from continuation.linear.system import SingularError
 
@@ -103,14 +104,6 @@ def factor(matrix: Matrix) -> Factors:
             raise SingularError(str(error)) from error
 
 
-def bordered(matrix: Matrix, column: Array, row: Array, corner: float = 0.0) -> Matrix:
-    """[[matrix, column], [row, corner]], dense or sparse as the matrix is."""
-    if sp.issparse(matrix):
-        last = sp.csc_array(np.append(row, corner)[None, :])
-        return sp.vstack([sp.hstack([matrix, sp.csc_array(column[:, None])]), last], format="csc")
-    return np.block([[matrix, column[:, None]], [row[None, :], np.array([[corner]])]])
-
-
 @frozen(eq=False)
 class NearlySingular:
     """The solution of [[A, b], [c*, 0]] (v, s) = (0, 1) and of the adjoint system, (w, s*) = (0, 1).
@@ -147,7 +140,7 @@ def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
     unit = np.zeros(len(b) + 1)
     unit[-1] = 1.0
     for made in range(1, REFRESHED + 1):
-        factors = factor(bordered(matrix, b, c.conj()))
+        factors = factor(extended(matrix, b[:, None], np.append(c.conj(), 0.0)[None]))
         right, left = factors.solve(unit.astype(b.dtype)), factors.solve(unit.astype(b.dtype), adjoint=True)
         found = NearlySingular(factors, b, right[:-1], left[:-1], right[-1], made)
         v, w = (float(np.linalg.norm(x)) for x in (found.right, found.left))

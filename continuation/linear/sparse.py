@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from attrs import frozen
-from scipy.sparse import block_array, csc_array
+from scipy.sparse import csc_array
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.entries import extended
 from continuation.linear.factoring import Factoring, SparseFactor
 from continuation.linear.refine import BorderedMatrix, eliminate, join, refined
 from continuation.linear.system import BorderedSystem, SingularError
@@ -78,9 +79,7 @@ def factor_whole(matrix: Matrix, column: Array, row: Array) -> SparseWhole:
         raise SingularError(f"The bordered matrix is singular: its row {int(np.argmin(sizes))} is zero.")
     scale = np.ldexp(1.0, -np.frexp(sizes)[1])
     top = csc_array(matrix).multiply(scale[:n, None])
-    corner = scale[n] * row
-    whole = block_array([[top, (scale[:n] * column)[:, None]], [corner[None, :n], corner[None, n:]]], format="csc")
-    factor = factor_square(whole)
+    factor = factor_square(extended(top, (scale[:n] * column)[:, None], scale[n] * row[None]))
     if factor is None:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: a pivot is zero.")
     return SparseWhole(bordered, factor, scale)

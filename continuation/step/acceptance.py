@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from attrs import evolve, field, frozen
 
+from continuation.arrays import dot
 from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces
@@ -16,6 +17,7 @@ from continuation.events.scan import first_terminal, found_by_events, scan_event
 from continuation.guard import objection
 from continuation.kinks.crossing import Crossing, cross
 from continuation.kinks.first import first_zero
+from continuation.metric import norm
 from continuation.path import LocatedEvent
 from continuation.point.arc import Arc, angle_between, arc_between, cut, length_between, position
 from continuation.point.linearization import Linearization
@@ -91,13 +93,14 @@ class Examiner:
         near = False
         kink: tuple[Linearization, tuple[int, ...]] | None = None
         try:
+            missed = _across(point, attempt, prediction) if landed else attempt.correction.distance
             if self.pieces is not None:
                 # What lies behind a kink is no path: the arc ends there before anything else is looked at.
                 kink = first_zero(self.solver, self.pieces, state.signs, arc)
             if kink is not None:
                 arrival, landed = kink[0], False
                 arc = cut(arc, arrival)
-            if not arc_on_path(self.solver, arc, attempt.correction.distance):
+            if not arc_on_path(self.solver, arc, missed):
                 return _rejected(attempt, Rejection.MIDPOINT)
             ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
             index, flipped = self.branch_index, arrival.orientation not in (0, orientation)
@@ -188,6 +191,12 @@ class Examiner:
 def within(arc: Arc, at: Linearization, end: Linearization) -> bool:
     """Whether a point lies on an arc no farther than its end, which may be before the arc's own."""
     return position(arc, at.u) <= position(arc, end.u)
+
+
+def _across(point: Linearization, attempt: Arrival, prediction: Prediction) -> float:
+    """How far the prediction of a landing was off, across the path: at a fixed parameter it is corrected along, too."""
+    off = attempt.point.u - prediction(attempt.h)
+    return norm(point.weights, off - point.tangent * dot(point.border, off))
 
 
 def _rejected(attempt: Arrival, reason: Rejection, detail: str = "") -> Rejected:

@@ -121,6 +121,17 @@ def test_s_bends_inside_a_step(preset, width):
     assert found["right"] >= (6 if preset is not FAST else 5)
 
 
+@pytest.mark.parametrize(("width", "seed"), [(0.01, 26), (0.003, 1074), (0.003, 1123)])
+def test_an_s_bend_where_a_landing_is_looked_at(width, seed):
+    """The cubic meets the path in the middle of the S, at 0.31; at 0.77 it is off by less than a landing's correction.
+
+    That goes along the path, too, and was compared with what goes across it.
+    """
+    homotopy, turns = bends.bend("tanh", width, seed)
+    path = trace(homotopy)
+    assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, turns)
+
+
 # -- ends ---------------------------------------------------------------------------------------------------------
 
 POLES = [

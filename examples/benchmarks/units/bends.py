@@ -1,6 +1,6 @@
 """S-bends of a thousandth to a tenth of the path's extent: how many of their turning points are missed.
 
-    python examples/benchmarks/units/bends.py [NUMBER]
+    python examples/benchmarks/units/bends.py [NUMBER] [SEED]
 
 lam = g(y) - a s((y - y0) / w) for y from 0 to 1, with a smooth step s of width w, on a straight and on a curved path.
 """
@@ -57,11 +57,11 @@ def bend(kind: str, width: float, seed: int) -> tuple[object, int]:
     return homotopy, turns
 
 
-def missed(preset: continuation.Preset, width: float, number: int) -> Counter[str]:
-    """How `number` paths of each kind came out."""
+def missed(preset: continuation.Preset, width: float, number: int, first: int = 0) -> Counter[str]:
+    """How `number` paths of each kind came out, with seeds from `first` on."""
     found: Counter[str] = Counter()
     for kind in KINDS:
-        for seed in range(number):
+        for seed in range(first, first + number):
             homotopy, turns = bend(kind, width, seed)
             path = continuation.trace(homotopy, preset=preset, budget=continuation.Budget(steps=3000))
             right = path.status is continuation.Status.REACHED_TARGET and len(path.turning_points) == turns
@@ -71,7 +71,8 @@ def missed(preset: continuation.Preset, width: float, number: int) -> Counter[st
 
 
 if __name__ == "__main__":
-    number = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    arguments = [int(value) for value in sys.argv[1:]]
+    number, seed = arguments + [100, 0][len(arguments) :]
     for preset in PRESETS:
         for width in WIDTHS:
-            print(preset.name, width, dict(missed(preset, width, number)), flush=True)
+            print(preset.name, width, dict(missed(preset, width, number, seed)), flush=True)
