@@ -38,17 +38,9 @@ far enough for a matrix of about the size that it has elsewhere."""
 class Audit:
     """What a retrace says of a path.
 
-    Attributes
-    ----------
-    same : bool
-        Whether the retrace passes through every point of the path, in order and direction, with as many turning points
-        and branch points.
-    sentence : str
-        The finding in words.
-    first : int or None
-        Index of the first step that the retrace does not pass through; None if it passes through all.
-    retraced : Path
-        The retrace, for a closer look.
+    `same`: Whether the retrace passes through every point of the path, in order and direction, with as many turning
+    points and branch points. `sentence`: The finding in words. `first`: Index of the first step that the retrace does
+    not pass through; None if it passes through all. `retraced`: The retrace, for a closer look.
     """
 
     same: bool

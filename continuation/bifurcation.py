@@ -139,12 +139,7 @@ def _observed(path: Path, drawing: Drawing, name: str) -> Array:
 def at_event(event: Any, path: Path, value: Value) -> float:
     """The number that is drawn of an event.
 
-    Parameters
-    ----------
-    event : LocatedEvent
-    path : Path
-        On which it lies.
-    value : int, str, callable or None
+    `path`: On which it lies.
     """
     if value is None:
         return float(height(event.y))

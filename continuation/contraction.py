@@ -30,16 +30,10 @@ Section 2.1) for an iteration whose limit is examined afterwards."""
 class Contraction:
     """When an iteration is given up.
 
-    Attributes
-    ----------
-    iterations : int
-        At most so many increments.
-    ratio : float
-        An increment larger than this, relative to the one before, is not added any more.
-    first : float or None
-        The same for the first two increments, which may be of unlike parts of the error; `ratio` unless given.
-    noise : float
-        Increments up to this size may be round-off: their ratios mean nothing, and are not looked at.
+    `iterations`: At most so many increments. `ratio`: An increment larger than this, relative to the one before, is not
+    added any more. `first`: The same for the first two increments, which may be of unlike parts of the error; `ratio`
+    unless given. `noise`: Increments up to this size may be round-off: their ratios mean nothing, and are not looked
+    at.
     """
 
     iterations: int
@@ -52,19 +46,9 @@ class Contraction:
 class Iteration:
     """An iteration under way; what it has come to is to be read off it, also where an increment raised.
 
-    Attributes
-    ----------
-    x : ndarray
-        The iterate.
-    rule : Contraction
-    size : float
-        Of the last increment that was added.
-    ratio, worst : float
-        Of the last two increments, and the largest so far that was looked at.
-    count : int
-        Increments computed.
-    stalled : bool
-        Whether it was given up for its ratio.
+    `x`: The iterate. `size`: Of the last increment that was added. `ratio`, `worst`: Of the last two increments, and
+    the largest so far that was looked at. `count`: Increments computed. `stalled`: Whether it was given up for its
+    ratio.
     """
 
     x: Array
@@ -80,14 +64,8 @@ class Iteration:
     ) -> bool:
         """Add increments; whether it is done.
 
-        Parameters
-        ----------
-        increment : callable
-            The next increment at `x`.
-        measure : callable
-            Its size.
-        done : callable
-            Whether an increment of that size, which has been added, was the last.
+        `increment`: The next increment at `x`. `measure`: Its size. `done`: Whether an increment of that size, which
+        has been added, was the last.
         """
         rule, before = self.rule, self.size
         limit = rule.ratio if rule.first is None else rule.first

@@ -18,14 +18,8 @@ ATTRIBUTES = ("parameter_name", "names", "units")
 class Labels:
     """Names and units.
 
-    Attributes
-    ----------
-    parameter_name : str
-        Empty where the homotopy does not say.
-    names : tuple of str
-        Of the unknowns, in order; empty where it does not say.
-    units : mapping of str to str
-        Of the parameter, the unknowns and the observed scalars, by their names.
+    `parameter_name`: Empty where the homotopy does not say. `names`: Of the unknowns, in order; empty where it does not
+    say. `units`: Of the parameter, the unknowns and the observed scalars, by their names.
     """
 
     parameter_name: str = ""

@@ -40,14 +40,8 @@ class PluginError(LookupError):
 class Option:
     """A parameter of a plug-in's constructor.
 
-    Attributes
-    ----------
-    name : str
-    required : bool
-    default : object
-        None where it is required, `attrs.NOTHING` where it is worked out from the other options.
-    annotation : str
-        Its type as written; empty where there is none.
+    `default`: None where it is required, `attrs.NOTHING` where it is worked out from the other options. `annotation`:
+    Its type as written; empty where there is none.
     """
 
     name: str
@@ -106,15 +100,8 @@ class Plugin:
 class Description:
     """What a plug-in says of itself.
 
-    Attributes
-    ----------
-    summary : str
-        First line of the docstring.
-    options : tuple of Option
-    problem_class : str
-        The problems that it is for; empty where it does not say.
-    references : tuple of str
-        BibTeX entries.
+    `summary`: First line of the docstring. `problem_class`: The problems that it is for; empty where it does not say.
+    `references`: BibTeX entries.
     """
 
     summary: str

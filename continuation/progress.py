@@ -19,12 +19,7 @@ PLAIN_SECONDS = 10.0
 class Progress:
     """An observer that shows steps, the parameter, the step length, and how the path ended.
 
-    Parameters
-    ----------
-    stream : text stream, optional
-        stderr by default.
-    label : str
-        What is traced; begins every line.
+    `stream`: stderr by default. `label`: What is traced; begins every line.
     """
 
     def __init__(self, stream: TextIO | None = None, label: str = "path") -> None:

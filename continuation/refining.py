@@ -30,22 +30,8 @@ def refined_path(homotopy: Any, path: Path, accuracy: float = 1e-3) -> Path:
     Each arc's middle is corrected onto the path. Where the arc was farther off than the accuracy, relative to how far
     each component goes on the whole path, the point is added, and both halves are looked at again.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-        The one that was traced.
-    path : Path
-    accuracy : float, default 1e-3
-
-    Returns
-    -------
-    Path
-        Its steps, in between new ones of kind REGULAR, with cubics through points and tangents.
-
-    Raises
-    ------
-    ValueError
-        If the accuracy is no positive number.
+    `homotopy`: The one that was traced. Returns Path: Its steps, in between new ones of kind REGULAR, with cubics
+    through points and tangents. Raises `ValueError` if the accuracy is no positive number.
     """
     if not is_number(accuracy) or not 0.0 < accuracy < math.inf:
         raise complain(ValueError, "accuracy", "a positive number", accuracy)

@@ -51,12 +51,8 @@ class Tolerance:
 def as_tolerance(value: float | Tolerance) -> Tolerance:
     """A Tolerance as it is, a number as its relative part.
 
-    Raises
-    ------
-    TypeError
-        If it is neither a Tolerance nor a real number.
-    ValueError
-        If the number is not between the square of round-off and 1: it is a fraction of the path.
+    Raises `TypeError` if it is neither a Tolerance nor a real number. Raises `ValueError` if the number is not between
+    the square of round-off and 1: it is a fraction of the path.
     """
     expected = "a positive finite number or a Tolerance"
     if not isinstance(value, Tolerance):

@@ -18,18 +18,7 @@ ZOOM = (0.1, 0.2, 0.5, 0.5)
 def draw_examples(examples: Sequence[Example], paths: Sequence[Path], columns: int = 5) -> Any:
     """One panel an example, lambda from 1 on the left to 0 on the right, turning points as open circles.
 
-    Parameters
-    ----------
-    examples : sequence of Example
-    paths : sequence of Path
-        Their KKT paths, y = (x, z1, z2).
-    columns : int
-        Panels in a row.
-
-    Raises
-    ------
-    ImportError
-        Without matplotlib.
+    `paths`: Their KKT paths, y = (x, z1, z2). `columns`: Panels in a row. Raises `ImportError` without matplotlib.
     """
     require_matplotlib()
     from matplotlib.figure import Figure

@@ -58,16 +58,8 @@ def trace_example(example: Example, observers: tuple[Observer, ...] = ()) -> Pat
 def run_examples(examples: Sequence[Example], archive: str | PathLike[str]) -> list[Row]:
     """Trace the examples, write all paths to one new archive, and run the literal algorithm.
 
-    Parameters
-    ----------
-    examples : sequence of Example
-    archive : path
-        Must not exist. Besides the paths it holds a group `examples` with A, q and x0 of each.
-
-    Raises
-    ------
-    ArchiveError
-        If it exists or cannot be written.
+    `archive`: Must not exist. Besides the paths it holds a group `examples` with A, q and x0 of each. Raises
+    `ArchiveError` if it exists or cannot be written.
     """
     unknowns = 3 * max(example.q.size for example in examples)
     with PathLog(archive, title=TITLE) as log:

@@ -33,30 +33,34 @@ def program(tmp_path_factory):
     return run
 
 
-def test_it_is_listed(program):
-    listed = program("-m", "continuation", "plugins", "von-mises-truss")
-    assert listed.returncode == 0, listed.stderr
-    assert "Two bars of unit span" in listed.stdout
-    assert "options: rise=0.3, target=0.05" in listed.stdout
-    assert "for: elastic structures" in listed.stdout
-    assert "from: snapthrough 0.1.0 (snapthrough:VonMisesTruss)" in listed.stdout
-    assert "@article{vonMises1923" in listed.stdout
-    every = program("-m", "continuation", "plugins")
-    assert every.stderr == ""
-    assert {"von-mises-truss", "bratu-1d", "kkt"} <= set(every.stdout.splitlines())
+COMMANDS = """
+import sys
+from contextlib import redirect_stdout
+from continuation.cli import main
+for k, line in enumerate(sys.argv[1:]):
+    with open(f"{k}.txt", "w") as out, redirect_stdout(out):
+        assert main(line.split()) == 0, line
+"""
 
 
-def test_it_is_traced_by_its_name(program, tmp_path):
-    archive = tmp_path / "snap.h5"
-    traced = program("-m", "continuation", "trace", "von-mises-truss", "rise=0.2", "--json", "--archive", archive)
-    assert traced.returncode == 0, traced.stderr
-    answer = json.loads(traced.stdout)
+def test_it_is_listed_and_traced_by_its_name(program, tmp_path):
+    trace = "trace von-mises-truss rise=0.2 --json --archive snap.h5"
+    lines = "plugins von-mises-truss", "plugins", trace, "inspect snap.h5"
+    ran = program("-c", COMMANDS, *lines, cwd=tmp_path)
+    assert (ran.returncode, ran.stderr) == (0, "")
+    listed, every, traced, inspected = ((tmp_path / f"{k}.txt").read_text() for k in range(4))
+    assert "Two bars of unit span" in listed
+    assert "options: rise=0.3, target=0.05" in listed
+    assert "for: elastic structures" in listed
+    assert "from: snapthrough 0.1.0 (snapthrough:VonMisesTruss)" in listed
+    assert "@article{vonMises1923" in listed
+    assert {"von-mises-truss", "bratu-1d", "kkt"} <= set(every.splitlines())
+    answer = json.loads(traced)
     assert answer["status"] == "REACHED_TARGET"
     loads = [event["lam"] for event in answer["events"]]
     load = 2 * 0.2**3 / (3 * 3**0.5)
     assert loads == pytest.approx([load, -load], abs=1e-10)
-    inspected = program("-m", "continuation", "inspect", archive)
-    assert "snapthrough:VonMisesTruss" in inspected.stdout
+    assert "snapthrough:VonMisesTruss" in inspected
 
 
 def test_its_own_tests_pass(program, tmp_path):

@@ -47,31 +47,10 @@ _T = TypeVar("_T")
 class Contents:
     """An open file.
 
-    Parameters
-    ----------
-    file : path
-    limit : int
-        Bytes that one compressed dataset may unfold to.
-    salvage : bool
-        Whether to go on where the end of the file is missing, or its attributes, names or problem are not what was
-        written: rows are checked all the same.
-
-    Attributes
-    ----------
-    closed_by_writer : bool
-    checked : bool
-        Whether it has checksums; files of the schema `continuation-path-1` have none.
-    attributes : dict
-    layout : Layout
-    committed : Committed
-    event_names : tuple of str
-    flaws : list of str
-        What was passed over.
-
-    Raises
-    ------
-    ArchiveError
-        For anything wrong with it, here and in the methods.
+    `limit`: Bytes that one compressed dataset may unfold to. `salvage`: Whether to go on where the end of the file is
+    missing, or its attributes, names or problem are not what was written: rows are checked all the same. `checked`:
+    Whether it has checksums; files of the schema `continuation-path-1` have none. `flaws`: What was passed over. Raises
+    `ArchiveError` for anything wrong with it, here and in the methods.
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int = LIMIT, salvage: bool = False) -> None:

@@ -163,21 +163,10 @@ COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component"
 class Layout:
     """What one file holds besides the fixed columns.
 
-    Attributes
-    ----------
-    unknowns : int
-        N, one number a file.
-    controller : int
-        Numbers in `controller_state`.
-    observed : tuple of str
-        The homotopy's own scalars at each point: columns ``observed_<name>``.
-    scalars : tuple of str
-        The homotopy's numeric parameters: columns ``homotopy_<name>``, one value a path.
-    tangents : bool
-    pieces : bool
-        Whether kinks are held with their switches and rays.
-    origins : bool
-        Whether each path has its homotopy and its source.
+    `unknowns`: N, one number a file. `controller`: Numbers in `controller_state`. `observed`: The homotopy's own
+    scalars at each point: columns ``observed_<name>``. `scalars`: The homotopy's numeric parameters: columns
+    ``homotopy_<name>``, one value a path. `pieces`: Whether kinks are held with their switches and rays. `origins`:
+    Whether each path has its homotopy and its source.
     """
 
     unknowns: int

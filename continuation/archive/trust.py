@@ -90,21 +90,10 @@ def _registered(path: str) -> type | None:
 def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | None = None, hint: Any = Any) -> Any:
     """The value that `continuation.archive.codec.encode` described.
 
-    Parameters
-    ----------
-    tree : object
-        JSON.
-    fetch : callable
-        Turns what `place` returned back into an array.
-    known : mapping of str to class or function, optional
-        The `registry`; by default nothing but what `hint` names.
-    hint : type
-        What is expected: the value is checked against it, and the classes in it may be made.
-
-    Raises
-    ------
-    UnknownError
-        If a class or function is not trusted, a value is not of its field's type, or the description makes no sense.
+    `tree`: JSON. `fetch`: Turns what `place` returned back into an array. `known`: The `registry`; by default nothing
+    but what `hint` names. `hint`: What is expected: the value is checked against it, and the classes in it may be made.
+    Raises `UnknownError` if a class or function is not trusted, a value is not of its field's type, or the description
+    makes no sense.
     """
     try:
         value = _decode(tree, fetch, known or {}, hint)

@@ -39,19 +39,10 @@ Member = Callable[[Any], Any]
 class Calculus:
     """How a family is differentiated: decided once, at a point.
 
-    Attributes
-    ----------
-    family : callable
-    source : str
-        Of the derivative of members that have none of their own; empty where they have.
-    jets : bool
-        Whether second derivatives, and those by mu, come from jets.
-    u0 : ndarray, shape (N + 2,)
-        (y, lam, mu), where that was decided.
-    extent : ndarray, shape (N + 1,)
-        How far y and lam go, about: what steps of differences are measured by.
-    reach, bend : float
-        Steps of differences in mu, of H and of H' v, relative to its size.
+    `source`: Of the derivative of members that have none of their own; empty where they have. `jets`: Whether second
+    derivatives, and those by mu, come from jets. `u0`, of shape (N + 2,): (y, lam, mu), where that was decided.
+    `extent`, of shape (N + 1,): How far y and lam go, about: what steps of differences are measured by. `reach`,
+    `bend`: Steps of differences in mu, of H and of H' v, relative to its size.
     """
 
     family: Member
@@ -96,14 +87,7 @@ class Calculus:
     def second(self, u: Array, mu: float, v: Array, left: Array) -> Array:
         """The row left' H''[v, .] over (y, lam, mu), shape (N + 2,).
 
-        Parameters
-        ----------
-        u : ndarray, shape (N + 1,)
-        mu : float
-        v : ndarray, shape (N + 1,)
-            Real.
-        left : ndarray, shape (N,)
-            May be complex.
+        `u` of shape (N + 1,). `v`, of shape (N + 1,): Real. `left`, of shape (N,): May be complex.
         """
         if not v.any():
             return np.zeros(u.size + 1)
@@ -130,12 +114,7 @@ class Calculus:
 def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     """How to differentiate a family, tried at a point.
 
-    Parameters
-    ----------
-    family : callable
-    u : ndarray, shape (N + 1,)
-    mu : float
-    extent : ndarray, shape (N + 1,)
+    `u` of shape (N + 1,). `extent` of shape (N + 1,).
     """
     homotopy = family(mu)
     own = any(hasattr(homotopy, name) for name in ("jacobian", "bordered", "differential"))

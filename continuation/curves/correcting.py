@@ -21,14 +21,7 @@ FAR = 10.0
 def corrected(homotopy: Any, y: Array, lam: float, size: Array) -> Array:
     """The unknowns with the smallest of Newton's increments, at the parameter of the guess.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-        With `bordered`.
-    y : ndarray, shape (N,)
-    lam : float
-    size : ndarray, shape (N,)
-        What increments are measured by.
+    `homotopy`: With `bordered`. `y` of shape (N,). `size`, of shape (N,): What increments are measured by.
     """
     best, least = y, FAR
     for _ in range(INCREMENTS):

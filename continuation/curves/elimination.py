@@ -16,16 +16,8 @@ class Eliminated:
     With F = [[H_y, b], [c', d]] factored, y and s follow from c'y + d s = sigma and p; s = 0, the conditions and the
     border are m + 1 equations in sigma and p, and det = det F times the determinant of these.
 
-    Attributes
-    ----------
-    base : BorderedSystem
-        F.
-    solved : ndarray, shape (N + 1, m + 1)
-        (y, s) that follow from sigma = 1, and from each of p.
-    rows : ndarray, shape (m, N + m)
-        The conditions and the border.
-    small : BorderedSystem
-        The m + 1 equations.
+    `base`: F. `solved`, of shape (N + 1, m + 1): (y, s) that follow from sigma = 1, and from each of p. `rows`, of
+    shape (m, N + m): The conditions and the border. `small`: The m + 1 equations.
     """
 
     base: BorderedSystem
@@ -41,10 +33,7 @@ class Eliminated:
     def solve(self, r: Array, rho: float) -> Array:
         """The solution z, shape (N + m,).
 
-        Parameters
-        ----------
-        r : ndarray, shape (N + m - 1,)
-        rho : float
+        `r` of shape (N + m - 1,).
         """
         n = len(self.solved) - 1
         x = self.base.solve(r[:n], 0.0)
@@ -66,29 +55,14 @@ class Hiding:
         return self.whole.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution without that unknown.
-
-        Parameters
-        ----------
-        r : ndarray, shape (N + 1,)
-        rho : float
-        """
+        """The solution without that unknown."""
         return np.delete(self.whole.solve(np.append(r, 0.0), rho), -2)
 
 
 def eliminated(base: BorderedSystem, columns: Array, rows: Array) -> Eliminated:
     """Eliminate y.
 
-    Parameters
-    ----------
-    base : BorderedSystem
-    columns : ndarray, shape (N, m)
-    rows : ndarray, shape (m, N + m)
-
-    Raises
-    ------
-    SingularError
-        If the whole is singular.
+    `columns` of shape (N, m). `rows` of shape (m, N + m). Raises `SingularError` if the whole is singular.
     """
     n = len(columns)
     first = base.solve(np.zeros(n), 1.0)

@@ -22,14 +22,7 @@ NEAR = 0.1
 def frequency_at(H_y: Matrix) -> float:
     """The imaginary part of the pair.
 
-    Parameters
-    ----------
-    H_y : ndarray or sparse array, shape (N, N)
-
-    Raises
-    ------
-    ValueError
-        If no pair is near the axis.
+    `H_y` of shape (N, N). Raises `ValueError` if no pair is near the axis.
     """
     if sp.issparse(H_y) and H_y.shape[0] <= ALL:
         H_y = H_y.toarray()

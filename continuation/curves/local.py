@@ -24,20 +24,10 @@ from continuation.linear.nullspace import LONG, REFRESHED, Factors, null_vectors
 class Local:
     """A condition at a point; what a residual does not need is worked out when it is asked for.
 
-    Attributes
-    ----------
-    values : ndarray, shape (k,)
-    gradients : callable
-        Makes `rows`.
-    factored : callable
-        Makes `base`: [[H_y, b], [c', d]] for some border, factored.
-    column : ndarray, shape (N, k - 1)
-        Derivative of the equations H = 0 by the unknown beside.
-    hidden : float or None
-        The unknown beside where it is none, but a number that is added to H along the column: the last of the rows is
-        how it follows from the others.
-    signs : mapping of str to callable
-        Numbers whose signs tell degenerate points, from the rows.
+    `values` of shape (k,). `gradients`: Makes `rows`. `factored`: Makes `base`: [[H_y, b], [c', d]] for some border,
+    factored. `column`, of shape (N, k - 1): Derivative of the equations H = 0 by the unknown beside. `hidden`: The
+    unknown beside where it is none, but a number that is added to H along the column: the last of the rows is how it
+    follows from the others. `signs`: Numbers whose signs tell degenerate points, from the rows.
     """
 
     values: Array

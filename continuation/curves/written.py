@@ -31,15 +31,8 @@ PLACES = 6
 class WrittenOut:
     """The system, a homotopy in mu whose unknowns are the vector, in extents of the start, and then the curve's.
 
-    Attributes
-    ----------
-    condition : Singular, HopfPoint or AlongTangent
-    first : ndarray
-        A point of the curve, and behind it mu.
-    c : ndarray, shape (N,), or None
-        Complex, of Hopf points.
-    metric : Weighted
-        By the extents of the start, since unknowns of the curve may stand still.
+    `first`: A point of the curve, and behind it mu. `c`, of shape (N,): Complex, of Hopf points. `metric`: By the
+    extents of the start, since unknowns of the curve may stand still.
     """
 
     condition: Any
@@ -74,11 +67,7 @@ class WrittenOut:
     def lifted(self, u: Array, before: Array | None) -> Array:
         """A point of the curve with its vector in front.
 
-        Parameters
-        ----------
-        u : ndarray
-        before : ndarray or None
-            A lifted point nearby: the vector may have either sign.
+        `before`: A lifted point nearby: the vector may have either sign.
         """
         v = self.condition.null_vector(u)
         if self.c is not None:
@@ -91,12 +80,7 @@ class WrittenOut:
     def residual(self, y: Any, lam: Any) -> Any:
         """The equations, of arrays of any kind.
 
-        Parameters
-        ----------
-        y : array
-            The vector, and the unknowns of the curve.
-        lam : number
-            The second parameter, mu.
+        `y`: The vector, and the unknowns of the curve. `lam`: The second parameter, mu.
         """
         calculus = self.condition.scaled.calculus
         extent, mu = calculus.extent, np.stack([lam])

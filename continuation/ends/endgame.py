@@ -72,16 +72,9 @@ AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 class SingularLimit:
     """The limit of a path.
 
-    Attributes
-    ----------
-    u : ndarray, shape (N + 1,)
-        The parameter is the target exactly.
-    error : float
-        Estimate of the largest error of a component, absolute.
-    winding_number : int
-        1 where the path is analytic in the parameter, 2 for a square root, ...
-    length : float
-        The error's length in the metric of the path.
+    `u`, of shape (N + 1,): The parameter is the target exactly. `error`: Estimate of the largest error of a component,
+    absolute. `winding_number`: 1 where the path is analytic in the parameter, 2 for a square root, ... `length`: The
+    error's length in the metric of the path.
     """
 
     u: Array
@@ -103,12 +96,7 @@ class Sample:
 class Endgame:
     """The search for the limit of a path at a target.
 
-    Attributes
-    ----------
-    solver : PathSolver
-    target : float
-    samples : int
-        At most so many points, each of which costs a factorisation or two.
+    `samples`: At most so many points, each of which costs a factorisation or two.
     """
 
     solver: PathSolver
@@ -118,10 +106,7 @@ class Endgame:
     def limit(self, point: Linearization) -> SingularLimit | None:
         """The limit of the path at the target, or None where no winding number fits to within the tolerance.
 
-        Parameters
-        ----------
-        point : Linearization
-            On the path, near the target, with the parameter moving towards it.
+        `point`: On the path, near the target, with the parameter moving towards it.
         """
         gap = point.lam - self.target
         taken = [_sample(point, np.zeros_like(point.u))]

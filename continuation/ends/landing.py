@@ -67,14 +67,8 @@ class Landing:
     def attempt(self, point: Linearization, prediction: Prediction, h: float, last_failed: float) -> Attempt | None:
         """A step to the target, if the prediction reaches it.
 
-        Parameters
-        ----------
-        point : Linearization
-        prediction : Prediction
-        h : float
-            The step length that the controller wants.
-        last_failed : float
-            The parameter value at which landing was last tried in vain.
+        `h`: The step length that the controller wants. `last_failed`: The parameter value at which landing was last
+        tried in vain.
         """
         guess = self._guess(point, prediction, h, last_failed)
         if guess is None:

@@ -55,16 +55,8 @@ class EndsAt(Enum):
 class ArcEnd:
     """An accepted arc, cut where the path ends on it if it does.
 
-    Attributes
-    ----------
-    arc : Arc
-    at : EndsAt
-    kind : int
-        Of the arc's last point, one of `Kind`.
-    whole : bool
-        Whether the arc's last point is the one at which the attempt arrived.
-    limit : SingularLimit or None
-        Set where the end is singular.
+    `kind`: Of the arc's last point, one of `Kind`. `whole`: Whether the arc's last point is the one at which the
+    attempt arrived. `limit`: Set where the end is singular.
     """
 
     arc: Arc

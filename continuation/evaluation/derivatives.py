@@ -82,15 +82,7 @@ def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[
     Of several steps that one is taken at which the difference changes least from this to the next, in the mean over
     the equations, each beside its own size.
 
-    Parameters
-    ----------
-    residual : callable
-    u, w : ndarray, shape (N + 1,)
-
-    Returns
-    -------
-    difference : ndarray, shape (N,)
-    step : float
+    `u`, `w` of shape (N + 1,).
     """
 
     def at(h: float) -> Array:
@@ -162,10 +154,7 @@ def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> D
     The first two are tried at the start, and believed when they agree with a difference there, since a residual may
     well run on complex numbers and be wrong on them (``abs``, ``np.real``).
 
-    Parameters
-    ----------
-    residual : callable
-    start : tuple of ndarray, shape (N,), and float
+    `start` of shape (N,).
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)

@@ -113,25 +113,10 @@ def _finite(counts: Counts, solve: Callable[[Array, float], Array], r: Array, rh
 class Evaluator:
     """Counted access to one homotopy.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    counts : Counts
-        Where evaluations are added up.
-
-    Attributes
-    ----------
-    methods : set of str
-        BibTeX of what served where the homotopy gave no derivative of its own.
-    keeping : bool
-        Whether the last derivatives are kept, for `matrix`.
-
-    Raises
-    ------
-    TypeError
-        If `start` or `residual` is missing.
-    ValueError
-        If the start is empty, not a vector, or not finite, or if the residual's shape disagrees with it.
+    `counts`: Where evaluations are added up. `methods`: BibTeX of what served where the homotopy gave no derivative of
+    its own. `keeping`: Whether the last derivatives are kept, for `matrix`. Raises `TypeError` if `start` or `residual`
+    is missing. Raises `ValueError` if the start is empty, not a vector, or not finite, or if the residual's shape
+    disagrees with it.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -149,10 +134,7 @@ class Evaluator:
     def bind(self, homotopy: Any) -> None:
         """Evaluate this one from now on: the next piece of a piecewise smooth map.
 
-        Raises
-        ------
-        TypeError
-            If it lacks a method, or has something else in the place of one.
+        Raises `TypeError` if it lacks a method, or has something else in the place of one.
         """
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
@@ -209,9 +191,7 @@ class Evaluator:
     def called(self, y: Any, lam: Any) -> Any:
         """The plug-in's residual, on numbers or on jets, counted.
 
-        Parameters
-        ----------
-        y, lam : ndarray, shape (N,), and float; or jets of them
+        `y`, `lam` of shape (N,).
         """
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)

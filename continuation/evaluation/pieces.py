@@ -47,12 +47,8 @@ class Pieces:
     def values(self, u: Array) -> Array:
         """The switches at u, shape (m,).
 
-        Raises
-        ------
-        SwitchError
-            Where they are not finite, or cannot be evaluated.
-        ValueError
-            If they are no vector of real numbers.
+        Raises `SwitchError` where they are not finite, or cannot be evaluated. Raises `ValueError` if they are no
+        vector of real numbers.
         """
         try:
             with np.errstate(all="ignore"):
@@ -133,11 +129,7 @@ class WholeMap:
 
     What looks at single points of a path, and does not follow it, needs no more.
 
-    Parameters
-    ----------
-    homotopy : SupportsPieces
-    u : ndarray, shape (N + 1,)
-        Its start.
+    `u`, of shape (N + 1,): Its start.
     """
 
     def __init__(self, homotopy: Any, u: Array) -> None:

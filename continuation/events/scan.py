@@ -20,14 +20,7 @@ def found_by_events(
 ) -> tuple[list[tuple[int, Linearization]], bool]:
     """What events that look for themselves find on an arc, by `found_on`; and whether, by `accounts_for`, that is all.
 
-    Parameters
-    ----------
-    solver : PathSolver
-    events : tuple of Event
-    arc : Arc
-        Up to where the path ends, if it does.
-    found : list of (int, Linearization)
-        What the monitors of others found on it.
+    `arc`: Up to where the path ends, if it does. `found`: What the monitors of others found on it.
     """
     watching = [(i, event) for i, event in enumerate(events) if hasattr(event, "found_on")]
     own = [(i, point) for i, event in watching for point in event.found_on(solver, arc)]

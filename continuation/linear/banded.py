@@ -98,10 +98,7 @@ class BandedLU:
 def factor_banded(matrix: Banded, column: Array, row: Array) -> BorderedSystem:
     """Factor H_y within its band and border it; at a fold factor the whole matrix as a sparse one.
 
-    Raises
-    ------
-    SingularError
-        If the bordered matrix is exactly singular, or an entry is not finite.
+    Raises `SingularError` if the bordered matrix is exactly singular, or an entry is not finite.
     """
     n, lower, upper = len(column), matrix.lower, matrix.upper
     magnitudes = Banded(np.abs(matrix.ab), lower, upper)

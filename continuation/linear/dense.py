@@ -72,10 +72,7 @@ class Dense:
     def solve(self, r: Array, rho: float) -> Array:
         """The solution z, shape (N + 1,).
 
-        Raises
-        ------
-        SingularError
-            If z overflows, or the right-hand side is not finite.
+        Raises `SingularError` if z overflows, or the right-hand side is not finite.
         """
         factor = self.factor
         z = np.empty(r.size + 1)
@@ -95,10 +92,7 @@ class Dense:
 def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     """Factor ``[[matrix, column], [row']]`` by LU with partial pivoting, in O(N^3).
 
-    Raises
-    ------
-    SingularError
-        If a pivot is exactly zero, or an entry is not finite.
+    Raises `SingularError` if a pivot is exactly zero, or an entry is not finite.
     """
     n = len(column)
     whole = np.empty((n + 1, n + 1), order="F")

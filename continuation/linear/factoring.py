@@ -72,18 +72,8 @@ NAMES = ("auto", SuperLUMethod.name, *(one.name for one in EXTRAS))
 def check_method(argument: str, name: object) -> str:
     """The name of a method, or "auto".
 
-    Parameters
-    ----------
-    argument : str
-        What an error calls it.
-    name : str
-
-    Raises
-    ------
-    ValueError
-        If there is no such method.
-    ImportError
-        If its package is not installed.
+    `argument`: What an error calls it. Raises `ValueError` if there is no such method. Raises `ImportError` if its
+    package is not installed.
     """
     if not isinstance(name, str) or name not in NAMES:
         found = repr(name) if isinstance(name, str) else type(name).__name__
@@ -103,11 +93,7 @@ def installed(method: SparseMethod) -> bool:
 class Negative:
     """A matrix of which the negative was factored.
 
-    Attributes
-    ----------
-    factor : SparseFactor
-    n : int
-        The order.
+    `n`: The order.
     """
 
     factor: SparseFactor

@@ -22,12 +22,7 @@ SETTLED, NEARLY = 1e-15, 1e-10
 class Followed:
     """An eigenvalue of a matrix, with its vector, and a bordered factorisation made with a value near to it.
 
-    Attributes
-    ----------
-    value : complex
-    near : NearlySingular
-    turned : ndarray, shape (N + 1,)
-        The bordered solution for the vector: what a change of the eigenvalue makes of it.
+    `turned`, of shape (N + 1,): The bordered solution for the vector: what a change of the eigenvalue makes of it.
     """
 
     value: complex
@@ -38,15 +33,7 @@ class Followed:
     def of(cls, matrix: Matrix, value: complex) -> Followed:
         """The eigenvalue nearest to a value.
 
-        Parameters
-        ----------
-        matrix : ndarray or sparse array, shape (N, N)
-        value : complex
-
-        Raises
-        ------
-        ArithmeticError
-            If the bordered matrix is singular.
+        `matrix` of shape (N, N). Raises `ArithmeticError` if the bordered matrix is singular.
         """
         n = matrix.shape[0]
         eye = sp.eye_array(n, format="csc") if sp.issparse(matrix) else np.eye(n)
@@ -57,14 +44,7 @@ class Followed:
     def at(self, matrix: Matrix) -> tuple[complex, int]:
         """The eigenvalue of a matrix nearby, and how many solves it took: Newton's chord for (A - z) v = 0, c*v fixed.
 
-        Parameters
-        ----------
-        matrix : ndarray or sparse array, shape (N, N)
-
-        Raises
-        ------
-        ArithmeticError
-            If it does not converge.
+        `matrix` of shape (N, N). Raises `ArithmeticError` if it does not converge.
         """
         pair = Iteration(np.append(self.near.right, self.value), CHORD)
 

@@ -21,10 +21,7 @@ ROUNDING = 16 * float(np.finfo(float).eps)
 class Look:
     """What the entries of a matrix tell, each found out when it is asked for.
 
-    Attributes
-    ----------
-    matrix : csc_array of shape (N, N)
-        In canonical format.
+    `matrix`, of shape (N, N): In canonical format.
     """
 
     matrix: Matrix

@@ -33,11 +33,7 @@ GOOD_ENOUGH = 1e-12
 class Multigrid:
     """A hierarchy of coarser matrices in place of factors.
 
-    Attributes
-    ----------
-    look : Look
-    levels : object
-        The hierarchy of pyamg.
+    `levels`: The hierarchy of pyamg.
     """
 
     name: ClassVar[str] = "multigrid"

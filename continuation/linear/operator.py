@@ -83,10 +83,7 @@ class Krylov:
     def solve(self, r: Array, rho: float) -> Array:
         """The solution z, shape (N + 1,).
 
-        Raises
-        ------
-        SingularError
-            If GMRES does not converge.
+        Raises `SingularError` if GMRES does not converge.
         """
         rhs = join(r, rho)
         z, accurate = refined(self.bordered, self._gmres, rhs)
@@ -128,10 +125,7 @@ class Krylov:
 def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
     """Prepare GMRES: the size of H_y by one product, and the bordered preconditioner.
 
-    Raises
-    ------
-    SingularError
-        If a product with H_y is not finite, or the border is zero.
+    Raises `SingularError` if a product with H_y is not finite, or the border is zero.
     """
     n = len(column)
     # For a vector of random signs, E |A v|^2 is the squared Frobenius norm.

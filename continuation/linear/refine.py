@@ -144,10 +144,7 @@ def eliminate(bordered: BorderedMatrix, factor: Factored, factor_whole: Callable
     The test depends on no norm, and so on no scaling. Within its limits both signs in ``det M = det H_y * schur`` are
     certain; beyond them neither is, though their product is well determined, and only the whole matrix tells it.
 
-    Raises
-    ------
-    SingularError
-        If `factor_whole` was needed and found M singular.
+    Raises `SingularError` if `factor_whole` was needed and found M singular.
 
     References
     ----------

@@ -49,16 +49,9 @@ ROUND_OFF = 1e-14
 class Spectrum:
     """What is known of the eigenvalues of a matrix.
 
-    Attributes
-    ----------
-    values : ndarray of complex
-        Those computed, the rightmost first; none where only signs were asked for.
-    unstable : int
-        How many lie to the right of the imaginary axis.
-    covered : bool
-        Whether no other eigenvalue can lie there.
-    solves : int
-        With the one factorisation of Arnoldi's method.
+    `values`: Those computed, the rightmost first; none where only signs were asked for. `unstable`: How many lie to the
+    right of the imaginary axis. `covered`: Whether no other eigenvalue can lie there. `solves`: With the one
+    factorisation of Arnoldi's method.
     """
 
     values: np.ndarray[Any, np.dtype[np.complex128]]
@@ -196,18 +189,8 @@ def dominant(
 ) -> tuple[Any, int]:
     """The k eigenvalues of largest modulus, by Arnoldi's method, and how often the operator was applied.
 
-    Parameters
-    ----------
-    apply : callable
-    start : ndarray, shape (N,)
-    k : int
-    known : callable
-        Of eigenvalues and bounds on their errors: whether they are good enough.
-
-    Raises
-    ------
-    ArithmeticError
-        If they do not converge.
+    `start` of shape (N,). `known`: Of eigenvalues and bounds on their errors: whether they are good enough. Raises
+    `ArithmeticError` if they do not converge.
     """
     n = start.size
     most = min(n, DIMENSIONS * (k + 1))

@@ -76,11 +76,8 @@ def factor_superlu(matrix: Matrix, **how: Any) -> SuperLU | None:
 class SuperLUMethod:
     """Factorisations by SuperLU, which take any matrix.
 
-    Attributes
-    ----------
-    weak_pivots : bool
-        On a symmetric pattern a pivot on the diagonal, however weak, keeps the ordering's fill, and is left to a
-        refinement; other matrices are ordered by columns. Without it rows are exchanged.
+    `weak_pivots`: On a symmetric pattern a pivot on the diagonal, however weak, keeps the ordering's fill, and is left
+    to a refinement; other matrices are ordered by columns. Without it rows are exchanged.
     """
 
     name: ClassVar[str] = "superlu"

@@ -106,10 +106,7 @@ class LDL:
 def factor_symmetric(matrix: Symmetric, column: Array, row: Array) -> BorderedSystem:
     """Factor H_y alone and border it; at a fold factor the whole matrix by LU.
 
-    Raises
-    ------
-    SingularError
-        If the bordered matrix is exactly singular, or an entry is not finite.
+    Raises `SingularError` if the bordered matrix is exactly singular, or an entry is not finite.
     """
     with np.errstate(over="ignore"):
         bordered = BorderedMatrix(matrix, column, row, np.abs(matrix.matrix).sum(axis=1))
@@ -134,10 +131,7 @@ def _factor(symmetric: Symmetric) -> Factored | None:
 def factor_cholesky(matrix: Array) -> Cholesky | None:
     """The Cholesky factor of a symmetric matrix by itself; None where a pivot is not positive.
 
-    Parameters
-    ----------
-    matrix : Array of shape (N, N)
-        Only the lower triangle is read.
+    `matrix`, of shape (N, N): Only the lower triangle is read.
     """
     factor = 2.0 - math.frexp(matrix[0, 0])[1] % 2
     lower, info = dpotrf(matrix if factor == 1.0 else factor * matrix, lower=1, clean=0)

@@ -50,18 +50,10 @@ class Anchor:
 class Linearization:
     """A point, its tangent, and a factorisation of [H_y, H_lam] made there or nearby.
 
-    Attributes
-    ----------
-    u : ndarray, shape (N + 1,)
-        The point (y, lam).
-    weights : ndarray, shape (N + 1,)
-        The metric there.
-    anchor : Anchor
-        The factorisation. Where `exact` is false it was made at a point nearby: right for corrections, not for series.
-    tangent : ndarray, shape (N + 1,)
-        Of unit length in the metric, H' tangent = 0, oriented.
-    orientation : int
-        Sign of det [[H'], [(W tangent)']]; 0 if the structure cannot tell.
+    `u`, of shape (N + 1,): The point (y, lam). `weights`, of shape (N + 1,): The metric there. `anchor`: The
+    factorisation. Where `exact` is false it was made at a point nearby: right for corrections, not for series.
+    `tangent`, of shape (N + 1,): Of unit length in the metric, H' tangent = 0, oriented. `orientation`: Sign of det
+    [[H'], [(W tangent)']]; 0 if the structure cannot tell.
     """
 
     u: Array

@@ -32,15 +32,8 @@ HUGE = 1e150
 class Pade:
     """The rational curve sum_j p_j s^j / sum_i d_i s^i.
 
-    Attributes
-    ----------
-    numerator : ndarray, shape (L + 1, N + 1)
-    denominator : ndarray, shape (m + 1,)
-        Ascending, the first one 1.
-    order : int
-        Of the series that it continues, L + m.
-    reach : float
-        How far it is trusted.
+    `numerator` of shape (L + 1, N + 1). `denominator`, of shape (m + 1,): Ascending, the first one 1. `order`: Of the
+    series that it continues, L + m. `reach`: How far it is trusted.
     """
 
     numerator: Array

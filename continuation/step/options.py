@@ -152,19 +152,8 @@ EVENT = Part(("monitor", "name", "kind", "terminal", "direction"), "events (wrap
 def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: Mapping[str, str] | None = None) -> None:
     """Refuse options that do not exist, or that are not the caller's to set.
 
-    Parameters
-    ----------
-    names : iterable of str
-        The options given.
-    known : collection of str
-        The options that there are.
-    owned : mapping of str to str, optional
-        Options that there are, but not here, and why not.
-
-    Raises
-    ------
-    TypeError
-        Naming the option, and the one that it is nearest to.
+    `names`: The options given. `known`: The options that there are. `owned`: Options that there are, but not here, and
+    why not. Raises `TypeError` naming the option, and the one that it is nearest to.
     """
     for name in names:
         if owned and name in owned:
@@ -178,10 +167,7 @@ def check_names(names: Iterable[str], known: Collection[str] = OPTIONS, owned: M
 def checked(options: Mapping[str, Any]) -> Options:
     """The options with the defaults of those that are not given.
 
-    Raises
-    ------
-    TypeError, ValueError
-        Naming the option, what was expected and what was found.
+    Raises `TypeError, ValueError` naming the option, what was expected and what was found.
     """
     check_names(options)
     # The names are those of the TypedDict: that was checked a line above.

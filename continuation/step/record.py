@@ -24,16 +24,7 @@ Observe = Callable[[Array, float], Mapping[str, float]]
 def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
     """What is stored with each point: the homotopy's own scalars, and those of events that have some.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    events : sequence of Event
-        As they watch the path.
-
-    Raises
-    ------
-    ValueError
-        Later, where two have a scalar of one name.
+    `events`: As they watch the path. Raises `ValueError` later, where two have a scalar of one name.
     """
     own = observe_of(homotopy)
     others = [event.observe for event in events if hasattr(event, "observe")]
@@ -57,11 +48,7 @@ def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
 class StepRecorder:
     """What every record is made with.
 
-    Attributes
-    ----------
-    evaluator : Evaluator
-    observe : callable or None
-        The homotopy's extra scalars at a point.
+    `observe`: The homotopy's extra scalars at a point.
     """
 
     evaluator: Evaluator
@@ -72,17 +59,8 @@ class StepRecorder:
     ) -> Step:
         """The record of a point.
 
-        Parameters
-        ----------
-        point : Linearization
-        index : int
-        arclength : float
-        kind : int
-            One of `Kind`.
-        residual_norm : float
-            Evaluated here where it is not known.
-        **how
-            How the point was reached: the other fields of `Step`.
+        `kind`: One of `Kind`. `residual_norm`: Evaluated here where it is not known. `**how`: How the point was
+        reached: the other fields of `Step`.
         """
         return Step(
             index=index,
@@ -97,12 +75,7 @@ class StepRecorder:
         )
 
     def observing(self, events: Sequence[LocatedEvent]) -> Sequence[LocatedEvent]:
-        """Located events with the homotopy's extra scalars.
-
-        Parameters
-        ----------
-        events : sequence of LocatedEvent
-        """
+        """Located events with the homotopy's extra scalars."""
         if self.observe is None:
             return events
         return [evolve(event, observed=self.observe(event.y, event.lam)) for event in events]

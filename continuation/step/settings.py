@@ -104,19 +104,8 @@ def complete_settings(
 ) -> Settings:
     """Complete checked options from the homotopy.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    asked : Options
-    start : callable
-        Where the path begins, (y, lam); asked for where there is a box.
-    observers : sequence of Observer
-        Those with `events` have them watched for.
-
-    Raises
-    ------
-    TypeError, ValueError
-        Where the homotopy's own metric, events or target are none.
+    `start`: Where the path begins, (y, lam); asked for where there is a box. `observers`: Those with `events` have them
+    watched for. Raises `TypeError, ValueError` where the homotopy's own metric, events or target are none.
     """
     preset, target = asked["preset"], asked["target"]
     own = homotopy.metric if isinstance(homotopy, SupportsMetric) else None

@@ -56,15 +56,8 @@ def first_point(
 ) -> tuple[Linearization, float]:
     """The start on the path, with the tangent that leads to the target, and a first step length.
 
-    Parameters
-    ----------
-    direction : int
-        Sign wanted of the tangent's parameter component; 0 lets the target decide (and +1 where there is none).
-
-    Raises
-    ------
-    StartError
-        Or SingularStartError: the one is a wrong point, the other a wrong problem.
+    `direction`: Sign wanted of the tangent's parameter component; 0 lets the target decide (and +1 where there is
+    none). Raises `StartError` or SingularStartError: the one is a wrong point, the other a wrong problem.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
     unit = np.zeros_like(u)
@@ -89,10 +82,7 @@ def first_point(
 def at_parameter(solver: PathSolver, u: Array) -> Array:
     """The point of the path at the parameter value of a guess.
 
-    Raises
-    ------
-    StartError
-        If Newton's method does not come to one.
+    Raises `StartError` if Newton's method does not come to one.
     """
     evaluator = solver.evaluator
     unit = np.zeros_like(u)
@@ -215,11 +205,7 @@ def point_from_tangent(
 ) -> tuple[Linearization, float]:
     """Begin at a given point in a given direction; the determinant sign there becomes the orientation.
 
-    Raises
-    ------
-    ValueError
-        If `start` is no pair (u, v) of vectors of the right size, or v vanishes.
-    SingularStartError
+    Raises `ValueError` if `start` is no pair (u, v) of vectors of the right size, or v vanishes.
     """
     evaluator, (u, v) = solver.evaluator, point_and_direction(start)
     if u.size != size:

@@ -32,15 +32,8 @@ TANGENT = 1e-6
 class Arrival:
     """An attempt that arrived on the path.
 
-    Attributes
-    ----------
-    h : float
-        Its step length.
-    correction : Correction
-    point : Linearization
-        Where it arrived; the tangent is oriented by angle for now.
-    angle : float
-        Between the tangents, radians.
+    `h`: Its step length. `point`: Where it arrived; the tangent is oriented by angle for now. `angle`: Between the
+    tangents, radians.
     """
 
     h: float

@@ -24,15 +24,8 @@ from continuation.step.start import SingularStartError, StartError
 class Verdict:
     """How a path ended.
 
-    Attributes
-    ----------
-    status : Status
-    particulars : str
-        What is said of this path beyond the status' sentence.
-    limit : SingularLimit or None
-        Where the end is singular.
-    rejected : tuple of Rejected
-        The failed attempts at the last point.
+    `particulars`: What is said of this path beyond the status' sentence. `limit`: Where the end is singular.
+    `rejected`: The failed attempts at the last point.
     """
 
     status: Status
@@ -112,13 +105,8 @@ def no_step_left(h: float, minimum: float, rejected: tuple[Rejected, ...]) -> Ve
 def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
     """An accepted arc ends the path: by where it ends, else because the path runs off to infinity.
 
-    Parameters
-    ----------
-    end : ArcEnd
-    infinity : str
-        How the path runs off to infinity, in words; empty if it does not.
-    event : str
-        Name of the last event on the arc, if there is one.
+    `infinity`: How the path runs off to infinity, in words; empty if it does not. `event`: Name of the last event on
+    the arc, if there is one.
     """
     if end.limit is not None:
         return singular_end(end.limit)

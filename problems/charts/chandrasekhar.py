@@ -26,11 +26,7 @@ class Chandrasekhar:
     The mean m of y satisfies m = 1 + lam m^2/4, so the path turns at lam = 1, where m = 2, for every n, and the branch
     that returns has m = 2 (1 + sqrt(1 - lam))/lam.
 
-    Parameters
-    ----------
-    n : int
-    target : float or None
-        Where the path ends; the returning branch has no end.
+    `target`: Where the path ends; the returning branch has no end.
 
     References
     ----------

@@ -60,14 +60,7 @@ def mixed_lcps(draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str
 def planted_mixed_lcps(
     draw: Draw, cls: str = "any", n: Order = ORDERS, kinds: tuple[str, ...] = KINDS
 ) -> tuple[MixedLCP, Array]:
-    """A problem with bounds and one of its solutions x, exactly (all are integers), degenerate or not.
-
-    Parameters
-    ----------
-    cls : str
-    n : int or strategy of int
-    kinds : tuple of str
-    """
+    """A problem with bounds and one of its solutions x, exactly (all are integers), degenerate or not."""
     A = draw(matrices(cls, n))
     lower, upper = draw(bounds(len(A), kinds))
     x, w = np.empty(len(A)), np.zeros(len(A))

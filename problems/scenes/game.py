@@ -36,10 +36,7 @@ def _columns(value: Any) -> Payoffs:
 def bimatrix(C: Array, D: Array) -> LCP:
     """The equilibria of a game with positive losses: C y >= e and D'x >= e, complementary to x and y.
 
-    Parameters
-    ----------
-    C, D : ndarray, shape (m, n)
-        What the player who chooses a row loses, and the one who chooses a column.
+    `C`, `D`, of shape (m, n): What the player who chooses a row loses, and the one who chooses a column.
     """
     m, n = C.shape
     return LCP(np.block([[np.zeros((m, m)), C], [D.T, np.zeros((n, n))]]), -np.ones(m + n))

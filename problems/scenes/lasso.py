@@ -20,10 +20,7 @@ from problems.scenes.scene import Quantities, Rival, Unknown
 def penalised(G: Array, c: Array) -> Path:
     """The path of min b'Gb/2 - c'b + t |b|_1, from the least t with b = 0 on, to 0.
 
-    Parameters
-    ----------
-    G : ndarray, shape (p, p)
-    c : ndarray, shape (p,)
+    `G` of shape (p, p). `c` of shape (p,).
 
     References
     ----------

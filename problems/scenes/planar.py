@@ -24,19 +24,7 @@ def time_step(bodies: Sequence[Body], contacts: Sequence[Contact], friction: flo
     The matrix is copositive, so that Lemke's method finds a solution whatever the state is; with three unknowns a
     contact (Pfeiffer and Glocker) that is lost.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-    contacts : sequence of Contact
-    friction : float
-
-    Returns
-    -------
-    A : ndarray, shape (4 c, 4 c)
-    J : ndarray, shape (2 c, 3 b)
-        Velocities of the bodies to normal and tangential ones, in turns.
-    inverse : ndarray, shape (3 b,)
-        Inverse masses.
+    Returns J: Velocities of the bodies to normal and tangential ones, in turns. Returns inverse: Inverse masses.
 
     References
     ----------

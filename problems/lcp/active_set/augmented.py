@@ -55,16 +55,7 @@ ROUNDS = 100
 class Saddle:
     """A program read from its optimality conditions: P, c, rows R x + d in [low, high], x in [lower, upper].
 
-    Attributes
-    ----------
-    problem : MixedLCP
-    P, R : Matrix
-    c, d : Array
-    low, high : Array
-    multiplier : ndarray of int
-        The index of the multiplier of each row.
-    activity : ndarray of int
-        That of its activity, -1 where it has none.
+    `multiplier`: The index of the multiplier of each row. `activity`: That of its activity, -1 where it has none.
     """
 
     problem: MixedLCP
@@ -148,13 +139,8 @@ class Penalised:
     def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
         """Where along a direction the derivative, which grows piecewise linearly from `slope`, is zero.
 
-        Parameters
-        ----------
-        t, dv : ndarray
-            The values plus multipliers over penalties, and how they change.
-        slope : float
-        curvature : float
-            Of what is not penalised.
+        `t`, `dv`: The values plus multipliers over penalties, and how they change. `curvature`: Of what is not
+        penalised.
         """
         with np.errstate(all="ignore"):
             enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])
@@ -180,17 +166,8 @@ def guesses(
 ) -> Iterator[tuple[State, Array]]:
     """Active sets, and points near which their solutions are sought, one after each change of the multipliers.
 
-    Parameters
-    ----------
-    saddle : Saddle
-    below : float
-        How far below zero the least eigenvalue of P is; 0 where P is positive semidefinite.
-    x : ndarray
-        Where it begins.
-    counts : Counts
-        Where factorisations are added up.
-    factoring : Factoring
-        Of sparse matrices.
+    `below`: How far below zero the least eigenvalue of P is; 0 where P is positive semidefinite. `x`: Where it begins.
+    `counts`: Where factorisations are added up. `factoring`: Of sparse matrices.
     """
     problem, n, m = saddle.problem, x.size, saddle.multiplier.size
     low, high = np.append(saddle.low, problem.lower[:n]), np.append(saddle.high, problem.upper[:n])

@@ -49,22 +49,11 @@ SHIFTED_CORRECTIONS = 4
 class Face:
     """One face and the factorisation of its equations, ``A x + shift x + q = 0`` on the active set.
 
-    Attributes
-    ----------
-    problem : MixedLCP
-    state : State
-        Where x is.
-    active : Mask
-        Where that is between the bounds, so that w_i = 0 is asked for.
-    inverse : callable
-        Right-hand side on the active set to the solution there, of the equations or of shifted ones.
-    exact : bool
-        Whether one solve gives the point: the equations themselves were factored, not shifted ones, or they are those
-        of a proximal problem, of which no more is asked than signs.
-    shift : float or Array
-        Of the diagonal; zero for a face of the problem itself.
-    q : Array
-        The problem's own, or in its place that of a proximal problem.
+    `state`: Where x is. `active`: Where that is between the bounds, so that w_i = 0 is asked for. `inverse`: Right-hand
+    side on the active set to the solution there, of the equations or of shifted ones. `exact`: Whether one solve gives
+    the point: the equations themselves were factored, not shifted ones, or they are those of a proximal problem, of
+    which no more is asked than signs. `shift`: Of the diagonal; zero for a face of the problem itself. `q`: The
+    problem's own, or in its place that of a proximal problem.
     """
 
     problem: MixedLCP
@@ -103,11 +92,7 @@ class Face:
     def refined(self, x: Array, w: Array | None = None) -> Array:
         """The point x of a face of the problem itself, corrected once with w in twice the working precision.
 
-        Parameters
-        ----------
-        x : Array
-        w : Array, optional
-            That w, where it is known.
+        `w`: That w, where it is known.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
@@ -121,10 +106,7 @@ class Face:
 def exchanging(method: str = "auto") -> Factoring:
     """Factorisations of faces, by SuperLU with its exchanges of rows where by nothing else.
 
-    Parameters
-    ----------
-    method : str
-        As for `Factoring`.
+    `method`: As for `Factoring`.
     """
     return Factoring(method, SuperLUMethod(weak_pivots=False))
 

@@ -63,10 +63,7 @@ class Policy:
 class Tried:
     """The active sets that were tried on one problem: none is worth a second factorisation.
 
-    Attributes
-    ----------
-    last : State or None
-        The last of them.
+    `last`: The last of them.
     """
 
     last: State | None = field(default=None, init=False)

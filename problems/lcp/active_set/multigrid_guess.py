@@ -51,10 +51,7 @@ cascade then takes 17 factorisations with 30 sweeps or more, as in the units giv
 def suitable(structure: Structure) -> bool:
     """Whether A is large and sparse, with a positive diagonal, and nearly all else is nonpositive.
 
-    Parameters
-    ----------
-    structure : Structure
-        Of the problem.
+    `structure`: Of the problem.
     """
     problem = structure.problem
     if not problem.sparse or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():

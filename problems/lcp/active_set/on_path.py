@@ -67,11 +67,7 @@ class AlongPath:
 def smallest_parameter(homotopy: Any, product: float) -> float:
     """The parameter at which the products x z1 (or x y) have fallen to a size, in the median.
 
-    Parameters
-    ----------
-    homotopy : KKTHomotopy or TwoVectorHomotopy
-    product : float
-        The size, in natural units of x times those of w.
+    `product`: The size, in natural units of x times those of w.
     """
     products = homotopy.c1 if isinstance(homotopy, KKTHomotopy) else homotopy.c
     x, w = natural_units(homotopy.problem)

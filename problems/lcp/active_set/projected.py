@@ -19,10 +19,7 @@ def projected_state(problem: MixedLCP) -> State:
 
     In units of the diagonal of A, with the step lengths of Barzilai and Borwein, while the state changes.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        A is symmetric, and its diagonal not negative.
+    `problem`: A is symmetric, and its diagonal not negative.
 
     References
     ----------

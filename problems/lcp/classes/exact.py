@@ -166,10 +166,7 @@ def principal_minors(rows: Sequence[IntRow]) -> list[int]:
     complement. Where the pivot is zero, the diagonal entry is raised by one: the determinant is linear in it, so the
     minors without the index, which are known, undo the change exactly.
 
-    Returns
-    -------
-    list of int, length 2^n
-        Position m holds the minor of the index set given by m's bits.
+    Returns list of int, length 2^n: Position m holds the minor of the index set given by m's bits.
 
     References
     ----------

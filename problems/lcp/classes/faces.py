@@ -28,16 +28,8 @@ class FacePoint:
 class Piece:
     """The conditions of one piece: the columns inside, and what the rows are where these are zero.
 
-    Parameters
-    ----------
-    columns : list of rows, shape (n, number inside)
-    constants : list of n int
-        The rows with x at its bounds outside, and zero inside.
-    inside : tuple of int
-    below, above : list of int
-        Outside: where w_i >= 0 is asked, and where w_i <= 0 is; neither where x_i is fixed.
-    bounds : list of Bound
-        Inside.
+    `columns` of shape (n, number inside). `constants`: The rows with x at its bounds outside, and zero inside. `below`,
+    `above`: Outside: where w_i >= 0 is asked, and where w_i <= 0 is; neither where x_i is fixed. `bounds`: Inside.
     """
 
     columns: list[list[int]]

@@ -14,21 +14,10 @@ from problems.options import real_array
 def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
     """Bounds as a vector of floats, of which one of the two infinities, `default`, is allowed.
 
-    Parameters
-    ----------
-    name : str
-        The argument, for the message.
-    value : array_like of shape (size,), a number, or None
-        One number is that of all indices; None is `default` for all.
-    size : int
-    default : float
-        -inf for lower bounds, inf for upper ones.
-
-    Raises
-    ------
-    ValueError
-        If it is sparse (is what is not stored zero, or no bound?), not real, of another length, NaN, or the wrong
-        infinity; the message names the index.
+    `name`: The argument, for the message. `value`, of shape (size,): One number is that of all indices; None is
+    `default` for all. `default`: -inf for lower bounds, inf for upper ones. Raises `ValueError` if it is sparse (is
+    what is not stored zero, or no bound?), not real, of another length, NaN, or the wrong infinity; the message names
+    the index.
     """
     if value is None:
         return np.full(size, default)

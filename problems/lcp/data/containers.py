@@ -39,10 +39,7 @@ WANTED = ("A", "q", "x0", *PROGRAM)
 def _claims(size: int, file: str) -> None:
     """Whether so many bytes are to be unpacked from a file: not more than it has, nor than a limit where it is packed.
 
-    Raises
-    ------
-    ValueError
-        If they are more.
+    Raises `ValueError` if they are more.
     """
     if size > max(LIMIT, Path(file).stat().st_size):
         raise ValueError(f"it claims {size} bytes, expected at most {LIMIT} where a file is compressed")

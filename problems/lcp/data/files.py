@@ -42,12 +42,8 @@ _HDF5_GROUP = re.compile(r"(?P<file>.*\.(?:h5|hdf5)):(?P<group>.+)", re.IGNORECA
 class InputError(ValueError):
     """A file that cannot be used.
 
-    Attributes
-    ----------
-    argument : str
-        The argument at fault: ``path``, or the name of a vector.
-    complaint : str
-        What was expected and what was found, one line.
+    `argument`: The argument at fault: ``path``, or the name of a vector. `complaint`: What was expected and what was
+    found, one line.
     """
 
     def __init__(self, argument: str, complaint: str) -> None:
@@ -59,20 +55,12 @@ class InputError(ValueError):
 def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None) -> MixedLCP:
     """Read LCP(q, A), or a problem with bounds, from a file.
 
-    Parameters
-    ----------
-    path : path
-        ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A and q, and lower and upper bounds if there are any,
-        in which JSON's null, as an infinity, is none (in HDF5 at the root, in a group ``problem``
-        or in the group named as ``file.h5:/group``); or, with `q` given, A alone as ``.mtx``, ``.npy``, ``.txt``,
-        ``.csv`` or the ``.npz`` of `scipy.sparse.save_npz`. A sparse A stays sparse.
-    q : path, optional
-        A file with q, in any of these formats. It takes precedence over a q beside A.
-
-    Raises
-    ------
-    InputError
-        A ValueError: if a file is missing, of another format, or holds no real finite data of matching shapes.
+    `path`: ``.npz``, ``.json``, ``.mat`` (before 7.3) or ``.h5`` with A and q, and lower and upper bounds if there are
+    any, in which JSON's null, as an infinity, is none (in HDF5 at the root, in a group ``problem`` or in the group
+    named as ``file.h5:/group``); or, with `q` given, A alone as ``.mtx``, ``.npy``, ``.txt``, ``.csv`` or the ``.npz``
+    of `scipy.sparse.save_npz`. A sparse A stays sparse. `q`: A file with q, in any of these formats. It takes
+    precedence over a q beside A. Raises `InputError` a ValueError: if a file is missing, of another format, or holds no
+    real finite data of matching shapes.
     """
     contents = _contents("path", path)
     A = _named(contents, "A", "path", path)
@@ -98,16 +86,9 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
 def read_program(path: str | PathLike[str]) -> Program | None:
     """Read a quadratic or linear program from a file; None where it holds none.
 
-    Parameters
-    ----------
-    path : path
-        ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and, where there are any, P, G, h, A_eq, b_eq, lower, upper and
-        rows_lower, as for `from_qp`; or ``.qps``, ``.mps`` or ``.lp``, which need highspy.
-
-    Raises
-    ------
-    InputError
-        As for `read_problem`.
+    `path`: ``.npz``, ``.json``, ``.mat`` or ``.h5`` with c and, where there are any, P, G, h, A_eq, b_eq, lower, upper
+    and rows_lower, as for `from_qp`; or ``.qps``, ``.mps`` or ``.lp``, which need highspy. Raises `InputError` as for
+    `read_problem`.
     """
     if Path(path).suffix.lower() in MODEL_FORMATS and Path(path).is_file():
         try:
@@ -146,10 +127,7 @@ def _bound(contents: Mapping[str, Any], name: str, path: str | PathLike[str]) ->
 def read_matrix(path: str | PathLike[str]) -> Matrix:
     """Read A alone, not checked; any of the formats of `read_problem`.
 
-    Raises
-    ------
-    InputError
-        If the file is missing, of another format, or holds no A.
+    Raises `InputError` if the file is missing, of another format, or holds no A.
     """
     return _named(_contents("path", path), "A", "path", path)
 
@@ -157,10 +135,7 @@ def read_matrix(path: str | PathLike[str]) -> Matrix:
 def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
     """Read `size` finite numbers, called `name` in messages and in a container, from a file.
 
-    Raises
-    ------
-    InputError
-        As for `read_problem`.
+    Raises `InputError` as for `read_problem`.
     """
     value = _flat(_named(_contents(name, path), name, name, path))
     try:

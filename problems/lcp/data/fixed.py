@@ -14,13 +14,7 @@ from problems.lcp.data.problem import MixedLCP
 class WithoutFixed:
     """A problem without its fixed unknowns.
 
-    Attributes
-    ----------
-    whole : MixedLCP
-    problem : MixedLCP or None
-        What is left of it, with q rounded; None where nothing is.
-    kept : ndarray of int
-        The indices that are left.
+    `problem`: What is left of it, with q rounded; None where nothing is. `kept`: The indices that are left.
     """
 
     whole: MixedLCP
@@ -30,10 +24,7 @@ class WithoutFixed:
     def x(self, rest: Array | None) -> Array:
         """The unknowns of the whole problem.
 
-        Parameters
-        ----------
-        rest : ndarray or None
-            Those of what is left.
+        `rest`: Those of what is left.
         """
         x = self.whole.lower.copy()
         if rest is not None:

@@ -13,18 +13,10 @@ from problems.lcp.data.problem import MixedLCP
 class MatrixFacts:
     """What is known of A; False where it is not so or was not proved.
 
-    Attributes
-    ----------
-    symmetric : bool
-    semidefinite : bool or None
-        x'Ax >= 0 for all x, to working precision. Then a feasible problem has a solution. None where not asked.
-    z_matrix : bool
-        No positive entry off the diagonal: the active-set method from x = 0 ends within n steps at the least element
-        of the feasible set, or proves nothing.
-    negative_diagonal : bool
-        Some a_ii < 0: not copositive, so that Wang's path mostly diverges.
-    nonnegative : bool
-        No negative entry: copositive, as the block matrix of a bimatrix game.
+    `semidefinite`: x'Ax >= 0 for all x, to working precision. Then a feasible problem has a solution. None where not
+    asked. `z_matrix`: No positive entry off the diagonal: the active-set method from x = 0 ends within n steps at the
+    least element of the feasible set, or proves nothing. `negative_diagonal`: Some a_ii < 0: not copositive, so that
+    Wang's path mostly diverges. `nonnegative`: No negative entry: copositive, as the block matrix of a bimatrix game.
     """
 
     symmetric: bool

@@ -41,9 +41,7 @@ LARGEST_SYMMETRIC_PART = 1000
 def semidefinite(symmetric: Array) -> bool:
     """Whether a symmetric matrix is positive semidefinite, to working precision: one Cholesky factorisation.
 
-    Parameters
-    ----------
-    symmetric : ndarray, shape (n, n)
+    `symmetric` of shape (n, n).
     """
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():

@@ -19,12 +19,7 @@ MODEL_FORMATS = (".qps", ".mps", ".lp")
 def read_model(file: str) -> Program:
     """Read a quadratic or linear program; it is minimised, whatever sense the file has, with signs changed.
 
-    Raises
-    ------
-    ImportError
-        Without highspy.
-    ValueError
-        If HiGHS cannot read it, or it has integer variables.
+    Raises `ImportError` without highspy. Raises `ValueError` if HiGHS cannot read it, or it has integer variables.
     """
     try:
         import highspy

@@ -264,12 +264,7 @@ class MixedLCP:
 
 
 def active_state(active: NDArray[np.bool_]) -> State:
-    """The state of an LCP in which w_i = 0 is asked for on an active set.
-
-    Parameters
-    ----------
-    active : ndarray of bool
-    """
+    """The state of an LCP in which w_i = 0 is asked for on an active set."""
     return np.where(active, BETWEEN, LOWER)
 
 

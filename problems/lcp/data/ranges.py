@@ -24,17 +24,8 @@ Mask = NDArray[np.bool_]
 class Ranges:
     """Pairs of indices with ``w_r = up mu + q_r`` and ``w_mu = ... + down r + q_mu``, where mu has no bounds.
 
-    Attributes
-    ----------
-    A : Matrix
-    activity, multiplier : ndarray of int
-        The indices r and mu of each pair.
-    up, down : ndarray
-        A[r, mu] and A[mu, r].
-    rest : ndarray of int
-        All indices but the r.
-    place : ndarray of int
-        Where among them the mu are.
+    `activity`, `multiplier`: The indices r and mu of each pair. `up`, `down`: A[r, mu] and A[mu, r]. `rest`: All
+    indices but the r. `place`: Where among them the mu are.
     """
 
     A: Matrix
@@ -52,12 +43,7 @@ class Ranges:
         return each
 
     def inside(self, active: Mask) -> Indices:
-        """The active indices of which the equations are solved together: without the pairs whose r is active.
-
-        Parameters
-        ----------
-        active : ndarray of bool
-        """
+        """The active indices of which the equations are solved together: without the pairs whose r is active."""
         kept = active.copy()
         loose = active[self.activity]
         kept[self.activity] = False
@@ -69,13 +55,7 @@ class Ranges:
     ) -> Callable[[Array], Array]:
         """Solve on the active set from a solve on `inside`: mu is what the row of r says, r what is left in that of mu.
 
-        Parameters
-        ----------
-        active : ndarray of bool
-        inside : ndarray of int
-        solve : callable
-        shift : float
-            Of the diagonal.
+        `shift`: Of the diagonal.
         """
         loose = active[self.activity]
         r, mu = self.activity[loose], self.multiplier[loose]

@@ -50,13 +50,8 @@ LEVEL = 0.02
 class Scaled:
     """LCP(R q, R A C): its solution u gives x = C u, and its w is R w.
 
-    Attributes
-    ----------
-    problem : MixedLCP
-    rows, columns : integer arrays of shape (n,)
-        R = diag(2^rows) and C = diag(2^columns).
-    exact : bool
-        Whether no entry was rounded: one below 1e-290 of the others may be, or vanish.
+    `rows`, `columns`, of shape (n,): R = diag(2^rows) and C = diag(2^columns). `exact`: Whether no entry was rounded:
+    one below 1e-290 of the others may be, or vanish.
     """
 
     problem: MixedLCP
@@ -118,16 +113,7 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
     They can where the largest entries of rows and columns are alike, but for that factor, and it rounds nothing. Within
     the range of products a factor that is a power of two changes nothing of what active sets and pivots do.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Without bounds.
-
-    Returns
-    -------
-    Scaled or None
-        None where s = 1.
-    bool
+    `problem`: Without bounds. Returns Scaled or None: None where s = 1.
     """
     if not alike(problem):
         return None, False

@@ -25,14 +25,9 @@ class RelativeMetric:
     ``|v|^2 = (1/N) sum_i (v_i / u_i)^2 + lam v_{N+1}^2`` for N unknowns, anew at each point: interior paths live in
     orders of magnitude. The mean makes the step length independent of n; the sum takes about a tenth more steps.
 
-    Parameters
-    ----------
-    lam : float
-        The parameter's weight.
-    lower, upper : Array of shape (n,), optional
-        Bounds of the first n unknowns, which change relative to their distances from the nearer one; without any
-        bound relative to themselves, but at least to `unit`. Default: zero, for all unknowns.
-    unit : float
+    `lam`: The parameter's weight. `lower`, `upper`, of shape (n,): Bounds of the first n unknowns, which change
+    relative to their distances from the nearer one; without any bound relative to themselves, but at least to `unit`.
+    Default: zero, for all unknowns.
     """
 
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)

@@ -30,29 +30,12 @@ without the finish (n = 6, 12, 30), 2,300 systems, 147 had the robust core witho
 class KKTSystem:
     """H' of the KKT homotopy at a point.
 
-    Attributes
-    ----------
-    structure : Structure
-        Of A.
-    rows : Rows
-    lam : float
-    gap, z1, c1 : Array
-        The distances of x from its bounds, the multipliers of these, and their products at the start.
-    factor, rest, c2 : Array
-        Of the rows ``factor (dw + dt) + rest dz2 - c2 l`` with w = A x + q + lam rho; for an LCP z2, w and the products
-        at the start. Of shape (n,), as all that follow but the next.
-    z2 : Array
-        The multipliers of the rows.
-    t, c3 : Array
-        In boxes what w is below its positive part, and the products at the start.
-    rho : Array
-        The part of w that fades.
-    column : Array
-        dH1/dlam.
-    sizes : tuple of Array
-        In what changes of x and z2 are large or small.
-    give : float
-        A unit of w for one of x.
+    `structure`: Of A. `gap`, `z1`, `c1`: The distances of x from its bounds, the multipliers of these, and their
+    products at the start. `factor`, `rest`, `c2`: Of the rows ``factor (dw + dt) + rest dz2 - c2 l`` with w = A x + q +
+    lam rho; for an LCP z2, w and the products at the start. Of shape (n,), as all that follow but the next. `z2`: The
+    multipliers of the rows. `t`, `c3`: In boxes what w is below its positive part, and the products at the start.
+    `rho`: The part of w that fades. `column`: dH1/dlam. `sizes`: In what changes of x and z2 are large or small.
+    `give`: A unit of w for one of x.
     """
 
     structure: Structure

@@ -157,10 +157,7 @@ _CITED = (
 def levels_of(level: Any, problem: MixedLCP) -> Array:
     """The levels, zero where there are bounds.
 
-    Raises
-    ------
-    ValueError
-        If one is negative, or is given where there is a bound.
+    Raises `ValueError` if one is negative, or is given where there is a bound.
     """
     free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
     if np.ndim(level) == 0 and free.any():

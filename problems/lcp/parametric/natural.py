@@ -15,15 +15,8 @@ from problems.lcp.data.problem import MixedLCP
 class NaturalMap:
     """x - mid(lower, x - w, upper), w = A x + q + t d; for a level, x less what t |x| shrinks x - w to.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Dense.
-    d : ndarray, shape (n,)
-    level : ndarray, shape (n,)
-        Where it is positive, unknowns without bounds pay t level_i |x_i|.
-    begin : ndarray, shape (n + 1,)
-        A point of the path.
+    `problem`: Dense. `d` of shape (n,). `level`, of shape (n,): Where it is positive, unknowns without bounds pay t
+    level_i |x_i|. `begin`, of shape (n + 1,): A point of the path.
     """
 
     problem: MixedLCP
@@ -38,10 +31,7 @@ class NaturalMap:
     def residual(self, y: Array, lam: float) -> Array:
         """Zero on the path, shape (n,).
 
-        Parameters
-        ----------
-        y : ndarray, shape (n,)
-        lam : float
+        `y` of shape (n,).
         """
         return self._off(y, self.problem.w(y) + lam * self.d, lam)
 
@@ -53,9 +43,7 @@ class NaturalMap:
     def largest(self, u: Array) -> Array:
         """The largest component of the residual at many points, shape (m,).
 
-        Parameters
-        ----------
-        u : ndarray, shape (m, n + 1)
+        `u` of shape (m, n + 1).
         """
         y, lam = u[:, :-1], u[:, -1:]
         w = y @ self.problem.A.T + (self.problem.q + lam * self.d)
@@ -65,10 +53,7 @@ class NaturalMap:
     def switches(self, y: Array, lam: float) -> Array:
         """X - w less its lower, and then its upper limits, those that there are.
 
-        Parameters
-        ----------
-        y : ndarray, shape (n,)
-        lam : float
+        `y` of shape (n,).
         """
         moved = y - self.problem.w(y) - lam * self.d
         low, high = self._limits
@@ -77,9 +62,7 @@ class NaturalMap:
     def piece(self, signs: Array) -> Piece:
         """The equations where these signs hold.
 
-        Parameters
-        ----------
-        signs : ndarray, shape (m,)
+        `signs` of shape (m,).
         """
         low, high = self._limits
         count = int(low[2].sum())
@@ -115,10 +98,7 @@ class Piece:
     def residual(self, y: Array, lam: float) -> Array:
         """Linear.
 
-        Parameters
-        ----------
-        y : ndarray, shape (n,)
-        lam : float
+        `y` of shape (n,).
         """
         w = self.whole.problem.w(y) + lam * (self.whole.d + self.slope)
         return np.where(self.fixed, y - self.value, w)
@@ -126,10 +106,7 @@ class Piece:
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
         """Constant.
 
-        Parameters
-        ----------
-        y : ndarray, shape (n,)
-        lam : float
+        `y` of shape (n,).
         """
         n = y.size
         by_y = np.where(self.fixed[:, None], np.eye(n), self.whole.problem.A)

@@ -22,18 +22,10 @@ Mask = NDArray[np.bool_]
 class Stairs:
     """What is fixed and what may move, by state (row state + 1) and index: all of shape (3, n).
 
-    Attributes
-    ----------
-    moves_x : ndarray of bool
-        Whether x_i moves, and w_i is fixed; else the other way round.
-    fixed, fixed_slope : ndarray
-        The value of what is fixed is ``fixed + t fixed_slope``.
-    least, least_slope, most, most_slope : ndarray
-        The limits of what moves, likewise.
-    levels : ndarray of bool, shape (n,)
-        Where an outer piece fixes w_i.
-    corner_x, corner_slope : ndarray, shape (2, n)
-        The corners, infinite where there is none: w_i is ``t corner_slope`` there.
+    `moves_x`: Whether x_i moves, and w_i is fixed; else the other way round. `fixed`, `fixed_slope`: The value of what
+    is fixed is ``fixed + t fixed_slope``. `least`, `least_slope`, `most`, `most_slope`: The limits of what moves,
+    likewise. `levels`, of shape (n,): Where an outer piece fixes w_i. `corner_x`, `corner_slope`, of shape (2, n): The
+    corners, infinite where there is none: w_i is ``t corner_slope`` there.
     """
 
     moves_x: Mask
@@ -51,11 +43,7 @@ class Stairs:
     def of(cls, problem: MixedLCP, level: Array) -> Self:
         """The graphs of a problem with bounds, and with ``t level_i |x_i|`` where the level is positive.
 
-        Parameters
-        ----------
-        problem : MixedLCP
-        level : ndarray, shape (n,)
-            Zero where there is a bound.
+        `level`, of shape (n,): Zero where there is a bound.
         """
         n = problem.n
         levels = level > 0.0
@@ -86,11 +74,7 @@ class Stairs:
     def states(self, problem: MixedLCP, x: Array) -> State:
         """On which piece each pair of a solution is, with x moving only where it is off its bounds, or off zero.
 
-        Parameters
-        ----------
-        problem : MixedLCP
-        x : ndarray, shape (n,)
-            Exactly on the bounds where it is on them.
+        `x`, of shape (n,): Exactly on the bounds where it is on them.
         """
         bounded = np.where(x <= problem.lower, -1, np.where(x >= problem.upper, 1, 0))
         found: State = np.where(self.levels, np.sign(x), bounded).astype(np.int8)

@@ -19,19 +19,8 @@ from problems.lcp.parametric.walk import FLAT, Walk
 def walk_at(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sign: float) -> Walk:
     """The walk from given pieces: where t is, and which way it goes; along another variable where t cannot move.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Dense.
-    d, level : ndarray, shape (n,)
-    state : State
-    t : float
-    sign : float
-
-    Raises
-    ------
-    SingularBasisError
-        If the equations of these pieces are dependent, t's column included.
+    `problem`: Dense. `d`, `level` of shape (n,). Raises `SingularBasisError` if the equations of these pieces are
+    dependent, t's column included.
     """
     walk = _walk(problem, d, level, state, t, sign)
     walk.rebase(problem.n)
@@ -49,17 +38,8 @@ def _walk(problem: MixedLCP, d: Array, level: Array, state: State, t: float, sig
 def from_ray(problem: MixedLCP, d: Array, level: Array, sign: float) -> Walk:
     """The walk that comes from t = +inf (sign = -1), or from -inf.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Dense.
-    d, level : ndarray, shape (n,)
-    sign : float
-
-    Raises
-    ------
-    ValueError
-        If the point nearest to zero is no solution for large t.
+    `problem`: Dense. `d`, `level` of shape (n,). Raises `ValueError` if the point nearest to zero is no solution for
+    large t.
     """
     state: State = np.where(
         level > 0.0, 0, np.where(np.isfinite(problem.lower), -1, np.where(np.isfinite(problem.upper), 1, 0))
@@ -86,24 +66,8 @@ def from_solution(
 ) -> Walk | None:
     """The walk from a solution, along a ray that leaves it with t growing, or falling; or along the one given.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Dense.
-    d, level, x : ndarray, shape (n,)
-    t : float
-    sign : float
-    ray : ndarray, shape (n + 1,), optional
-
-    Returns
-    -------
-    Walk or None
-        None if no ray leaves that way.
-
-    Raises
-    ------
-    SingularBasisError
-        If the ray is not the only one on its piece.
+    `problem`: Dense. `d`, `level`, `x` of shape (n,). `ray` of shape (n + 1,). Returns Walk or None: None if no ray
+    leaves that way. Raises `SingularBasisError` if the ray is not the only one on its piece.
     """
     stairs = Stairs.of(problem, level)
     state = stairs.states(problem, x)

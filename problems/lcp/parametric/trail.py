@@ -29,14 +29,8 @@ ARRIVED = 1e-11
 class Trail:
     """A path while it is made.
 
-    Attributes
-    ----------
-    units : Array of shape (n + 1,)
-        Of x and t.
-    points, tangents : list of Array of shape (n + 1,)
-        The points so far, and the directions in which they were come on.
-    kinks : dict of int to tuple
-        By the number of the point: name, pairs that switch, rays.
+    `units`, of shape (n + 1,): Of x and t. `points`, `tangents`, of shape (n + 1,): The points so far, and the
+    directions in which they were come on. `kinks`: By the number of the point: name, pairs that switch, rays.
     """
 
     units: Array
@@ -50,12 +44,7 @@ class Trail:
     def follow(self, walk: Walk, last: float, budget: Budget) -> tuple[Status, str]:
         """Follow a walk to its end; what that was, and a sentence.
 
-        Parameters
-        ----------
-        walk : Walk
-        last : float
-            The t at which it ends.
-        budget : Budget
+        `last`: The t at which it ends.
         """
         began = time.perf_counter()
         corner: Corner | None = None
@@ -101,10 +90,7 @@ class Trail:
     def steps(self, residuals: Array) -> tuple[list[Step], list[LocatedEvent]]:
         """The points as steps, and the kinks.
 
-        Parameters
-        ----------
-        residuals : ndarray, shape (m,)
-            Of the points.
+        `residuals`, of shape (m,): Of the points.
         """
         gaps = [0.0, *(math.sqrt(float(gap @ gap)) for gap in np.diff(self.points, axis=0))]
         arcs, last = np.cumsum(gaps).tolist(), len(self.points) - 1
@@ -180,14 +166,7 @@ class Trail:
 
 
 def state_at(walk: Walk, last: float, most: int) -> State | None:
-    """The pieces of the point where t is `last`, by a walk of so many corners at most; None where it leads elsewhere.
-
-    Parameters
-    ----------
-    walk : Walk
-    last : float
-    most : int
-    """
+    """The pieces of the point where t is `last`, by a walk of at most so many corners; None where it leads away."""
     for _ in range(most):
         if not _located(walk):
             return None

@@ -44,44 +44,17 @@ class Left(Enum):
 class Walk:
     """A place on the path, and how it goes on from there.
 
-    Attributes
-    ----------
-    problem : MixedLCP
-        Dense.
-    d : Array of shape (n,)
-    stairs : Stairs
-    state : State
-        The piece of each pair.
-    basis : Basis
-        Its rows are those whose w is fixed, its columns the x that move, and t; but for the driver.
-    driver : int
-        What moves the path on: of pair i what moves on its piece, or t for i = n.
-    value : float
-        Of x_driver, or t, at the last corner; of w_driver the distance from its corner.
-    sign : float
-        Whether the driver grows or falls.
-    matrix : Array of shape (n, n)
-        A, in Fortran's order.
-    sizes : Array of shape (n,)
-        The largest entry of each row of [A, d].
-    u : Array of shape (2, n + 1)
-        (x, t) at the last corner, and how it moves.
-    t, dt : float
-        Its last numbers.
-    still : bool
-        Whether t stands still.
-    gaps, rates : Array of shape (2, n)
-        How far all that moves is from its lower limits, and from its upper ones, and how fast that grows.
-    tied : ndarray of int
-        The pairs at the next corner, and in `low` whether at their lower limit.
-    limits, slopes : Array of shape (2, n)
-        The limits of all that moves at t = 0, and how they move with t: None if none does.
-    dy, scale, terms : Array
-        How all that moves does so; the largest number of u and of its rate; the sizes of the entries of each row.
-    step : float
-        How far the driver goes to the next corner.
-    degenerate : bool
-        Whether several switches have vanished at once before.
+    `problem`: Dense. `d` of shape (n,). `state`: The piece of each pair. `basis`: Its rows are those whose w is fixed,
+    its columns the x that move, and t; but for the driver. `driver`: What moves the path on: of pair i what moves on
+    its piece, or t for i = n. `value`: Of x_driver, or t, at the last corner; of w_driver the distance from its corner.
+    `sign`: Whether the driver grows or falls. `matrix`, of shape (n, n): A, in Fortran's order. `sizes`, of shape (n,):
+    The largest entry of each row of [A, d]. `u`, of shape (2, n + 1): (x, t) at the last corner, and how it moves. `t`,
+    `dt`: Its last numbers. `still`: Whether t stands still. `gaps`, `rates`, of shape (2, n): How far all that moves is
+    from its lower limits, and from its upper ones, and how fast that grows. `tied`: The pairs at the next corner, and
+    in `low` whether at their lower limit. `limits`, `slopes`, of shape (2, n): The limits of all that moves at t = 0,
+    and how they move with t: None if none does. `dy`, `scale`, `terms`: How all that moves does so; the largest number
+    of u and of its rate; the sizes of the entries of each row. `step`: How far the driver goes to the next corner.
+    `degenerate`: Whether several switches have vanished at once before.
     """
 
     problem: MixedLCP
@@ -278,10 +251,7 @@ class Walk:
     def rebase(self, driver: int, low: bool = True) -> None:
         """Rows and columns anew, from the pieces and the driver; a w that drives leaves its lower corner, or upper.
 
-        Raises
-        ------
-        SingularBasisError
-            If their block is singular.
+        Raises `SingularBasisError` if their block is singular.
         """
         n = self.problem.n
         moving = np.flatnonzero(self.moves_x)

@@ -30,15 +30,9 @@ TIE = 1e-11
 class Dictionary:
     """``y_basic = table @ (y_nonbasic, 1)``, with the dictionary that it began as.
 
-    Attributes
-    ----------
-    first : Array of shape (m, k + 1)
-        The table at the beginning, the constants last.
-    rows, columns : integer arrays of shape (m,), (k,)
-        Which variables were basic, by consecutive numbers, and which were not.
-    table : Array of shape (m, k + 1)
-    basic, nonbasic : integer arrays of shape (m,), (k,)
-        The same now.
+    `first`, of shape (m, k + 1): The table at the beginning, the constants last. `rows`, `columns`, of shape (m,):
+    Which variables were basic, by consecutive numbers, and which were not. `table` of shape (m, k + 1). `basic`,
+    `nonbasic`, of shape (m,): The same now.
     """
 
     first: Array
@@ -63,10 +57,7 @@ class Dictionary:
     def pivot(self, row: int, column: int) -> int:
         """Exchange a basic variable for a nonbasic one; the variable that has left the basis.
 
-        Parameters
-        ----------
-        row, column : int
-            Their places.
+        `row`, `column`: Their places.
         """
         table = self.table
         pivot = table.item(row, column)
@@ -85,15 +76,7 @@ class Dictionary:
     def last_zero(self, column: int) -> int | None:
         """The row that is the last to become nonnegative as a variable grows from minus infinity: it covers the rest.
 
-        Parameters
-        ----------
-        column : int
-            Of the variable.
-
-        Returns
-        -------
-        int or None
-            None if no row grows with the variable.
+        `column`: Of the variable. Returns int or None: None if no row grows with the variable.
         """
         slopes, constants = self.table[:, column], self.table[:, -1]
         growing = np.flatnonzero(slopes > ZERO * np.abs(slopes).max(initial=0.0))
@@ -106,17 +89,8 @@ class Dictionary:
     def first_zero(self, column: int, preferred: frozenset[int]) -> int | None:
         """The row that is the first to become zero as a nonbasic variable grows from zero.
 
-        Parameters
-        ----------
-        column : int
-            Of the variable.
-        preferred : set of int
-            Basic variables that are taken where they are tied.
-
-        Returns
-        -------
-        int or None
-            None if no row falls: the variable grows along a ray.
+        `column`: Of the variable. `preferred`: Basic variables that are taken where they are tied. Returns int or None:
+        None if no row falls: the variable grows along a ray.
         """
         slopes, constants = self.table[:, column], self.table[:, -1]
         falling = (slopes < -ZERO * largest(slopes)).nonzero()[0]

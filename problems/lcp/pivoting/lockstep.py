@@ -19,15 +19,7 @@ def lemke_bases(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_
 
     The path of `pivoting.starts.covering`, but ties are broken by the least index, so that it may cycle.
 
-    Parameters
-    ----------
-    A : ndarray, shape (k, n, n)
-    q : ndarray, shape (k, n)
-
-    Returns
-    -------
-    active : ndarray of bool, shape (k, n)
-    ended : ndarray of bool, shape (k,)
+    `A` of shape (k, n, n). `q` of shape (k, n).
 
     References
     ----------

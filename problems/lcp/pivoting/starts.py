@@ -24,19 +24,9 @@ def unit_of(problem: LCP) -> float:
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
     """The path of LCP(q + t d, A) as t falls to zero: Lemke's method from infinity, or from the solution at t = 1.
 
-    Parameters
-    ----------
-    problem : LCP
-        A sparse matrix is made dense.
-    d : ndarray, shape (n,)
-        Positive where the path begins on the ray t -> infinity.
-    active : ndarray of bool, shape (n,), optional
-        Where x may be positive at t = 1, where it begins then.
-
-    Returns
-    -------
-    AlmostComplementary or None
-        None if the equations of the active set are singular, or its basis is no solution.
+    `problem`: A sparse matrix is made dense. `d`, of shape (n,): Positive where the path begins on the ray t ->
+    infinity. `active`, of shape (n,): Where x may be positive at t = 1, where it begins then. Returns
+    AlmostComplementary or None: None if the equations of the active set are singular, or its basis is no solution.
 
     References
     ----------

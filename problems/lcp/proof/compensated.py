@@ -32,17 +32,8 @@ of products below 1e-260 are no longer exact."""
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
     """W = A x + q by compensated summation of error-free products, and a bound on the error of each entry.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Dense or sparse; no copy of A is made.
-    x : Array of shape (n,)
-        Finite.
-
-    Returns
-    -------
-    w, bound : Array of shape (n,)
-        |w_i - (A x + q)_i| <= bound_i; both infinite where a product overflows.
+    `problem`: Dense or sparse; no copy of A is made. `x`, of shape (n,): Finite. Returns w, bound: |w_i - (A x + q)_i|
+    <= bound_i; both infinite where a product overflows.
 
     References
     ----------
@@ -66,15 +57,9 @@ def error_bound(w: Array, size: Array, terms: int) -> Array:
 class Terms:
     """The rows of A x + q for a matrix A and vectors x, q, each row over a power of two of its own.
 
-    Attributes
-    ----------
-    A : Array or sparse array, shape (n, n)
-    x : Array of shape (n,)
-        With `A`: the products A_ij x_j over 2^exponents[i].
-    w, size : Array of shape (n,)
-        (A x + q)_i in twice the working precision, and (|A| |x| + |q|)_i, both over 2^exponents[i].
-    exponents : integer array of shape (n,)
-        Zero but for data or x near the ends of the range of floats.
+    `A` of shape (n, n). `x`, of shape (n,): With `A`: the products A_ij x_j over 2^exponents[i]. `w`, `size`, of shape
+    (n,): (A x + q)_i in twice the working precision, and (|A| |x| + |q|)_i, both over 2^exponents[i]. `exponents`, of
+    shape (n,): Zero but for data or x near the ends of the range of floats.
     """
 
     A: Matrix
@@ -87,11 +72,7 @@ class Terms:
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     """What each row of A x + q comes to and what it is made of; nothing overflows, and no row underflows.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-    x : Array of shape (n,)
-        Finite.
+    `x`, of shape (n,): Finite.
     """
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         w, size, _ = _rows(problem, x)
@@ -169,12 +150,7 @@ def _terms(A: Array, support: NDArray[np.intp], n: int) -> Array:
 def summed(entries: Array, factors: Array, constants: Array) -> tuple[Array, Array, Array]:
     """Sums of products along the first axis, and constants: the rounded sum, what it lost, the sum of magnitudes.
 
-    Parameters
-    ----------
-    entries : ndarray, shape (m, ...)
-    factors : ndarray
-        That broadcasts to the same shape.
-    constants : ndarray, shape (...)
+    `entries` of shape (m, ...). `factors`: That broadcasts to the same shape. `constants` of shape (...).
     """
     product, lost = _two_product(entries, factors)
     terms = np.concatenate([constants[None], product])

@@ -328,13 +328,7 @@ def _vertex(equations: list[IntegerRow], guess: Array, rows: Array, order: int) 
 
 
 def multiplier(problem: MixedLCP, y: list[int]) -> Farkas | None:
-    """The multiplier without a common factor, and its exact gap; None where it proves nothing.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    y : list of n int
-    """
+    """The multiplier without a common factor, and its exact gap; None where it proves nothing."""
     common = gcd(*y) or 1
     y = [value // common for value in y]
     gap = conditions_of(problem).gap(y)

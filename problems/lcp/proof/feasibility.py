@@ -31,10 +31,7 @@ def by_pivots(A: Array, q: Array) -> tuple[bool, Array | None]:
 
     The LCP of ``[[0, -A'], [A, 0]]`` and (0, q) is monotone, so its path ends at a solution or on a ray that is y.
 
-    Parameters
-    ----------
-    A : ndarray, shape (m, k)
-    q : ndarray, shape (m,)
+    `A` of shape (m, k). `q` of shape (m,).
 
     References
     ----------
@@ -56,14 +53,7 @@ def by_pivots(A: Array, q: Array) -> tuple[bool, Array | None]:
 def by_linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | None:
     """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if there is none, or HiGHS gave up.
 
-    Parameters
-    ----------
-    matrix : ndarray or sparse array, shape (m, k)
-        A.
-    vector : ndarray, shape (m,)
-        Its q.
-    seconds : float
-        The most it takes.
+    `matrix`, of shape (m, k): A. `vector`, of shape (m,): Its q. `seconds`: The most it takes.
     """
     n = vector.size
     total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))

@@ -27,14 +27,8 @@ from problems.lcp.proof.rational import IntegerRow, integer_rows
 class Inequalities:
     """The points z >= 0 with A z + q >= 0, A of any shape.
 
-    Attributes
-    ----------
-    A : Array or sparse array, shape (m, k)
-    q : Array of shape (m,)
-    rows : ndarray of int, shape (m,), or None
-        The row of the problem that each is; -1 for those of bounds. None where the problem's own are meant.
-    signs : Array of shape (m,), or None
-        With which sign.
+    `A` of shape (m, k). `q` of shape (m,). `rows`, of shape (m,): The row of the problem that each is; -1 for those of
+    bounds. None where the problem's own are meant. `signs`, of shape (m,): With which sign.
     """
 
     A: Matrix
@@ -106,14 +100,8 @@ def inequalities(problem: MixedLCP) -> Inequalities:
 class Conditions:
     """The conditions on a multiplier in integers: the rows (A'y)_j and the row q'y.
 
-    Attributes
-    ----------
-    columns : list of IntegerRow
-    constant : IntegerRow
-    lower, upper : lists of float
-        Bounds of what the columns multiply.
-    signs : list of (bool, bool)
-        Whether each y_i may be positive, and whether negative.
+    `lower`, `upper`: Bounds of what the columns multiply. `signs`: Whether each y_i may be positive, and whether
+    negative.
     """
 
     columns: list[IntegerRow]

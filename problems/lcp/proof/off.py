@@ -30,12 +30,7 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
     It is infinite where it is not asked for. An x_i in no row at all can be anything but is at its bound where w_i is
     not zero: any other is off by all of itself.
 
-    Parameters
-    ----------
-    terms : Terms
-        Of the rows at x.
-    x, distance : Array of shape (n,)
-    asked : ndarray of bool, shape (n,)
+    `terms`: Of the rows at x. `x`, `distance` of shape (n,). `asked` of shape (n,).
     """
     shares = np.where(distance == 0.0, 0.0, np.inf)
     indices = np.flatnonzero(asked & (distance != 0.0) & np.isfinite(distance))
@@ -65,13 +60,7 @@ def shares_in_rows(terms: Terms, x: Array, distance: Array, asked: NDArray[np.bo
 def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
     """See `Certificate.drowned`; the balanced units are asked for only where a row is off by more than its own q_i.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-    terms : Terms
-        Of the rows at x.
-    off : Array of shape (n,)
-        How far each row is off, relative to its terms.
+    `terms`: Of the rows at x. `off`, of shape (n,): How far each row is off, relative to its terms.
     """
     moved = np.count_nonzero(terms.exponents)
     q = np.ldexp(problem.q, -terms.exponents) if moved else problem.q

@@ -32,11 +32,7 @@ States = NDArray[np.int8]
 def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
     """Which of these pieces are not proved to hold no solution, shape (number,).
 
-    Parameters
-    ----------
-    problem : MixedLCP
-    states : ndarray of int, shape (number, n)
-        -1 where x is at its lower bound, 1 where at its upper one, 0 between.
+    `states`, of shape (number, n): -1 where x is at its lower bound, 1 where at its upper one, 0 between.
     """
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     asked = _signs_allow(A, problem.q, states == BETWEEN) if problem.standard else np.ones(len(states), dtype=bool)
@@ -70,11 +66,7 @@ def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bo
 def in_doubt(A: Array, q: Array, low: Array, high: Array, states: States) -> NDArray[np.bool_]:
     """Which pieces are not proved to hold no solution, of one problem or each of its own; shape (number,).
 
-    Parameters
-    ----------
-    A : ndarray, shape (n, n) or (number, n, n)
-    q, low, high : ndarray, shape (n,) or (number, n)
-    states : ndarray of int, shape (number, n)
+    `A` of shape (n, n). `q`, `low`, `high` of shape (n,). `states` of shape (number, n).
     """
     n = states.shape[1]
     sizes = np.abs(A)
@@ -114,9 +106,7 @@ def _times(A: Array, v: Array) -> Array:
 def inverses(B: Array) -> Array:
     """Approximate inverses, NaN where there is none.
 
-    Parameters
-    ----------
-    B : ndarray, shape (number, n, n)
+    `B` of shape (number, n, n).
     """
     try:
         return np.asarray(np.linalg.inv(B))

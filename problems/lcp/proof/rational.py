@@ -69,18 +69,9 @@ def integer_rows(matrix: Matrix, vector: Array) -> list[IntegerRow]:
 def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[list[int], int] | None:
     """A rational solution of an integer system of any shape and rank, columns without a pivot staying at the guess.
 
-    Parameters
-    ----------
-    matrix : object array of shape (m, k)
-        Python integers.
-    right : list of m integers
-    guess : Array of shape (k,)
-        Floats: large entries get pivots first, and the dependent columns keep these values exactly.
-
-    Returns
-    -------
-    (numerators, denominator) or None
-        Checked in integers on every row; None if the system is inconsistent at the guess.
+    `matrix`, of shape (m, k): Python integers. `guess`, of shape (k,): Floats: large entries get pivots first, and the
+    dependent columns keep these values exactly. Returns (numerators, denominator) or None: Checked in integers on every
+    row; None if the system is inconsistent at the guess.
 
     References
     ----------
@@ -113,10 +104,7 @@ def solve_exactly(matrix: Integers, right: list[int], guess: Array) -> tuple[lis
 def full_row_rank(matrix: Integers) -> bool:
     """Whether the rows are independent, which they are if they are modulo a prime; False where none of a few tells.
 
-    Parameters
-    ----------
-    matrix : object array of shape (m, k)
-        Python integers.
+    `matrix`, of shape (m, k): Python integers.
     """
     order = np.arange(matrix.shape[1])
     return any(_invert(matrix, order, prime)[0].size == matrix.shape[0] for prime in PRIMES)

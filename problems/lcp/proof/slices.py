@@ -25,19 +25,7 @@ def sliced_terms(A: Array, x: Array, block: int) -> Iterator[tuple[slice, Array,
     which are all of it. What is left of A is 2^-42 or less of the largest product of the row and multiplied as usual,
     with an error below that of sums of products in twice the working precision.
 
-    Parameters
-    ----------
-    A : ndarray, shape (n, m)
-    x : ndarray, shape (m,)
-    block : int
-        Rows at a time.
-
-    Yields
-    ------
-    rows : slice
-    terms : ndarray, shape (7, rows)
-    sizes : ndarray
-        |A| |x|.
+    `A` of shape (n, m). `x` of shape (m,). `block`: Rows at a time. Returns sizes: |A| |x|.
     """
     mantissas, powers = np.frexp(x)
     scale = np.where(x == 0.0, 0.0, np.ldexp(1.0, powers))

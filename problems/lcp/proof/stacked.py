@@ -21,14 +21,9 @@ CORRECTIONS = 2
 class Judged:
     """Points of a stack of LCPs, and which of them are solutions.
 
-    Attributes
-    ----------
-    x : Array of shape (k, n)
-    solves : ndarray of bool, shape (k,)
-        Whether x is certified: round-off in each row relative to its own terms, no row off by what q is, and up to
-        order 12 an exact solution nearby. Where not, nothing is said.
-    residual, relative_residual : Array of shape (k,)
-        As in `Certificate`.
+    `x` of shape (k, n). `solves`, of shape (k,): Whether x is certified: round-off in each row relative to its own
+    terms, no row off by what q is, and up to order 12 an exact solution nearby. Where not, nothing is said. `residual`,
+    `relative_residual`, of shape (k,): As in `Certificate`.
     """
 
     x: Array
@@ -75,10 +70,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
 def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
     """Which complementary faces are not proved to hold no solution, shape (k, 2^n); a row of False is a proof.
 
-    Parameters
-    ----------
-    A : ndarray, shape (k, n, n)
-    q : ndarray, shape (k, n)
+    `A` of shape (k, n, n). `q` of shape (k, n).
     """
     k, n = q.shape
     states = np.broadcast_to(-1 + all_faces(n).astype(np.int8), (k, 2**n, n)).reshape(-1, n)

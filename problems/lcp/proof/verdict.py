@@ -47,13 +47,7 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
     One that passes `Certificate.solves`; but of a small problem, where that is cheap, exact arithmetic has to agree
     unless its rows are off by no more than the rounding of the entries.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-    certificate : Certificate
-        Of the point.
-    tolerance : float
-        Of its relative residual.
+    `certificate`: Of the point. `tolerance`: Of its relative residual.
     """
     if not certificate.solves(tolerance):
         return False
@@ -69,12 +63,7 @@ def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
     sides of rows of 1e-16 in place of zeros. A point that runs off to infinity, where the objective falls for ever, is
     told by q, which drowns there.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        In balanced units.
-    certificate : Certificate
-        Of the point.
+    `problem`: In balanced units. `certificate`: Of the point.
     """
     if problem.primal == 0 or certificate.drowned > 0.0:
         return False
@@ -121,18 +110,9 @@ class Faced:
     Where the others are off a face its block B has rows of the identity. With an approximate inverse R and
     |I - R B| <= d < 1, B is not singular, and B u = r has |u| <= |R| |r| / (1 - d) in the largest norm.
 
-    Attributes
-    ----------
-    on : ndarray of bool, shape (..., n)
-        Where x > 0.
-    total, largest : Array of shape (..., n)
-        Sum and largest of the terms of each row of A x, the largest 1 off the face.
-    plain : tuple of Array
-        w, and how far it may be off by rounding.
-    size : Array of shape (..., n, n)
-        |R|.
-    defect : Array of shape (...)
-        d, NaN or infinite where nothing is proved.
+    `on`, of shape (..., n): Where x > 0. `total`, `largest`, of shape (..., n): Sum and largest of the terms of each
+    row of A x, the largest 1 off the face. `plain`: w, and how far it may be off by rounding. `size`, of shape (..., n,
+    n): |R|. `defect`, of shape (...): d, NaN or infinite where nothing is proved.
     """
 
     on: NDArray[np.bool_]
@@ -146,10 +126,7 @@ class Faced:
     def of(cls, A: Array, q: Array, x: Array) -> Faced:
         """For points x >= 0.
 
-        Parameters
-        ----------
-        A : ndarray, shape (..., n, n)
-        q, x : ndarray, shape (..., n)
+        `A` of shape (..., n, n). `q`, `x` of shape (..., n).
         """
         on, n = x > 0.0, x.shape[-1]
         terms = A * x[..., None, :]
@@ -176,10 +153,7 @@ class Faced:
     def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
         """Whether the equations have a solution near x with w > 0 elsewhere.
 
-        Parameters
-        ----------
-        w, bound : ndarray, shape (..., n)
-            w, and how far it may be off.
+        `w`, `bound`, of shape (..., n): w, and how far it may be off.
         """
         right = np.where(self.on, (np.abs(w) + bound) / self.largest, 0.0)
         moved = np.maximum.reduce((self.size @ right[..., None])[..., 0], axis=-1)

@@ -30,14 +30,9 @@ a piece larger, and no further ones."""
 class ExactSolution:
     """One solution, in rational numbers.
 
-    Parameters
-    ----------
-    x, w : tuple of Fraction, length n
-        In the problem's own units: x >= 0, w = A x + q >= 0, x_i w_i = 0, all exactly.
-    faces : tuple of index sets
-        The faces {x_i = 0 off the set, w_i = 0 on it} that contain it.
-    isolated : bool
-        Whether none of these faces holds another solution; one that does holds a continuum.
+    `x`, `w`, of length n: In the problem's own units: x >= 0, w = A x + q >= 0, x_i w_i = 0, all exactly. `faces`: The
+    faces {x_i = 0 off the set, w_i = 0 on it} that contain it. `isolated`: Whether none of these faces holds another
+    solution; one that does holds a continuum.
     """
 
     x: tuple[Fraction, ...]
@@ -60,11 +55,8 @@ class ExactSolution:
 class Enumeration:
     """All that the faces hold; `solvable` is a proof either way.
 
-    Parameters
-    ----------
-    solutions : tuple of ExactSolution
-        Distinct, in the order of their first face. Every isolated solution is here; each face that holds a continuum is
-        represented by at least one of its points.
+    `solutions`: Distinct, in the order of their first face. Every isolated solution is here; each face that holds a
+    continuum is represented by at least one of its points.
     """
 
     solutions: tuple[ExactSolution, ...]

@@ -28,10 +28,7 @@ MESSAGE = f"{Outcome.SOLVED} The first active set, where q < 0, is right."
 def at_once(finish: Finish) -> Solution | None:
     """The solution on the face where q < 0, certified and judged as any other; None if that is not one.
 
-    Parameters
-    ----------
-    finish : Finish
-        Of a dense LCP; where its faces are kept this one is made once.
+    `finish`: Of a dense LCP; where its faces are kept this one is made once.
     """
     problem, began = finish.problem, time.perf_counter()
     # Where a symmetric A has a singular face the proximal method comes next, which does not need its solution.

@@ -81,16 +81,8 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
 def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
     """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        As given.
-    scaled : Scaled
-        What was solved in its place.
-    found : Solution
-        Of the scaled problem.
-    tolerance : float
-        Of the relative residual.
+    `problem`: As given. `scaled`: What was solved in its place. `found`: Of the scaled problem. `tolerance`: Of the
+    relative residual.
     """
     said = "" if scaled.common else "In scaled units."
     if found.paths:
@@ -134,13 +126,7 @@ def _moved(problem: MixedLCP, scaled: Scaled, found: Solution, x: Array) -> Cert
 def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
     """The answer to a problem from that to what is left without its fixed unknowns; what was proved is proved again.
 
-    Parameters
-    ----------
-    small : WithoutFixed
-    rest : Solution or None
-        None where nothing is left.
-    tolerance : float
-        Of the relative residual.
+    `rest`: None where nothing is left. `tolerance`: Of the relative residual.
     """
     problem = small.whole
     said = f"Fixed, and eliminated: {_listed(np.flatnonzero(problem.fixed))}."
@@ -176,13 +162,7 @@ def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> 
 
 
 def of_program(program: Program, found: Solution) -> Solution:
-    """The answer to a program from that to its optimality conditions.
-
-    Parameters
-    ----------
-    program : Program
-    found : Solution
-    """
+    """The answer to a program from that to its optimality conditions."""
     parts = [found.message]
     if found.success and not program.convex:
         parts.append("P is not positive semidefinite: this is a KKT point, and need not be a minimum.")
@@ -202,11 +182,7 @@ def _listed(indices: NDArray[np.intp]) -> str:
 def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
     """The answer to a small problem whose entries are too far apart for floats: by exact arithmetic alone.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-    tolerance : float
-        Of the relative residual.
+    `tolerance`: Of the relative residual.
     """
     began = time.perf_counter()
     decided = exhaust(problem)

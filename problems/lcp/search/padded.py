@@ -16,11 +16,7 @@ from continuation.step.tracer import Observer, Tracer
 class Padded:
     """An observer that shows another one paths with more unknowns, NaN, since an archive holds one number of them.
 
-    Attributes
-    ----------
-    observer : Observer
-    unknowns : int
-        As many as the longest path has.
+    `unknowns`: As many as the longest path has.
     """
 
     observer: Observer
@@ -49,12 +45,7 @@ class Padded:
 def show(path: Path, homotopy: Any, observer: Observer) -> None:
     """Show an observer the steps and the end of a path that it did not see while it was made.
 
-    Parameters
-    ----------
-    path : Path
-    homotopy : Homotopy
-        Of the path.
-    observer : Observer
+    `homotopy`: Of the path.
     """
     tracer = Tracer(homotopy)
     tracer.path, tracer.counts = path, path.counts

@@ -63,12 +63,7 @@ PURE_TOLERANCE = 1e-4
 
 
 def search_preset(n: int) -> Preset:
-    """The parts of a restart for a problem of order n: the longest steps that pay.
-
-    Parameters
-    ----------
-    n : int
-    """
+    """The parts of a restart for a problem of order n: the longest steps that pay."""
     return Preset(
         "SEARCH",
         "steps that turn up to 40 degrees, for one path among many",
@@ -81,13 +76,7 @@ def search_preset(n: int) -> Preset:
 def reweighted(problem: MixedLCP, weights: Array | None, path: Path) -> Array | None:
     """Weights of the x_i w_i in the objective after a path that failed: those that are not zero at its end gain.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-    weights : Array or None
-        Those of the path, shape (n,); None for ones.
-    path : Path
-        The one that failed; its first n unknowns are x.
+    `weights`: Those of the path, shape (n,); None for ones. `path`: The one that failed; its first n unknowns are x.
     """
     if not path.steps or not problem.standard:
         return weights
@@ -105,22 +94,10 @@ def reweighted(problem: MixedLCP, weights: Array | None, path: Path) -> Array | 
 class Restart:
     """The k-th restart: it depends on what is here alone, and can be sent to another process.
 
-    Attributes
-    ----------
-    structure : Structure
-        Of the problem.
-    name : str
-        "kkt", or that of a homotopy in (x, y).
-    bands : tuple of intervals
-        How far out it may begin.
-    seed, k : int
-    tolerance : float or None
-        Of the finish; None to go without it.
-    options : mapping
-        For the tracer, over those of `search_preset`.
-    weights : Array or None
-        Of the x_i w_i in the objective of "kkt", shape (n,); None for ones. The path is then that of the problem whose
-        rows are multiplied by them.
+    `structure`: Of the problem. `name`: "kkt", or that of a homotopy in (x, y). `bands`: How far out it may begin.
+    `tolerance`: Of the finish; None to go without it. `options`: For the tracer, over those of `search_preset`.
+    `weights`: Of the x_i w_i in the objective of "kkt", shape (n,); None for ones. The path is then that of the problem
+    whose rows are multiplied by them.
     """
 
     structure: Structure
@@ -143,13 +120,7 @@ class Restart:
         return HOMOTOPIES[self.name].at(structure.problem, start, structure, refine=self.tolerance is None)
 
     def trace(self, budget: Budget, observers: tuple[Observer, ...] = ()) -> Path:
-        """The path, to its end or until it is given up.
-
-        Parameters
-        ----------
-        budget : Budget
-        observers : tuple of Observer
-        """
+        """The path, to its end or until it is given up."""
         homotopy = self.homotopy()
         # The end of a pure path is the answer. With the finish only the active set counts that the path leads to.
         pure = self.tolerance is None
@@ -181,10 +152,7 @@ def _patience(homotopy: LCPHomotopy) -> Patience:
 def light(path: Path) -> Path:
     """The same path with only its two ends, and no curve between them.
 
-    Parameters
-    ----------
-    path : Path
-        Is changed.
+    `path`: Is changed.
     """
     if path.steps:
         path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
@@ -192,11 +160,5 @@ def light(path: Path) -> Path:
 
 
 def trace_light(restart: Restart, budget: Budget) -> Path:
-    """What a worker does: trace a restart and send back what is small enough to send.
-
-    Parameters
-    ----------
-    restart : Restart
-    budget : Budget
-    """
+    """What a worker does: trace a restart and send back what is small enough to send."""
     return light(restart.trace(budget))

@@ -27,17 +27,8 @@ def follow(
 ) -> Path:
     """Trace a path, with the finish along it; its counts hold the factorisations of the finish too.
 
-    Parameters
-    ----------
-    homotopy : KKTHomotopy or TwoVectorHomotopy
-    finish : Finish or None
-        None for the pure path.
-    budget : Budget
-    observers : tuple of Observer
-    patience : callable, optional
-        When the path is given up; the path's message then has the reason.
-    **options
-        As for `continuation.Tracer`.
+    `finish`: None for the pure path. `patience`: When the path is given up; the path's message then has the reason.
+    `**options`: As for `continuation.Tracer`.
     """
     before = 0 if finish is None else finish.counts.factorizations
     along = None if finish is None else AlongPath.of(finish, homotopy)

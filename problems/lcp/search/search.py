@@ -57,33 +57,11 @@ class Candidate:
 class Search:
     """Paths of one problem, with what they share: the finish, the budget, the archive.
 
-    Attributes
-    ----------
-    structure : Structure
-    finish : Finish or None
-        None where it is switched off.
-    tolerance : float
-        Of the certificate.
-    budget : Budget
-        Of the whole search.
-    log : PathLog or None
-    progress : bool
-    options : dict
-        For `continuation.trace`.
-    counts : Counts
-        Of everything so far.
-    paths : list of Path
-    ends : list of Candidate
-        Where the paths, and the finish, led.
-    scaled : Scaled or None
-        The problem in units of its own, where it is solved in these.
-    postponed : bool
-        Whether these are looked for only when active sets have failed in the units given.
-    proof : Farkas, FloatFarkas or None
-        That there is no feasible point, exactly or to working precision.
-    exhaustion : Exhaustion or None
-        What trying all faces came to.
-    began : float
+    `finish`: None where it is switched off. `tolerance`: Of the certificate. `budget`: Of the whole search. `options`:
+    For `continuation.trace`. `counts`: Of everything so far. `ends`: Where the paths, and the finish, led. `scaled`:
+    The problem in units of its own, where it is solved in these. `postponed`: Whether these are looked for only when
+    active sets have failed in the units given. `proof`: That there is no feasible point, exactly or to working
+    precision. `exhaustion`: What trying all faces came to.
     """
 
     structure: Structure
@@ -169,12 +147,7 @@ class Search:
     def augment(self, below: float, most: int) -> bool:
         """Whether the augmented Lagrangian of a program led to a solution, if only to working precision.
 
-        Parameters
-        ----------
-        below : float
-            How far below zero the least eigenvalue of P is.
-        most : int
-            Factorisations.
+        `below`: How far below zero the least eigenvalue of P is. `most`: Factorisations.
         """
         if self._finished(lambda finish: finish.augmented(below, most)):
             return True
@@ -234,14 +207,7 @@ class Search:
 
         Over an executor the first solution in the order of the restarts is taken among those that are there.
 
-        Parameters
-        ----------
-        name : str
-            Of the homotopy.
-        seed, count : int
-        executor : Executor or None
-        bands : tuple of intervals
-            How far out they begin, in turn.
+        `name`: Of the homotopy. `bands`: How far out they begin, in turn.
         """
         tolerance = None if self.finish is None else self.tolerance
 

@@ -166,7 +166,9 @@ def test_nothing_is_executed(tmp_path, half, place, tree):
     for ended in (True, False):
         if not ended:
             unended(made)
-        for name, operation in OPERATIONS.items():
+        # Where opening alone reads the checkpoint, what begins by opening is refused there.
+        for name in OPERATIONS if ended else ("open", "recover", "resume"):
+            operation = OPERATIONS[name]
             file = tmp_path / f"{name}{ended}.h5"
             shutil.copy(made, file)
             known = set(sys.modules)

@@ -84,20 +84,20 @@ def check(structure, system, rows=1.0, columns=1.0):
 
 
 @given(systems(), st.sampled_from(sorted(GENERAL)))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_general_structures_are_exact_to_round_off(system, name):
     check(GENERAL[name], system)
 
 
 @pytest.mark.parametrize("singular", [None, True], ids=["any", "singular H_y"])
 @given(data=st.data(), name=st.sampled_from(sorted(EVERY)))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_symmetric_systems_are_solved_by_every_structure(singular, data, name):
     check(EVERY[name], data.draw(systems(symmetric=True, singular=singular)))
 
 
 @given(systems(), st.sampled_from(sorted(GENERAL)), st.data())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_the_units_of_the_rows_do_not_matter(system, name, data):
     exponents = data.draw(arrays(np.int64, (len(system[3]),), elements=st.integers(-27, 27)))
     check(GENERAL[name], system, rows=2.0**exponents)
@@ -113,7 +113,7 @@ def test_a_large_row_does_not_become_the_pivot(name):
 
 
 @given(systems(symmetric=True), st.sampled_from(sorted(SYMMETRIC)), st.data())
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_the_units_of_a_symmetric_system_do_not_matter(system, name, data):
     """Rows and columns scaled alike: the residual is at round-off in each row."""
     exponents = data.draw(arrays(np.int64, (len(system[3]),), elements=st.integers(-13, 13)))

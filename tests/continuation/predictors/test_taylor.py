@@ -174,7 +174,7 @@ def test_dense_output_is_parametrised_by_arclength(preset):
     np.testing.assert_allclose(path(angle), np.stack([np.cos(start + angle), np.sin(start + angle)], axis=1), atol=3e-3)
 
 
-@pytest.mark.parametrize("safety", [0.8, 0.95, 1.0])
+@pytest.mark.parametrize("safety", [0.8, 1.0])
 @pytest.mark.parametrize("order", [8, 20, 30])
 def test_no_choice_of_order_and_safety_loses_the_path(order, safety):
     path = continuation.trace(
