@@ -1,9 +1,9 @@
 """Kinked paths: each smooth arc proved with the equations of its piece, and joined to the next at a zero of a switch.
 
-Near its end the curve of an arc lies in boxes p(1 - delta) and p(1 + delta) + [-r, r], on which the switch that vanishes
-at the kink has different signs: it has a zero z in between. There both pieces are the map, so that z is a zero of the
-next piece's equations as well; where the next arc's tube holds z, it lies on that arc's curve. Either curve has one zero
-of the switch there, its derivative along the curve having a sign: the one begins where the other ends.
+Near its end the curve of an arc lies in boxes p(1 - delta) and p(1 + delta) + [-r, r], on which the switch that
+vanishes at the kink has different signs: it has a zero z in between. There both pieces are the map, so that z is a zero
+of the next piece's equations as well; where the next arc's tube holds z, it lies on that arc's curve. Either curve has
+one zero of the switch there, its derivative along the curve having a sign: the one begins where the other ends.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import distance, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.switches import judged, signs_along, value_at
-from continuation.path import LocatedEvent, Path
+from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
 
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
@@ -83,7 +83,8 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> t
         if cells is not None:
             known = cells.take((cells.place[:, 0] >= begin) & (cells.place[:, 1] <= end))
         status = path.status if last == places[-1] else Status.STOPPED_AT_EVENT
-        proof, engine = prove(homotopy.piece(signs), Path(steps=_bare(steps), events=events, status=status), known)
+        points = _from(steps, kinks[k - 1] if k else None)
+        proof, engine = prove(homotopy.piece(signs), Path(steps=points, events=events, status=status), known)
         arc = Arc(signs, proof, engine, ends)
         gaps += [*proof.gaps, *_kept(arc, switches, (begin, end))]
         arcs.append(arc)
@@ -128,14 +129,15 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
     return out, gaps
 
 
-def _signs(homotopy: Any, steps: list[Any], ends: tuple[tuple[int, ...], ...]) -> tuple[Array, list[Gap]]:
+def _signs(homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...]) -> tuple[Array, list[Gap]]:
     """Those of the switches between two kinks, and where the points are not on one piece."""
     with np.errstate(all="ignore"):
         values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
         middle = 0.5 * (steps[0].u + steps[1].u)
         signs = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
     for row, end in zip((0, -1), ends):
-        values[row, list(end)] = signs[list(end)]
+        known = [j for j in end if 0 <= j < len(signs)]
+        values[row, known] = signs[known]
     wrong = [k for k, row in enumerate(values) if not (row * signs > 0.0).all()]
     if not wrong:
         return signs, []
@@ -143,17 +145,16 @@ def _signs(homotopy: Any, steps: list[Any], ends: tuple[tuple[int, ...], ...]) -
     return signs, [Gap(steps[k - 1].arclength, steps[k].arclength, "a kink that the path does not list")]
 
 
-def _bare(steps: list[Any]) -> list[Any]:
-    """Tangents at kinks are those of one of the pieces: they are found again; such points are as good as others."""
-    out = list(steps)
-    for k in (0, -1):
-        count = max(out[k].corrector_iterations, 1)
-        out[k] = evolve(out[k], tangent=np.full_like(out[k].tangent, np.nan), corrector_iterations=count)
-    return out
+def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
+    """The points of an arc. That of a kink has the tangent with which the path came: here it is to have the other."""
+    if kink is None:
+        return steps
+    away = np.full_like(kink.u, np.nan) if kink.rays is None or len(kink.rays) < 2 else kink.rays[1]
+    return [evolve(steps[0], tangent=away), *steps[1:]]
 
 
 def _kept(arc: Arc, switches: ByIntervals, span: tuple[float, float]) -> list[Gap]:
-    """Where switches do not surely keep their signs, or turning points may lie beyond a kink."""
+    """Where switches do not surely keep their signs."""
     cells = arc.proof.cells
     if not len(cells):
         return []
@@ -162,9 +163,6 @@ def _kept(arc: Arc, switches: ByIntervals, span: tuple[float, float]) -> list[Ga
         told = judged(found, len(cells), int(arc.signs[j]), (j in arc.ends[0], j in arc.ends[1]))
         if isinstance(told, str):
             gaps.append(Gap(*span, told))
-    for turn in arc.proof.turning_points:
-        if (arc.ends[0] and turn[0] <= span[0]) or (arc.ends[1] and turn[1] >= span[1]):
-            gaps.append(Gap(*turn, "turning points could not be counted"))
     return gaps
 
 
@@ -173,7 +171,7 @@ def _joined(before: Arc, after: Arc, switches: ByIntervals, kink: LocatedEvent) 
     if len(kink.switches) != 1:
         return "several switches vanish in one kink" if kink.switches else "a kink is listed where there is none"
     j = kink.switches[0]
-    if before.signs[j] == after.signs[j]:
+    if not 0 <= j < len(before.signs) or before.signs[j] == after.signs[j]:
         return "a kink is listed where there is none"
     left, right = before.proof.cells.take(slice(-1, None)), after.proof.cells.take(slice(0, 1))
     for delta in NEXT_TO.tolist():

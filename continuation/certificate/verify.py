@@ -79,9 +79,10 @@ def verified(
     if certificate:
         before = float(cells.place[-1, 1])
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
-    places = [_place(cells, event) for event in path.events]
+    places = [_place(cells, event, path.arclength) for event in path.events]
     places = _on_curve(engine, cells, path.events, places)
-    turning, more = _turning(cells, found or pieces(engine, plain, cells), path, places)
+    told = _between_nodes(found or pieces(engine, plain, cells), ends.tangent, at.tangent)
+    turning, more = _turning(cells, told, path, places)
     gaps += more + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
     gaps += missing
@@ -149,6 +150,14 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
 # --- turning points and events ----------------------------------------------------------------------------
 
 
+def _between_nodes(found: list[Piece], start: Ends, at: Ends) -> list[Piece]:
+    """With the signs at the first and the last point, where they have one: what lies beyond these does not count."""
+    rates = (Ends(t.lo[k, -1], t.hi[k, -1]) for t, k in ((start, 0), (at, -1)))
+    first, last = (int(np.sign(rate.lo)) if rate.lo * rate.hi > 0.0 else 0 for rate in rates)
+    begin = [Piece(0, 0.0, 0.0, first, 0)] if first else []
+    return [*begin, *found, *([Piece(found[-1].cell, 1.0, 1.0, last, 0)] if last else [])]
+
+
 def _turning(
     cells: Cells, found: list[Piece], path: Path, places: list[float | None]
 ) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
@@ -198,16 +207,20 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
     return out[0], out[1]
 
 
-def _place(cells: Cells, event: LocatedEvent) -> float | None:
+def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> float | None:
     """Cell and parameter of a point that lies in the tube; None where it lies in none.
 
     With c . (u - p(s - e)) > 0 > c . (u - p(s + e)) it belongs to a parameter in between, and is to be within the
-    radius of all that the cubic is there.
+    radius of all that the cubic is there. Arclengths of cells are shares of those of a step between two of `knots`,
+    which tell little more than which step it is.
     """
     s = event.arclength
     span = cells.place[:, 1] - cells.place[:, 0]
-    near = np.flatnonzero((cells.place[:, 0] - span <= s) & (s <= cells.place[:, 1] + span))
-    for k in near.tolist():
+    near = (cells.place[:, 0] - span <= s) & (s <= cells.place[:, 1] + span)
+    if knots is not None:
+        k = int(np.clip(np.searchsorted(knots, s), 1, len(knots) - 1))
+        near |= (knots[k - 1] <= cells.place[:, 0]) & (cells.place[:, 1] <= knots[k])
+    for k in np.flatnonzero(near).tolist():
         cell = cells.take(np.array([k]))
         t = _parameter(cell, event.u)
         for width in (1e-9, 1e-6, 0.5 * OVERHANG):

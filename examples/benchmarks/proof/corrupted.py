@@ -3,33 +3,75 @@
     python examples/benchmarks/proof/corrupted.py 10000
 
 Each corruption makes of traced paths something that they are not: continued on another sheet, points moved off the
-curve by more than the radius of their tube, their order changed, a loop left out, turning points dropped or invented.
-A complete proof of any of it is a fault. Points left out on one and the same curve are another matter: there the proof
-is either complete or has a gap.
+curve by more than the radius of their tube, their order changed, a loop left out, turning points dropped or invented;
+and those with kinks continued on the wrong piece, turned back, their kinks dropped, invented, moved or called by other
+names. A complete proof of any of it is a fault. Points left out on one and the same curve are another matter: there the
+proof is either complete or has a gap.
 """
 
 from __future__ import annotations
 
 import sys
 from collections import Counter
+from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
-from attrs import evolve
+from attrs import evolve, frozen
 
 from continuation import Budget, certify, trace
 from continuation.certificate import Proof
+from continuation.certificate.proof import Gap
 from continuation.path import Path
 from continuation.status import Kind, Status
 from problems.bifurcation import Cusp, ExponentialCosine, FreudensteinRoth
-from problems.lcp import LCP
+from problems.lcp import LCP, UnprovenError, along, prove_path
 from problems.lcp.homotopies import KKTHomotopy
+from problems.nonlinear import NormalMap, bratu_under_obstacle
 
 DISTANT = 1e-3
 """How far a point is moved at least, in extents of the path."""
 
 
-def subjects() -> list[tuple[object, Path, Proof]]:
+@frozen(eq=False)
+class Linear:
+    """A piecewise linear path, which is proved in rational numbers."""
+
+    problem: LCP
+    d: np.ndarray
+
+    def proved(self, path: Path) -> bool:
+        """Whether it is."""
+        try:
+            prove_path(self.problem, self.d, path)
+        except (UnprovenError, ValueError):
+            return False
+        return True
+
+
+def cubic(seed: int) -> NormalMap:
+    """Of three unknowns between bounds, with a force that is no line; kinks where they meet these."""
+    rng = np.random.default_rng(seed)
+    A, q, d = rng.normal(size=(3, 3)), rng.normal(size=3), rng.choice([-1.0, 1.0], 3)
+    return NormalMap(Cubic(A, q, d), x0=d, lam0=-12.0, lower=-1.0, upper=1.0, target=12.0)
+
+
+@frozen(eq=False)
+class Cubic:
+    """F(x, lam) = A x + x^3 / 4 + sin(x lam) / 5 + q + lam d."""
+
+    A: np.ndarray
+    q: np.ndarray
+    d: np.ndarray
+
+    def __call__(self, x: Any, lam: Any) -> Any:
+        """The force."""
+        return self.A @ x + 0.25 * x**3 + 0.2 * np.sin(x * lam) + self.q + lam * self.d
+
+
+@cache
+def subjects() -> list[tuple[Any, Path, Proof]]:
     """Homotopies with their paths and proofs."""
     matrix = np.array([[1.0, -2.0, 0.5], [3.0, 0.2, -1.0], [-0.5, 2.0, 1.0]])
     homotopies = [
@@ -37,21 +79,45 @@ def subjects() -> list[tuple[object, Path, Proof]]:
         Cusp(),
         ExponentialCosine(3),
         KKTHomotopy(LCP(matrix, np.array([-1.0, 1.0, -2.0]))),
+        *kinked(),
     ]
     out = []
     for homotopy in homotopies:
         path = trace(homotopy, budget=Budget(steps=60))
         out.append((homotopy, path, certify(path, homotopy)))
-    return out
+    line = along(turning(), np.ones(3), (np.inf, 0.0))
+    none = Proof.empty(4, Gap(0.0, 0.0, "proved by rational numbers"))
+    return [*out, (Linear(turning(), np.ones(3)), line, none)]
+
+
+def turning() -> LCP:
+    """On the path of Lemke's method for it are six kinks, and in four of them t turns."""
+    return LCP(np.array([[2.0, 2.0, 4.0], [-3.0, 0.0, -3.0], [1.0, 3.0, 1.0]]), np.array([-5.0, 1.0, -4.0]))
+
+
+def kinked() -> list[Any]:
+    """Homotopies in pieces: kinks in which the parameter turns, and smooth turning points between kinks."""
+    lemke = NormalMap.affine(turning().A, turning().q, np.ones(3), x0=np.zeros(3), lam0=12.0)
+    return [bratu_under_obstacle(9, 2.0, target=3.55), lemke, cubic(39)]
+
+
+def proved(homotopy: Any, path: Path) -> bool:
+    """Whether a proof of it is complete."""
+    return homotopy.proved(path) if isinstance(homotopy, Linear) else certify(path, homotopy).complete
 
 
 def numbered(path: Path, steps: list, events: list) -> Path:
-    """A path of these steps, with arclengths by chords of the same scale."""
+    """A path of these steps, with arclengths by chords of the same scale; kinks keep their points."""
     chords = [0.0, *(float(np.linalg.norm(b.u - a.u)) for a, b in pairwise(steps))]
     lengths = np.cumsum(chords)
     scale = float(path.arclength[-1]) / (float(lengths[-1]) or 1.0)
     again = [evolve(s, index=k, arclength=float(lengths[k] * scale)) for k, s in enumerate(steps)]
-    return Path(steps=again, events=events, status=path.status, message=path.message)
+    places = {s.index: k for k, s in reversed(list(enumerate(steps)))}
+    kept = [e for e in events if e.kind is not Kind.KINK]
+    kinks = [(e, places[e.step]) for e in events if e.kind is Kind.KINK and e.step in places]
+    kept += [evolve(e, step=k, arclength=again[k].arclength) for e, k in kinks]
+    kept.sort(key=lambda e: e.arclength)
+    return Path(steps=again, events=kept, status=path.status, message=path.message)
 
 
 def moved(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
@@ -96,15 +162,15 @@ def shortcut(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
 
 def jumped(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """Continued on another sheet: from some point on the path is that from a far point of the same curve."""
-    n = len(path)
-    if n < 12:
+    n, least = len(path), 2 if path.kinks else 6
+    if n < least + 6:
         return None
-    i = int(rng.integers(1, n - 8))
-    j = int(rng.integers(i + 6, n - 1))
+    i = int(rng.integers(1, n - least - 2))
+    j = int(rng.integers(i + least, n - 1))
     if float(np.linalg.norm((path.u[j] - path.u[i]) / np.ptp(path.u, axis=0))) < 0.15:
         return None
     steps = [*path.steps[: i + 1], *path.steps[j:]]
-    if sum(i < e.step <= j for e in path.turning_points) == 0:
+    if not any(i < e.step <= j for e in [*path.turning_points, *path.kinks]):
         return None  # points left out on one branch, which may well be proved
     events = [e for e in path.events if not i < e.step <= j]
     return numbered(path, steps, events)
@@ -150,20 +216,114 @@ def elsewhere(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None
     return Path(steps=path.steps, events=events, status=Status(path.status))
 
 
+# --- kinks ------------------------------------------------------------------------------------------------
+
+
+def changed(path: Path, old: Any, *new: Any) -> Path:
+    """The path with other events in the place of one."""
+    events = [*(e for e in path.events if e is not old), *new]
+    return Path(steps=path.steps, events=sorted(events, key=lambda e: e.arclength), status=path.status)
+
+
+def drawn(path: Path, rng: np.random.Generator) -> Any:
+    """One of the kinks."""
+    return path.kinks[int(rng.integers(len(path.kinks)))]
+
+
+def unkinked(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+    """A kink dropped, and half of the times its point too."""
+    kink = drawn(path, rng)
+    if rng.random() < 0.5:
+        return changed(path, kink)
+    steps = [s for s in path.steps if s.index != kink.step]
+    return numbered(path, steps, [e for e in path.events if e is not kink])
+
+
+def misplaced(path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
+    """A kink at another point of the path: one more, or the kink itself."""
+    kink = drawn(path, rng)
+    away = [s for s in path.steps if s.index not in {e.step for e in path.kinks}]
+    if not away:
+        return None
+    step = away[int(rng.integers(len(away)))]
+    like = evolve(kink, u=step.u, arclength=step.arclength, step=step.index)
+    return changed(path, kink, like, *([kink] if rng.random() < 0.5 else []))
+
+
+def pushed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+    """A kink moved along the arc before it or after it, on the curve or nearly, with its point."""
+    kink = drawn(path, rng)
+    k = kink.step
+    other = path.u[k + 1] if rng.random() < 0.5 else path.u[k - 1]
+    u = kink.u + (other - kink.u) * float(10.0 ** rng.uniform(-3.0, -0.3))
+    steps = list(path.steps)
+    steps[k] = evolve(steps[k], u=u)
+    events = [evolve(e, u=u) if e is kink else e for e in path.events]
+    return Path(steps=steps, events=events, status=path.status)
+
+
+def renamed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+    """A kink in which another switch is said to vanish, or one more, or the parameter to turn where it does not."""
+    kink = drawn(path, rng)
+    count = path.u.shape[1] - 1
+    if rng.random() < 0.4:
+        return changed(path, kink, evolve(kink, name="kink" if kink.name == "turning kink" else "turning kink"))
+    other = int(rng.choice([j for j in range(count) if j not in kink.switches]))
+    switches = (other,) if rng.random() < 0.6 else tuple(sorted((*kink.switches, other)))
+    return changed(path, kink, evolve(kink, switches=switches))
+
+
+def turned_back(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
+    """From a kink on back on the same way."""
+    k = drawn(path, rng).step
+    back = [evolve(s, tangent=-s.tangent) for s in path.steps[:k][::-1]]
+    whole = numbered(path, [*path.steps[: k + 1], *back], [e for e in path.events if e.step <= k])
+    last = whole.steps[-1].arclength
+    mirrored = [
+        evolve(e, arclength=last - e.arclength, step=2 * k - e.step + (e.kind is not Kind.KINK))
+        for e in whole.events
+        if e.step != k or e.kind is not Kind.KINK
+    ]
+    return Path(steps=whole.steps, events=[*whole.events, *mirrored[::-1]], status=Status.STOPPED_AT_EVENT)
+
+
+def straight_on(path: Path, proof: Proof, rng: np.random.Generator, homotopy: Any = None) -> Path | None:
+    """Continued on the wrong piece: past a kink by the equations that held before it."""
+    k = drawn(path, rng).step
+    if k < 2 or homotopy is None:
+        return None
+    before = 0.5 * (path.u[k - 1] + path.u[k])
+    signs = np.where(homotopy.switches(before[:-1], before[-1]) > 0.0, 1, -1)
+    start = (path.steps[k - 1].u, path.steps[k - 1].tangent)
+    steps = int(rng.integers(2, 7))
+    beyond = trace(homotopy.piece(signs), start=start, target=None, budget=Budget(steps=steps + 1))
+    if len(beyond) < 3:
+        return None
+    kept = [*path.steps[: k + 1], *(s for s in beyond.steps if s.arclength > 1.2 * beyond.steps[1].arclength)]
+    if len(kept) < k + 2:
+        return None
+    known = [e for e in path.events if e.step < k or (e.step == k and rng.random() < 0.5)]
+    found = numbered(path, [evolve(s, index=j) for j, s in enumerate(kept)], known)
+    return evolve(found, status=Status.STOPPED_AT_EVENT)
+
+
 FAULTS = (moved, swapped, shortcut, jumped, unlisted, invented, elsewhere)
+AT_KINKS = (unkinked, misplaced, pushed, renamed, turned_back, straight_on)
 
 
 def campaign(count: int, seed: int = 0) -> Counter:
     """How many corrupted paths of each kind were refused, and accepted."""
     rng, found, tried = np.random.default_rng(seed), Counter(), subjects()
-    assert all(proof.complete for _, _, proof in tried)
+    assert all(proved(homotopy, path) for homotopy, path, _ in tried)
     while sum(found.values()) < count:
-        fault = FAULTS[int(rng.integers(len(FAULTS)))]
         homotopy, path, proof = tried[int(rng.integers(len(tried)))]
-        corrupted = fault(path, proof, rng)
+        faults = (*FAULTS, *AT_KINKS) if path.kinks else FAULTS
+        fault = faults[int(rng.integers(len(faults)))]
+        linear = isinstance(homotopy, Linear)
+        more = {"homotopy": homotopy} if fault is straight_on and not linear else {}
+        corrupted = fault(path, proof, rng, **more)
         if corrupted is not None:
-            accepted = certify(corrupted, homotopy).complete
-            found[fault.__name__, "accepted" if accepted else "refused"] += 1
+            found[fault.__name__, "accepted" if proved(homotopy, corrupted) else "refused"] += 1
     return found
 
 

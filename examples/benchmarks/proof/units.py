@@ -78,7 +78,10 @@ def careless(homotopy: Rescaled, extent: np.ndarray, direction: float, steps: in
     t = _tangent(homotopy, u, np.append(np.zeros(y.size), direction))
     points, tangents, lengths, events = [u], [t], [0.0], []
     for _ in range(20 * steps):
-        if len(points) > steps or (np.abs(homotopy.original(u)) > 20.0 * (extent + np.abs(homotopy.original(points[0])))).any():
+        if (
+            len(points) > steps
+            or (np.abs(homotopy.original(u)) > 20.0 * (extent + np.abs(homotopy.original(points[0])))).any()
+        ):
             break
         unit = t / np.linalg.norm(weights * t)
         try:
@@ -110,28 +113,30 @@ def carried(points: Any, tangents: Any, lengths: Any, events: list[LocatedEvent]
 # --- what it is held against ------------------------------------------------------------------------------
 
 
-def faults(path: Path, units: Rescaled, reference: Path) -> tuple[int, int]:
-    """How many steps of a path in these units jumped; and how many turns up to there are missed, or are none.
+def faults(path: Path, units: Rescaled, reference: Path) -> tuple[bool, int]:
+    """Whether a path in these units jumped, or left the careful one; and how many turns up to there it missed.
 
     Steps beyond the end of the careful path are not judged.
     """
     fine = np.unique(np.concatenate([np.linspace(a, b, FINE) for a, b in pairwise(reference.arclength.tolist())]))
     extent = extent_of(reference)
     dense = reference(fine) / extent
-    before, jumps = 0.0, 0
+    before, jumped = 0.0, False
     for step in path.steps[1:]:
         far = np.linalg.norm(dense - units.original(step.u) / extent, axis=1)
         place = int(np.argmin(far))
         # The next point of the way, not the nearest one: ways may close, or come by again.
         later = np.flatnonzero((fine >= before) & (far <= max(2.0 * far[place], 0.1 * ASTRAY)))
+        if far[place] > ASTRAY and place == len(fine) - 1:
+            break
         if far[place] > ASTRAY or not len(later):
-            jumps = int(before < 0.999 * fine[-1])
+            jumped = True
             break
         before = float(fine[later[0]])
     turns = [e.u / extent for e in reference.turning_points if e.arclength < before - ASTRAY * fine[-1]]
     found = [units.original(e.u) / extent for e in path.turning_points]
     missed = sum(all(np.linalg.norm(a - b) > ASTRAY for b in found) for a in turns)
-    return jumps, missed
+    return jumped, missed
 
 
 def campaign(name: str, number: int, seed: int = 0) -> Counter:
@@ -147,8 +152,8 @@ def campaign(name: str, number: int, seed: int = 0) -> Counter:
         proof, whole = certify(path, units), len(path.turning_points) == len(reference.turning_points)
         found["complete" if proof.complete else "gap", "all turns" if whole else "TURNS MISSED"] += 1
         path = careless(units, extent_of(reference), direction)
-        jumps, missed = faults(path, units, reference)
-        kind = "careless, jumped" if jumps else "careless, turns missed" if missed else "careless, none seen"
+        jumped, missed = faults(path, units, reference)
+        kind = "careless, jumped" if jumped else "careless, turns missed" if missed else "careless, none seen"
         found["complete" if len(path) > 1 and certify(path, units).complete else "gap", kind] += 1
     return found
 

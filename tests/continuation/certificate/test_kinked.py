@@ -6,8 +6,14 @@ import pytest
 from attrs import evolve
 
 from continuation import Path, certify, trace
+from continuation.certificate.certifying import recheck
 from continuation.certificate.inverse import inverted
 from continuation.status import Kind
+from problems.nonlinear import bratu_under_obstacle
+
+from ...util import benchmark
+
+corrupted = benchmark("proof/corrupted.py")
 
 
 def bent(y, lam, a, b):
@@ -79,6 +85,49 @@ def test_a_kink_that_is_none_is_a_gap(path):
 def test_a_kink_that_is_listed_twice_is_a_gap(path):
     assert "more kinks are listed" in str(certify(listing(path, [*path.events, path.kinks[0]]), Bent()))
     assert path.kinks[0].kind is Kind.KINK
+
+
+@pytest.fixture(scope="module")
+def subjects():
+    """Homotopies of the library in pieces, with their paths and proofs."""
+    return [one for one in corrupted.subjects() if hasattr(one[0], "switches")]
+
+
+def test_normal_maps_are_proved_through_kinks_in_which_the_parameter_turns(subjects):
+    counted = []
+    for _, path, proof in subjects:
+        assert proof.complete, str(proof)
+        assert len(proof.turning_points) == len(path.turning_points)
+        counted.append([len(proof.kinks), sum(kink.name == "turning kink" for kink in path.kinks)])
+        assert all(lo <= kink.arclength <= hi for (lo, hi), kink in zip(proof.kinks, path.kinks))
+    assert counted == [[1, 1], [6, 4], [8, 3]]
+
+
+@pytest.mark.parametrize("fault", corrupted.AT_KINKS, ids=lambda fault: fault.__name__)
+def test_what_is_wrong_with_kinks_is_refused(subjects, fault):
+    rng = np.random.default_rng(1)
+    for homotopy, path, proof in subjects[:2]:
+        more = {"homotopy": homotopy} if fault is corrupted.straight_on else {}
+        wrong = fault(path, proof, rng, **more)
+        assert wrong is None or not certify(wrong, homotopy).complete
+
+
+def test_several_switches_in_one_kink_are_a_gap_there_alone():
+    homotopy = bratu_under_obstacle(9, 2.0, target=6.0)
+    path = trace(homotopy)
+    proof = certify(path, homotopy)
+    tied = [kink.arclength for kink in path.kinks if len(kink.switches) > 1]
+    assert [(gap.begin, gap.end, gap.reason) for gap in proof.gaps] == [
+        (s, s, "several switches vanish in one kink") for s in tied
+    ]
+    assert len(tied) == 2
+
+
+def test_a_proof_of_pieces_is_checked_again(subjects):
+    homotopy, path, proof = subjects[1]
+    assert recheck(proof.cells, path, homotopy).complete
+    thin = proof.cells.with_tubes(1e-9 * proof.cells.radius, proof.cells.slabs)
+    assert not recheck(thin, path, homotopy).complete
 
 
 def test_small_pivots_are_not_trusted():
