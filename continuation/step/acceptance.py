@@ -113,7 +113,7 @@ class Examiner:
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
                 before = state.occurrences[index] > 0
-                seen = self.crossings.on_arc(part, attempt, prediction, changed, ends, before, state.near)
+                seen = self.crossings.on_arc(part, attempt, prediction, changed, ends, before, state)
                 if isinstance(seen, Rejected):
                     return seen
                 near, branch = seen is not None, None if seen is None else seen.branch

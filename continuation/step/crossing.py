@@ -21,6 +21,7 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.looks import APART, BESIDE, BEYOND, CHANGED, DOUBTFUL, LOOKS, STRIDE, Looks
+from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
 NEAR_ARC = 2e-2
@@ -91,7 +92,7 @@ class Crossings:
         return Looks(self.solver)
 
     def on_arc(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, before: bool, near: bool
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, before: bool, state: State
     ) -> Passed | Rejected | None:
         """The branch point on an arc, if there is one; or why the arc does not count, and which step to try.
 
@@ -110,13 +111,13 @@ class Crossings:
             Whether the path ends where the arc does: what lies beyond does not count.
         before : bool
             Whether branches have crossed on this path already.
-        near : bool
-            Whether something was seen on the arc before, or ahead of it.
+        state : State
+            At the arc's beginning.
         """
         # An arc that was cut, as at a kink, is the beginning of what was predicted.
         if arc.b is not attempt.point:
             attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
-        seen = self.looks.along(arc, attempt, prediction, near)
+        seen = self.looks.along(arc, attempt, prediction, state)
         found = self._examined(arc, attempt, prediction, seen, flipped, ends, before)
         if isinstance(found, Rejected):
             return found

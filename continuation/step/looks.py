@@ -15,6 +15,7 @@ from continuation.events.crossing import CONVERGED, SAME, peak_between, singular
 from continuation.point.arc import Arc
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
+from continuation.step.state import State
 from continuation.step.stepper import Arrival
 
 LOOKS = 0.5, 0.25, 0.75
@@ -72,18 +73,18 @@ class Looks:
 
     solver: PathSolver
 
-    def along(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, closely: bool = False
-    ) -> dict[float, list[float]]:
+    def along(self, arc: Arc, attempt: Arrival, prediction: Prediction, state: State) -> dict[float, list[float]]:
         """The places that each look along the prediction shows, in arcs; the first look alone where it shows none.
 
         Parameters
         ----------
         arc, attempt, prediction
-        closely : bool
-            More looks where the first shows none, and nearer to the beginning as long as H' is farther from singular
-            there: twice as far as a pair of crossings it is as it was, and four times as far nine times as much.
+        state : State
+            At the beginning. Where something was seen near the arc before there are more looks, though the first shows
+            none, and nearer to the beginning as long as H' is farther from singular there: twice as far as a pair of
+            crossings it is as it was, and four times as far nine times as much.
         """
+        closely = state.near
         contracts, size = attempt.correction.contraction <= RELIABLE, attempt.correction.contraction
         least, found = CHANGED if contracts else 0.5 * CHANGED, {}
         series = hasattr(prediction, "segment")
@@ -96,7 +97,7 @@ class Looks:
             ahead = max(BEYOND / at, 1.0 / least) if first else NEXT
             halved = closely and at <= (1.0 if series else 2.0) * min(looks) and math.frexp(at)[0] == LOOKS[0]
             behind, accuracy = GROWN if halved else np.inf, CONVERGED if first else SAME
-            there = singular_places(arc.a, apply, arc.a.border, ahead, behind, accuracy, k)
+            there = singular_places(arc.a, apply, arc.a.border, ahead, behind, accuracy, state.index + k)
             places = [at * t for t in there]
             found[at] = [t for t in places if t > 0.0]
             if not (found[LOOKS[0]] or series or closely) and size <= DOUBTFUL:

@@ -164,9 +164,38 @@ def transversal(rng: np.random.Generator, n: int, units: float, near: bool = Tru
         ):
             break
 
+    return _two(rng, n, units, a, lambda s: (_graph(b - a, s), _slope(b - a, s)), roots, begin)
+
+
+def pairs(rng: np.random.Generator, n: int, units: float) -> Crossed:
+    """Two graphs that cross 0.01 to 0.5 apart, and nowhere else; one path in three is straight."""
+    a = rng.normal(0.0, 1.0, 3) * rng.choice([0.0, 1.0, 1.0])
+    gap, middle = 10.0 ** rng.uniform(-2.0, -0.3), float(rng.uniform(-1.3, 1.3))
+    first, second = roots = [middle - 0.5 * gap, middle + 0.5 * gap]
+    c, e = float(10.0 ** rng.uniform(-0.7, 0.7) * rng.choice([-1.0, 1.0])), float(rng.uniform(-0.2, 0.6))
+
+    def difference(s: float) -> tuple[float, float]:
+        pair, grows = (s - first) * (s - second), 1.0 + 0.25 * e * s * s
+        return c * pair * grows, c * ((2.0 * s - first - second) * grows + 0.5 * e * pair * s)
+
+    return _two(rng, n, units, a, difference, roots, float(-2.0 + rng.uniform(-0.3, 0.3)))
+
+
+def _two(
+    rng: np.random.Generator,
+    n: int,
+    units: float,
+    a: Array,
+    difference: Callable[[float], tuple[float, float]],
+    roots: list[float],
+    begin: float,
+) -> Crossed:
+    """A graph, and another one that differs from it by a function, given with its derivative."""
+
     def p(x: float, s: float) -> tuple[float, float, float]:
-        u, v = x - _graph(a, s), x - _graph(b, s)
-        return u * v, u + v, -_slope(a, s) * v - _slope(b, s) * u
+        (apart, opening), slope = difference(s), _slope(a, s)
+        u, v = x - _graph(a, s), x - _graph(a, s) - apart
+        return u * v, u + v, -slope * v - (slope + opening) * u
 
     return _dressed(
         rng,
@@ -177,7 +206,7 @@ def transversal(rng: np.random.Generator, n: int, units: float, near: bool = Tru
         begin=begin,
         end=2.0,
         crossings=[(float(_graph(a, t)), t) for t in roots],
-        angle=float(min(abs(_slope(a - b, t)) for t in roots)),
+        angle=min(abs(difference(t)[1]) for t in roots),
     )
 
 
@@ -217,5 +246,5 @@ def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
 
     return _dressed(
         rng, n, units, scalar=p, curve=lambda s: (0.0 if straight else k * (s - at), s), crossings=[(0.0, at)],
-        begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)),
+        begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)), angle=min(abs(k), 1.0),
     )

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from crossed import Crossed, apart, arm, pitchfork, transcritical, transversal
+from crossed import Crossed, apart, arm, pairs, pitchfork, transcritical, transversal
 
 import continuation as ct
 from continuation.arrays import Array
@@ -19,6 +19,7 @@ from continuation.arrays import Array
 FAMILIES: dict[str, Callable[..., Crossed]] = {
     "transversal": transversal,
     "apart": apart,
+    "pairs": pairs,
     "pitchfork": pitchfork,
     "arm": arm,
     "transcritical": transcritical,

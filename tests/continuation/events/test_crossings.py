@@ -280,6 +280,42 @@ def test_between_two_crossings_graphs_are_nearer_than_predictions(family, seed, 
     assert campaign.judged(problem, False, preset)[0] == ""
 
 
+@pytest.mark.parametrize(
+    ("family", "seed", "k", "preset"),
+    [
+        ("apart", 912, 168, continuation.DEFAULT),
+        ("pairs", 4004, 163, continuation.DEFAULT),
+        ("pairs", 4004, 163, continuation.CONSERVATIVE),
+    ],
+    ids=lambda value: getattr(value, "name", str(value)),
+)
+def test_two_crossings_within_one_step_that_nothing_announced(family, seed, k, preset):
+    """Half way over the first H' is as it was or farther from singular; the other was out of sight of one vector."""
+    *_, problem = campaign.drawn(family, k + 1, seed)
+    assert campaign.judged(problem, False, preset)[0] == ""
+
+
+@every_preset
+@pytest.mark.parametrize(("first", "gap"), [(-0.37, 0.034), (0.61, 0.034), (0.26, 0.01), (0.965, 0.0094)])
+def test_a_trunk_crossed_twice_within_a_step(first, gap, preset):
+    """y (y - (t - first) (t - first - gap)) = 0 along y = 0: the determinant's sign is the same on both sides."""
+
+    def apart(t):
+        return (t - first) * (t - first - gap)
+
+    path = trace(
+        from_functions(
+            lambda y, t: np.stack([y[0] * (y[0] - apart(t))]),
+            lambda y, t: (np.array([[2.0 * y[0] - apart(t)]]), np.array([-y[0] * (2.0 * (t - first) - gap)])),
+            start=([0.0], -2.0),
+        ),
+        target=2.0,
+        preset=preset,
+    )
+    assert path.status is Status.REACHED_TARGET
+    assert [event.lam for event in branch_points(path)] == pytest.approx([first, first + gap], abs=1e-11)
+
+
 def test_a_graph_is_not_left_where_a_prediction_lands_on_the_other():
     """Behind the crossing at -0.103 the two are nearer than a prediction is to either, which the corrector likes."""
     own, other = np.array([1.8268, -3.0783, 0.9581]), np.array([0.00696, 0.13183, 0.03856])
