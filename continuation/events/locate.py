@@ -17,7 +17,7 @@ from continuation.events import Event, TargetValue
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
-from continuation.point.segment import Segment, hermite
+from continuation.point.segment import CUBIC, Segment, hermite
 from continuation.roots import zero_between
 
 JUMP = 1e-3
@@ -160,7 +160,7 @@ def _dividing(arc: Arc, along: list[float]) -> list[float]:
     either side of a sign change, and the lowest if there is none.
     """
     inside = arc.segment.inside
-    if len(inside) <= 3:
+    if len(inside) <= CUBIC:
         return list(inside)
     wanted = {k for k, (p, q) in enumerate(itertools.pairwise(along)) if p * q < 0.0}
     wanted |= {k + 1 for k in wanted}

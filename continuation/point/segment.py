@@ -38,6 +38,9 @@ class Segment(Protocol):
 
 
 _QUARTERS = (0.25, 0.5, 0.75)
+CUBIC = len(_QUARTERS)
+"""How many samples a cubic has; a series has more."""
+
 _T = np.array(_QUARTERS)
 _BASIS = np.array(
     [

@@ -132,6 +132,14 @@ def test_an_s_bend_where_a_landing_is_looked_at(width, seed):
     assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, turns)
 
 
+@pytest.mark.parametrize("seed", [2027, 2051])
+def test_an_s_bend_near_the_end_of_a_series(seed):
+    """What the series was off is made up for by the power of its order, of which nothing is left at 0.77."""
+    homotopy, turns = bends.bend("curved", 0.001, seed)
+    path = trace(homotopy, preset=SERIES)
+    assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, turns)
+
+
 # -- ends ---------------------------------------------------------------------------------------------------------
 
 POLES = [
