@@ -17,6 +17,7 @@ from continuation.certificate.folds import Piece, Signs, pieces
 from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
+from continuation.certificate.links import Nodes
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
@@ -110,8 +111,8 @@ def certify(path: Path, homotopy: Any) -> Proof:
         return whole
     homotopy, path = whole
     engine, plain = engines(homotopy, path.u)
-    cells, gaps, found = Search(engine, plain, homotopy, path).run()
-    return verified(engine, plain, cells, path, homotopy, gaps, found).of_width(width)
+    cells, gaps, found, ends = Search(engine, plain, homotopy, path).run()
+    return verified(engine, plain, cells, path, homotopy, gaps, (found, ends)).of_width(width)
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
@@ -180,13 +181,14 @@ class Search:
     homotopy: Any
     path: Path
 
-    def run(self) -> tuple[Cells, list[Gap], list[Piece]]:
-        """Proved cells in order, the gaps between them, and the pieces of the cells."""
+    def run(self) -> tuple[Cells, list[Gap], list[Piece], Nodes]:
+        """Proved cells in order, the gaps between them, the pieces of the cells, and the curve at their ends."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
         tail = self._tail(nodes)
         pending = list(pairwise([*nodes[: -1 if tail else None], *tail]))
         done: list[Cells] = []
+        ends: list[Nodes] = []
         told: list[list[Piece]] = []
         gaps: list[Gap] = []
         own = getattr(self.homotopy, "metric", None) is not None
@@ -203,6 +205,7 @@ class Search:
             settled = found.proved.copy()
             settled[settled] = counted
             done.append(proved.take(counted))
+            ends.append(found.ends.take(settled))
             told += by_cell
             failed = [(pair, bool(found.undefined[k])) for k, pair in enumerate(pending) if not settled[k]]
             pending = []
@@ -216,7 +219,7 @@ class Search:
         cells = joined(done)
         order = np.argsort(cells.place[:, 0], kind="stable")
         numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
-        return cells.take(order), gaps, numbered
+        return cells.take(order), gaps, numbered, Nodes.joined(ends).take(order)
 
     def _counted(self, cells: Cells, known: list[Signs], last: bool) -> tuple[Mask, list[list[Piece]]]:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""

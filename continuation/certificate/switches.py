@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from continuation.certificate.cells import Cells, expansion, slabs_of
-from continuation.certificate.engine import Engine, tangent
+from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Turn, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.intervals.calculus import derivatives, with_gradient
@@ -39,7 +39,7 @@ def crossings(engine: Engine, switches: ByIntervals, cells: Cells) -> tuple[list
         image = switches.image(with_gradient(box.lo, box.hi))
         value = image.ends[0]
         sign = np.where(value.lo > 0.0, 1, np.where(value.hi < 0.0, -1, 0))
-        t = tangent(engine.judge(slabs, radius), radius, radius)
+        t = engine.judge(slabs, radius).tangent(radius, radius)
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, m)), Ends(t.lo[..., None], t.hi[..., None]))
         bend = np.where(slope.lo[..., 0] > 0.0, 1, np.where(slope.hi[..., 0] < 0.0, -1, 0))
