@@ -9,7 +9,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.intervals.ends import EPS, Ends, thin
+from continuation.intervals.ends import EPS, Ends, bilinear, thin
 
 Index = NDArray[np.intp]
 
@@ -236,3 +236,21 @@ def expansion(slabs: Slabs) -> Expansion:
 
 def _ends(x: Ends) -> tuple[Array, Array]:
     return x.lo, x.hi
+
+
+def advance(slabs: Slabs) -> Array:
+    """A lower bound of c . p'(s) over each slab, shape (slabs,)."""
+    bound, _ = along(slabs.cells.chart, velocity(slabs))
+    return bound
+
+
+def velocity(slabs: Slabs) -> Ends:
+    """The range of p' over each slab, shape (slabs, N + 1)."""
+    x = slabs.offset[:, None]
+    return expansion(slabs).over(Ends(-x, x))[1]
+
+
+def along(chart: Array, v: Ends) -> tuple[Array, Array]:
+    """The range of c . v, row by row."""
+    product = bilinear(np.matmul, thin(chart[:, None, :]), Ends(v.lo[..., None], v.hi[..., None]))
+    return product.lo[:, 0, 0], product.hi[:, 0, 0]

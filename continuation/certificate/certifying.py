@@ -18,6 +18,7 @@ from continuation.certificate.folds import Piece, Signs, pieces
 from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
+from continuation.certificate.links import Nodes
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
@@ -127,8 +128,8 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engi
     engine, plain = engines(homotopy, path.u)
     if cells is not None:
         return verified(engine, plain, cells, path, homotopy, []), engine
-    found = Search(engine, plain, homotopy, path).run()
-    return verified(engine, plain, found[0], path, homotopy, *found[1:]), engine
+    cells, gaps, found, ends = Search(engine, plain, homotopy, path).run()
+    return verified(engine, plain, cells, path, homotopy, gaps, (found, ends)), engine
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
@@ -196,13 +197,14 @@ class Search:
     homotopy: Any
     path: Path
 
-    def run(self) -> tuple[Cells, list[Gap], list[Piece]]:
-        """Proved cells in order, the gaps between them, and the pieces of the cells."""
+    def run(self) -> tuple[Cells, list[Gap], list[Piece], Nodes]:
+        """Proved cells in order, the gaps between them, the pieces of the cells, and the curve at their ends."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
         tail = self._tail(nodes)
         pending = list(pairwise([*nodes[: -1 if tail else None], *tail]))
         done: list[Cells] = []
+        ends: list[Nodes] = []
         told: list[list[Piece]] = []
         gaps: list[Gap] = []
         own = getattr(self.homotopy, "metric", None) is not None
@@ -219,6 +221,7 @@ class Search:
             settled = found.proved.copy()
             settled[settled] = counted
             done.append(proved.take(counted))
+            ends.append(found.ends.take(settled))
             told += by_cell
             failed = [(pair, bool(found.undefined[k])) for k, pair in enumerate(pending) if not settled[k]]
             pending = []
@@ -232,7 +235,7 @@ class Search:
         cells = joined(done)
         order = np.argsort(cells.place[:, 0], kind="stable")
         numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
-        return cells.take(order), gaps, numbered
+        return cells.take(order), gaps, numbered, Nodes.joined(ends).take(order)
 
     def _counted(self, cells: Cells, known: list[Signs], last: bool) -> tuple[Mask, list[list[Piece]]]:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""

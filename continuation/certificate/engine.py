@@ -19,9 +19,23 @@ class Judged(Protocol):
         """A bound of |Y G(s, p(s))|, shape (slabs, N + 1); nan where there is none."""
         ...
 
-    @property
-    def across(self) -> Ends:
-        """The range of the last column of Y(s) over each slab, shape (slabs, N + 1)."""
+    def tangent(self, radius: Array, tube: Array) -> Ends:
+        """A multiple > 0 of the tangent over each slab, shape (slabs, N + 1); nan where unknown.
+
+        Parameters
+        ----------
+        radius : ndarray, shape (slabs, N + 1)
+            Within which the curve lies.
+        tube : ndarray, shape (slabs, N + 1)
+            Radii with which the test holds, for a norm.
+        """
+        ...
+
+    def closed(self, tube: Array) -> tuple[Array, Ends] | None:
+        """How far the curve in the tube is from the end of the cubic there, and its tangent; nan where that is no end.
+
+        None where the bounds of a slab do not tell it.
+        """
         ...
 
     def applied(self, v: Ends) -> Ends:
@@ -59,6 +73,10 @@ class Engine(Protocol):
         """Slabs of a halved cell to begin with: where its misfit falls with their length, thin tubes tell more."""
         ...
 
+    def together(self, m: int) -> int:
+        """So many slabs with m unknowns are best judged together."""
+        ...
+
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
         ...
@@ -76,20 +94,6 @@ def applied(Y: Array, v: Ends) -> Ends:
     return Ends(image.lo[..., 0], image.hi[..., 0])
 
 
-def tangent(judged: Judged, radius: Array, tube: Array) -> Ends:
-    """The tangent t of the curve, c . t = 1, over each slab, shape (slabs, N + 1); nan where unknown.
-
-    Parameters
-    ----------
-    judged : Judged
-    radius : ndarray, shape (slabs, N + 1)
-        Within which the curve lies.
-    tube : ndarray, shape (slabs, N + 1)
-        Radii with which the test holds, for a norm.
-    """
-    return solved(judged, judged.across, radius, tube)
-
-
 def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
     """The solutions of G' z = b, all over the slab, for v that holds Y(s) b.
 
@@ -101,7 +105,7 @@ def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
     judged : Judged
     v : Ends
     radius, tube : ndarray, shape (slabs, N + 1)
-        As in `tangent`.
+        As in `Judged.tangent`.
     """
     with np.errstate(all="ignore"):
         first = judged.spread(v.magnitude(), radius)

@@ -8,8 +8,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of
-from continuation.certificate.engine import Engine, Judged, solved, tangent
+from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of, velocity
+from continuation.certificate.engine import Engine, Judged, solved
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.intervals.calculus import along_curve
 from continuation.intervals.ends import EPS, Ends, thin
@@ -79,9 +79,12 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Sig
     found: list[Piece] = []
     parts = PARTS[engine.order]
     for depth in range(DEPTH + 1):
-        bend = np.zeros(len(slabs), dtype=np.intp)
+        bend, wide = np.zeros(len(slabs), dtype=np.intp), np.zeros(len(slabs), bool)
         if known and not depth:
             sign, radius = (np.concatenate([getattr(one, name) for one in known]) for name in ("sign", "radius"))
+            # Where the cubic itself does not turn, its tube is too wide: no cut makes it narrower, a shorter cell does.
+            slope = velocity(slabs)[:, -1]
+            wide = (sign == 0) & ((slope.lo > 0.0) | (slope.hi < 0.0))
         else:
             told, judged = _judged_signs(engine, slabs, radius, depth > 0)
             sign, radius = told.sign, told.radius
@@ -90,7 +93,7 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Sig
                 bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
         clear = (sign != 0) | (bend != 0)
         share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
-        keep = clear | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
+        keep = clear | wide | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
         rows = zip(*(x[keep].tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
         found += [Piece(cell, middle - half, middle + half, a, b) for cell, middle, half, a, b in rows]
         if keep.all():
@@ -124,9 +127,12 @@ def signs(judged: Judged, radius: Array, tube: Array) -> Signs:
     tube : ndarray, shape (slabs, N + 1)
         Radii with which the test holds.
     """
-    for _ in range(NARROWER):
-        radius = _narrowed(judged, radius)
-    return Signs(_sign(judged, radius, tube), radius)
+    sign = _sign(judged, radius, tube)
+    if not sign.all():
+        for _ in range(NARROWER):
+            radius = _narrowed(judged, radius)
+        sign = _sign(judged, radius, tube)
+    return Signs(sign, radius)
 
 
 def _judged_signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> tuple[Signs, Judged]:
@@ -148,7 +154,7 @@ def _narrowed(judged: Judged, radius: Array) -> Array:
 
 
 def _sign(judged: Judged, radius: Array, tube: Array) -> Index:
-    t = tangent(judged, radius, tube)
+    t = judged.tangent(radius, tube)
     return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0))
 
 
@@ -159,7 +165,7 @@ def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> I
     -G'^{-1} (H''(t, t), 0).
     """
     tube, x = slabs.cells.radius, slabs.offset[:, None]
-    t = tangent(judged, radius, tube)
+    t = judged.tangent(radius, tube)
     box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
     with np.errstate(all="ignore"):
         image = plain.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).ends

@@ -10,6 +10,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Index
+from continuation.certificate.products import Blocks
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 
 
@@ -66,6 +67,52 @@ class Quadratic:
     plain: Affine
     first: Affine
     second: Affine
+
+    @cached_property
+    def even(self) -> Index:
+        """Rows in which the first factor is the same, as lambda is: a product with those of `second` serves for all."""
+        keys = np.column_stack([self.first.constant, self.first.matrix])
+        _, kind, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+        found: Index = np.flatnonzero(kind.ravel() == int(count.argmax()))
+        return found if len(found) > 1 and self.first.sizes is None and self.first.constant_sizes is None else found[:0]
+
+    @cached_property
+    def _blocks(self) -> tuple[list[Blocks], ...]:
+        """Of `second`, even rows and the others; of `first` and `plain`."""
+        every = np.arange(len(self.plain.matrix))
+        rest, matrix = np.setdiff1d(every, self.even), self.second.matrix
+        kinds = ((matrix, self.even), (matrix, rest), (self.first.matrix, every), (self.plain.matrix, every))
+        return tuple(Blocks.of(*kind) for kind in kinds)
+
+    def times(self, left: Array, a: Array, b: Array, chart: Array, powers: int) -> Array:
+        """Products with the coefficients of G' along cubics, shape (powers, slabs, m, N + 1).
+
+        Parameters
+        ----------
+        left : ndarray, shape (slabs, m, N + 1)
+        a, b : ndarray, shape (slabs, 4, N)
+            Coefficients of `first`, the same for even rows, and of `second`.
+        chart : ndarray, shape (slabs, N + 1)
+            The last row of the coefficient of power 0.
+        powers : int
+            How many coefficients.
+        """
+        even, rest, first, plain = self._blocks
+        out = np.zeros((powers, *left.shape[:2], chart.shape[1]))
+        if len(self.even):
+            for block in even:
+                block.add(out[0], left)
+            shared = out[0].copy()
+            for k in range(powers):
+                np.multiply(shared, a[:, k, self.even[0], None, None], out=out[k])
+        for k in range(powers):
+            for blocks, factor in ((rest, a), (first, b)):
+                for block in blocks:
+                    block.add(out[k], left, factor[:, k])
+        for block in plain:
+            block.add(out[0], left)
+        out[0] += left[:, :, -1:] * chart[:, None, :]
+        return out
 
     @cached_property
     def pivots(self) -> tuple[Index, Index]:

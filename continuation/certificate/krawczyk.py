@@ -19,7 +19,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Index, Slabs, expansion, sizes
-from continuation.certificate.engine import Judged, applied, up_by
+from continuation.certificate.engine import Judged, applied, solved, up_by
 from continuation.certificate.inverse import inverses, times
 from continuation.intervals.array import Interval, UndecidedError, as_interval
 from continuation.intervals.calculus import along_curve, derivatives, with_gradient
@@ -93,6 +93,10 @@ class ByIntervals:
     def probe(self, u: Array) -> None:
         """Run the residual on one point: TypeError, naming the operation, where it cannot be."""
         self.image(with_gradient(u[None], u[None]))
+
+    def together(self, m: int) -> int:
+        """All of them: `judge` parts them itself."""
+        return ENTRIES
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`."""
@@ -218,10 +222,13 @@ class Bounded:
         """Those of some slabs."""
         return Bounded(*(x[index] for x in (self.misfit, self.Y, self.off, self.largest, self.E, self.offset)))
 
-    @property
-    def across(self) -> Ends:
-        """Y(s) = (I - x E) Y_0."""
-        return self._moved(thin(self.Y[:, :, -1]))
+    def tangent(self, radius: Array, tube: Array) -> Ends:
+        """See `Judged.tangent`; c . t = 1."""
+        return solved(self, self._moved(thin(self.Y[:, :, -1])), radius, tube)
+
+    def closed(self, tube: Array) -> None:
+        """They are wider than what a node needs."""
+        return None
 
     def applied(self, v: Ends) -> Ends:
         """Y(s) = (I - x E) Y_0."""
@@ -264,10 +271,16 @@ class Several:
         """Part by part."""
         return self._gathered([part.spread(x[k], radius[k]) for k, part in self.parts])
 
-    @property
-    def across(self) -> Ends:
+    def tangent(self, radius: Array, tube: Array) -> Ends:
         """Part by part."""
-        return self._both([part.across for _, part in self.parts])
+        return self._both([part.tangent(radius[k], tube[k]) for k, part in self.parts])
+
+    def closed(self, tube: Array) -> tuple[Array, Ends] | None:
+        """Part by part."""
+        found = [part.closed(tube[k]) for k, part in self.parts]
+        if any(one is None for one in found):
+            return None
+        return self._gathered([one[0] for one in found]), self._both([one[1] for one in found])
 
     def applied(self, v: Ends) -> Ends:
         """Part by part."""

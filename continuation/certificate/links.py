@@ -8,13 +8,14 @@ charts, the one goes on where the other ends.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node, expansion
-from continuation.certificate.engine import Engine, tangent, up_by
-from continuation.certificate.tubes import along, velocity
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_node, expansion, velocity
+from continuation.certificate.engine import Engine, up_by
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 
 ROUNDS, RADII = 4, 8
@@ -47,9 +48,28 @@ class Nodes:
         """Whether there is a point, cell by cell."""
         return np.asarray(np.isfinite(self.radius).all(axis=1))
 
-    def take(self, index: slice) -> Nodes:
+    def take(self, index: Any) -> Nodes:
         """Some of them."""
         return Nodes(self.radius[index], self.tangent[index])
+
+    def put(self, index: Any, some: Nodes) -> None:
+        """Replace some of them."""
+        self.radius[index] = some.radius
+        self.tangent.lo[index], self.tangent.hi[index] = some.tangent.lo, some.tangent.hi
+
+    @classmethod
+    def unknown(cls, count: int, m: int) -> Nodes:
+        """So many of which nothing is known."""
+        none = np.full((count, m), np.nan)
+        return cls(none, Ends(none.copy(), none.copy()))
+
+    @classmethod
+    def joined(cls, parts: list[Nodes]) -> Nodes:
+        """One after the other."""
+        radius, lo, hi = (
+            np.concatenate(rows) for rows in zip(*((part.radius, part.tangent.lo, part.tangent.hi) for part in parts))
+        )
+        return cls(radius, Ends(lo, hi))
 
 
 def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
@@ -83,7 +103,7 @@ def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
         if done.all():
             break
         largest = np.where(done[:, None], largest, 8.0 * largest)
-    return Nodes(np.where(done[:, None], radius, np.nan), tangent(judged, radius, radius))
+    return Nodes(np.where(done[:, None], radius, np.nan), judged.tangent(radius, radius))
 
 
 def reach(cells: Cells, s: Array, radius: Array) -> Array:

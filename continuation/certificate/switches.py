@@ -6,7 +6,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
-from continuation.certificate.engine import Engine, tangent
+from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.intervals.calculus import derivatives, with_gradient
@@ -43,7 +43,7 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
         box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
         image = switches.image(with_gradient(box.lo, box.hi))
         sign = _signs(image.ends[0])
-        t = tangent(engine.judge(slabs, radius), radius, radius)
+        t = engine.judge(slabs, radius).tangent(radius, radius)
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, m)), Ends(t.lo[..., None], t.hi[..., None]))
         bend = np.where(sign == 0, _signs(Ends(slope.lo[..., 0], slope.hi[..., 0])), 0)

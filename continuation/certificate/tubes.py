@@ -6,10 +6,11 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, expansion, sizes, slabs_of
+from continuation.certificate.cells import Cells, Index, Slabs, advance, joined, sizes, slabs_of
 from continuation.certificate.engine import Engine, Judged
 from continuation.certificate.folds import Signs, signs
-from continuation.intervals.ends import EPS, Ends, Mask, bilinear, thin
+from continuation.certificate.links import Nodes
+from continuation.intervals.ends import EPS, Ends, Mask
 
 FLOOR = 1e-6
 """Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's
@@ -57,24 +58,6 @@ def holds(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
         return np.asarray((total < radius).all(axis=1) & (advance(slabs) > 0.0))
 
 
-def advance(slabs: Slabs) -> Array:
-    """A lower bound of c . p'(s) over each slab, shape (slabs,)."""
-    bound, _ = along(slabs.cells.chart, velocity(slabs))
-    return bound
-
-
-def velocity(slabs: Slabs) -> Ends:
-    """The range of p' over each slab, shape (slabs, N + 1)."""
-    x = slabs.offset[:, None]
-    return expansion(slabs).over(Ends(-x, x))[1]
-
-
-def along(chart: Array, v: Ends) -> tuple[Array, Array]:
-    """The range of c . v, row by row."""
-    product = bilinear(np.matmul, thin(chart[:, None, :]), Ends(v.lo[..., None], v.hi[..., None]))
-    return product.lo[:, 0, 0], product.hi[:, 0, 0]
-
-
 @frozen(eq=False)
 class Found:
     """What came of a search for tubes.
@@ -88,16 +71,19 @@ class Found:
         Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
     signs : list of Signs or None
         Of each proved cell, where the engine's bounds are exact and told them too.
+    ends : Nodes
+        The curve at the end of each cell, where they told that.
     """
 
     cells: Cells
     proved: Mask
     undefined: Mask
     signs: list[Signs | None]
+    ends: Nodes
 
 
 def search(engine: Engine, cells: Cells) -> Found:
-    """Radii and slabs for cells that have none, all of them in one batch a round.
+    """Radii and slabs for cells that have none, many of them in one batch a round.
 
     Parameters
     ----------
@@ -105,7 +91,25 @@ def search(engine: Engine, cells: Cells) -> Found:
     cells : Cells
         With lengths of components that stand still for radii.
     """
+    found = [_search(engine, cells.take(place)) for place in _together(engine, cells)]
+    return Found(
+        joined([one.cells for one in found]),
+        *(np.concatenate([getattr(one, name) for one in found]) for name in ("proved", "undefined")),
+        [signs for one in found for signs in one.signs],
+        Nodes.joined([one.ends for one in found]),
+    )
+
+
+def _together(engine: Engine, cells: Cells) -> list[Index]:
+    """Places of cells to be judged together, by the number of their slabs."""
+    most = engine.together(cells.radius.shape[1])
+    groups = (np.cumsum(cells.slabs) - cells.slabs) // most
+    return np.split(np.arange(len(cells)), np.flatnonzero(np.diff(groups)) + 1)
+
+
+def _search(engine: Engine, cells: Cells) -> Found:
     count, scale = len(cells), sizes(cells, cells.radius)
+    ends = Nodes.unknown(count, scale.shape[1])
     radius = np.zeros_like(scale)
     slabs = cells.slabs.copy()
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
@@ -127,6 +131,7 @@ def search(engine: Engine, cells: Cells) -> Found:
             by_cell = signs(judged, tube, tube).split(parts.owner, len(tried))
             for k in np.flatnonzero(good).tolist():
                 told[pending[k]] = by_cell[k]
+            ends.put(pending[good], _ends(parts, judged, tube).take(good))
         undefined[pending] = ~np.isfinite(off)
         radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
@@ -142,7 +147,14 @@ def search(engine: Engine, cells: Cells) -> Found:
             (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
         )
         pending = pending[~good & (slabs[pending] <= engine.most)]
-    return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, told)
+    return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, told, ends)
+
+
+def _ends(slabs: Slabs, judged: Judged, tube: Array) -> Nodes:
+    """The curve at the end of each cell, which its last slab knows, or nothing."""
+    last = np.flatnonzero(np.append(np.diff(slabs.owner) != 0, True))
+    found = judged.closed(tube)
+    return Nodes.unknown(len(last), tube.shape[1]) if found is None else Nodes(found[0][last], found[1][last])
 
 
 def _fixed_point(
@@ -194,6 +206,29 @@ def check(engine: Engine, cells: Cells) -> Mask:
     -------
     ndarray of bool, shape (cells,)
     """
-    parts = slabs_of(cells)
-    radius = cells.radius[parts.owner]
-    return _every(holds(parts, engine.judge(parts, radius), radius), parts.owner, len(cells))
+    return checked(engine, cells)[0]
+
+
+def checked(engine: Engine, cells: Cells) -> tuple[Mask, Nodes]:
+    """`check`, and the curve at the ends of the cells.
+
+    Parameters
+    ----------
+    engine : Engine
+    cells : Cells
+
+    Returns
+    -------
+    good : ndarray of bool, shape (cells,)
+    ends : Nodes
+        Where the bounds tell it.
+    """
+    good, ends = [], []
+    for place in _together(engine, cells):
+        some = cells.take(place)
+        parts = slabs_of(some)
+        radius = some.radius[parts.owner]
+        judged = engine.judge(parts, radius)
+        good.append(_every(holds(parts, judged, radius), parts.owner, len(some)))
+        ends.append(_ends(parts, judged, radius))
+    return np.concatenate(good), Nodes.joined(ends)

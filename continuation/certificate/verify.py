@@ -9,13 +9,13 @@ import numpy as np
 from attrs import evolve
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, expansion, joined, sizes
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, expansion, joined, sizes
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.tubes import along, check
+from continuation.certificate.tubes import check, checked
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
@@ -42,7 +42,7 @@ def verified(
     path: Path,
     homotopy: Any,
     gaps: list[Gap],
-    found: list[Piece] | None = None,
+    found: tuple[list[Piece], Nodes] | None = None,
 ) -> Proof:
     """The proof that these cells make.
 
@@ -57,18 +57,19 @@ def verified(
     homotopy : Homotopy
     gaps : list of Gap
         Known already.
-    found : list of Piece, optional
-        The pieces of the cells, where their tubes have been tested already.
+    found : tuple of list of Piece and Nodes, optional
+        The pieces of the cells and the curve at their ends, where their tubes have been tested already.
     """
     gaps = list(gaps)
+    known, at = found or (None, Nodes.unknown(*cells.radius.shape))
     if found is None and len(cells):
-        good = check(engine, cells)
+        good, at = checked(engine, cells)
         gaps += [Gap(begin, end, "the tube does not hold") for begin, end in cells.place[~good].tolist()]
-        cells = cells.take(good)
+        cells, at = cells.take(good), at.take(good)
     if not len(cells):
         whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
         return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
-    cells, at, joints, ends = _joined_up(engine, cells)
+    cells, at, joints, ends = _joined_up(engine, cells, at)
     gaps += [
         Gap(float(cells.place[k, 1]), float(cells.place[k + 1, 0]), "two tubes are not linked")
         for k in np.flatnonzero(~joints)
@@ -81,7 +82,7 @@ def verified(
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
     places = [_place(cells, event, path.arclength) for event in path.events]
     places = _on_curve(engine, cells, path.events, places)
-    told = _between_nodes(found or pieces(engine, plain, cells), ends.tangent, at.tangent)
+    told = _between_nodes(known or pieces(engine, plain, cells), ends.tangent, at.tangent)
     turning, more = _turning(cells, told, path, places)
     gaps += more + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
@@ -89,23 +90,29 @@ def verified(
     return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
 
-def _joined_up(engine: Engine, cells: Cells) -> tuple[Cells, Nodes, Mask, Nodes]:
+def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes, Mask, Nodes]:
     """The cells with links between them, some of them widened for that; points of the curve at all nodes.
+
+    Those that are `known`, to have a point in the tube, are not looked for again, unless they do not link.
 
     The last two are those at the start, and at the end with the parameter for a chart.
     """
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
+    ask = ~known.proved
+    at = Nodes(known.radius.copy(), Ends(known.tangent.lo.copy(), known.tangent.hi.copy()))
     for again in (True, False):
         first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
-        s = np.ones(len(cells) + 2)
+        s = np.ones(ask.sum() + 2)
         s[-2] = 0.0
-        every = nodes(engine, joined([cells, first, last]), s)
-        at, ends = every.take(slice(0, -2)), every.take(slice(-2, None))
+        every = nodes(engine, joined([cells.take(ask), first, last]), s)
+        at.put(ask, every.take(slice(0, -2)))
+        ends = every.take(slice(-2, None))
         left, right = cells.take(slice(None, -1)), cells.take(slice(1, None))
         joints = linked(left, at.take(slice(0, -1)), right)
         if joints.all() or not again:
             break
+        ask = np.append(~joints, False) | ~at.proved
         wanted = np.maximum(cells.radius, np.where(np.isfinite(at.radius), WIDER * at.radius, 0.0))
         needed = reach(right, np.zeros(len(right)), at.radius[:-1])
         wanted[1:] = np.maximum(wanted[1:], np.where(np.isfinite(needed), WIDER * needed, 0.0))

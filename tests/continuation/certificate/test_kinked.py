@@ -137,6 +137,6 @@ def test_small_pivots_are_not_trusted():
     matrices[:, :2, :2] = np.eye(2) * [[[1.0]], [[1e-15]]]
     radius = np.ones((2, 6))
     pairs = np.arange(2), np.arange(2)
-    Y, off = inverted(matrices, *pairs, radius)
+    Y, off, _ = inverted(matrices, *pairs, radius)
     np.testing.assert_allclose(Y, np.linalg.inv(matrices), rtol=1e-9)
     assert (off < 1e-9).all()

@@ -1,0 +1,104 @@
+"""A quadratic homotopy and its derivative along a cubic: polynomials of degree 6 and 3 in the offset from the middle."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.certificate.engine import up_by
+from continuation.certificate.form import ROUNDED, Affine, Quadratic
+from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin, up_sum
+
+
+def _apply(part: Affine, q: Ends) -> Ends:
+    """The part along a cubic, shape (slabs, 4, N) for coefficients of shape (slabs, 4, N + 1)."""
+    middle, count = q.middle(), q.shape[-1] + 4
+    size = np.abs(middle)
+    # The matrix is off by its errors, q by its radius; products are rounded.
+    room = np.matmul(q.radius(middle) + accumulated(count) * size, part.size.T)
+    if part.sizes is not None:
+        room = room + np.matmul(size + q.radius(middle), part.error.T)
+    room, centre = up_by(room, 2 * count), np.matmul(middle, part.matrix.T)
+    image = Ends(-up_sum(room - centre), up_sum(centre + room))
+    value = image[:, 0] + part.constant_ends
+    image.lo[:, 0], image.hi[:, 0] = value.lo, value.hi
+    return image
+
+
+_SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
+"""Which products of coefficients belong to which power."""
+
+
+def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
+    """Of H along the cubic: shape (slabs, N, 7)."""
+    products = alpha[:, :, None] * beta[:, None, :]
+    count, n = alpha.shape[0], alpha.shape[2]
+    flat = Ends(*(x.reshape(count, 16, n) for x in (products.lo, products.hi)))
+    total = bilinear(lambda a, b: np.matmul(b.transpose(0, 2, 1), a.T), thin(_SUMS), flat)
+    lower, upper = (np.zeros((count, n, 7)) for _ in range(2))
+    lower[..., :4], upper[..., :4] = value.lo.transpose(0, 2, 1), value.hi.transpose(0, 2, 1)
+    return total + Ends(lower, upper)
+
+
+def at_points(form: Quadratic, u: Array) -> Ends:
+    """H at points, shape (slabs, N)."""
+    alpha, beta, value = (_apply(part, thin(u[:, None])) for part in (form.first, form.second, form.plain))
+    return (value + alpha * beta)[:, 0]
+
+
+@frozen(eq=False)
+class Derivative:
+    """H' along the cubic: coefficient k is plain (k = 0) + diag(alpha_k) second + diag(beta_k) first.
+
+    Attributes
+    ----------
+    form : Quadratic
+    residual : Ends, shape (slabs, N, 7)
+        The coefficients of H along the cubic.
+    a, b : ndarray, shape (slabs, 4, N)
+        About alpha and beta.
+    ra, rb : ndarray
+        How far those may be off.
+    """
+
+    form: Quadratic
+    residual: Ends
+    a: Array
+    b: Array
+    ra: Array
+    rb: Array
+
+    @classmethod
+    def of(cls, form: Quadratic, cubic: Ends) -> Derivative:
+        """By middle and radius, from the coefficients of the cubic, shape (slabs, 4, N + 1)."""
+        alpha, beta, value = (_apply(part, cubic) for part in (form.first, form.second, form.plain))
+        a, b = alpha.middle(), beta.middle()
+        # The same number where it is the same function, however a product rounds it.
+        a[..., form.even] = a[..., form.even[:1]]
+        return cls(form, _coefficients(value, alpha, beta), a, b, alpha.radius(a), beta.radius(b))
+
+    def matrix(self, k: int) -> Array:
+        """Coefficient k in floats, shape (slabs, N, N + 1)."""
+        form, a, b = self.form, self.a[:, k, :, None], self.b[:, k, :, None]
+        out: Array = a * form.second.matrix + b * form.first.matrix
+        return out + form.plain.matrix if k == 0 else out
+
+    def image(self, x: Array) -> tuple[Array, Array]:
+        """Bounds of |exact| x, and of |exact - matrix| x, for all coefficients; shape (slabs, 4, N)."""
+        form, count = self.form, 2 * x.shape[1]
+        by_second, by_first = (np.matmul(x, part.size.T)[:, None] for part in (form.second, form.first))
+        error = self.ra * by_second + self.rb * by_first
+        size = np.abs(self.a) * by_second + np.abs(self.b) * by_first + error
+        for part, factor in ((form.second, self.a), (form.first, self.b)):
+            if part.sizes is not None:
+                error = error + np.abs(factor) * np.matmul(x, part.error.T)[:, None]
+        size[:, 0] += np.matmul(x, form.plain.size.T)
+        error[:, 0] += np.matmul(x, form.plain.error.T)
+        return up_by(size, count), up_by(error + 4.0 * EPS * size, count)
+
+    def products(self, x: Array, radius: Array) -> Array:
+        """A bound of |2 Q(d, x)| for |d| <= radius."""
+        first, second = self.form.first.size.T, self.form.second.size.T
+        crossed = np.matmul(radius, first) * np.matmul(x, second) + np.matmul(x, first) * np.matmul(radius, second)
+        return up_by(crossed * (1.0 + ROUNDED) ** 2, 2 * x.shape[1])

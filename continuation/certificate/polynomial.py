@@ -1,0 +1,335 @@
+"""Krawczyk's test for quadratic homotopies: what is left of I - Y(s) G', as a polynomial in the offset from the middle.
+
+The preconditioner is Y(s) = (I - x E + x^2 C) Y_0, x = s - middle. Everything is in units d of the unknowns, powers of
+two near the radii. Y_0 and its product with G' are in double precision. E, C and what is left of the test need two
+digits: they are in single precision, which costs half, and whose rounding is bounded as that of any other products.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from math import comb
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from continuation.certificate.cells import Slabs, velocity
+from continuation.certificate.derivative import Derivative, at_points
+from continuation.certificate.engine import up_by
+from continuation.certificate.inverse import inverted, times
+from continuation.intervals.ends import EPS, Ends, accumulated, thin, up_sum
+
+Single = NDArray[np.float32]
+
+UNIT = 2.0**-24
+"""Relative error of one operation in single precision."""
+
+LOST = 2.0**-126
+"""What underflow costs one operation there, also where such numbers are flushed to zero."""
+
+SHARE = 1e-3
+"""Rounding is bounded once, for a vector in the shape of the misfit and with this share of its largest component."""
+
+LEAST, SPARE = 1e-9, 2.0
+"""At a node: the least box, of the tube's; and how much wider than its contraction asks for."""
+
+TERMS = 6
+"""Of the series for the tangent: what is left of it is bounded in the shape of the tube, which is not its own."""
+
+
+def rounded(count: int) -> float:
+    """`accumulated` in single precision: gamma_n of Higham, Section 3.1, with eight more operations."""
+    whole = (count + 8) * UNIT
+    return whole / (1.0 - whole) * (1.0 + 8.0 * EPS) if whole < 0.5 else np.inf
+
+
+def image_of(matrix: Single, x: Array) -> Array:
+    """A bound of matrices >= 0 times vectors >= 0, slab by slab."""
+    m = x.shape[1]
+    unit = x.max(axis=1, keepdims=True)
+    unit = np.where(unit == 0.0, 1.0, unit)
+    # What is clamped does not underflow on its way to single precision.
+    scaled = np.maximum(x / unit, 2.0**-60).astype(np.float32)
+    image: Array = np.matmul(matrix, scaled[..., None])[..., 0].astype(float)
+    return (image * (1.0 + 4.0 * rounded(m)) + 2.0 * m * LOST) * unit * (1.0 + 4.0 * EPS)
+
+
+@frozen(eq=False)
+class Ball:
+    """Intervals by middle and radius, shape (slabs, any, any)."""
+
+    middle: Array
+    radius: Array
+
+    @classmethod
+    def of(cls, v: Ends) -> Ball:
+        """Those of these ends."""
+        middle = v.middle()
+        return cls(middle, v.radius(middle))
+
+    def through(self, matrix: Array, size: Array | None = None) -> Ball:
+        """Matrices times them; `size` are the absolute values of the entries, where they are known already."""
+        count = matrix.shape[-1] + 4
+        room = self.radius + accumulated(count) * np.abs(self.middle)
+        return Ball(np.matmul(matrix, self.middle), up_by(np.matmul(np.abs(matrix) if size is None else size, room), count))
+
+    @property
+    def size(self) -> Array:
+        """The largest absolute value."""
+        return (np.abs(self.middle) + self.radius) * (1.0 + 4.0 * EPS)
+
+    @property
+    def ends(self) -> Ends:
+        """As ends."""
+        return Ends(-up_sum(self.radius - self.middle), up_sum(self.middle + self.radius))
+
+    @property
+    def derivative(self) -> Ball:
+        """Of polynomials of degree 6."""
+        count = np.arange(1.0, 7.0)
+        middle, radius = self.middle[..., 1:] * count, self.size[..., 1:] * (8.0 * EPS * count)
+        radius = up_by(radius + self.radius[..., 1:] * count, 4)
+        return Ball(*(np.pad(x, ((0, 0), (0, 0), (0, 1))) for x in (middle, radius)))
+
+
+PARTS = 8
+"""Into so many parts a slab is cut for the range of H along the cubic: it all but vanishes at both ends of a cell, so
+that the sum of its coefficients' sizes is several times as much."""
+
+
+def _shifts() -> Array:
+    """For polynomials of degree 8 on [-1, 1], their coefficients on each part; exact, (9, PARTS * 9)."""
+    out = np.zeros((9, PARTS, 9))
+    for part in range(PARTS):
+        middle = (2 * part + 1) / PARTS - 1.0
+        for k in range(9):
+            out[k, part, : k + 1] = [comb(k, i) * middle ** (k - i) / PARTS**i for i in range(k + 1)]
+    return out.reshape(9, -1)
+
+
+_SHIFTS = _shifts()
+
+
+def _largest(image: Ball, by_E: Ball, by_C: Ball, offset: Array) -> Array:
+    """A bound of |v - x E v + x^2 C v| for |x| <= offset, of polynomials v, E v and C v, part by part."""
+    middle, room = (np.zeros((*image.middle.shape[:2], 9)) for _ in range(2))
+    for power, sign, v in ((0, 1.0, image), (1, -1.0, by_E), (2, 1.0, by_C)):
+        middle[..., power : power + 7] += sign * v.middle
+        room[..., power : power + 7] += v.radius + 64.0 * EPS * np.abs(v.middle)
+    powers = offset[:, :, None] ** np.arange(9.0)
+    parts = np.abs(np.matmul(middle * powers, _SHIFTS)).reshape(*middle.shape[:2], PARTS, 9)
+    # Rounding of a part is within that of the sizes: |middle of it| + 1 / PARTS is at most 1.
+    return up_by(parts.sum(axis=-1).max(axis=-1) + (room * powers).sum(axis=-1), 64)
+
+
+@frozen(eq=False, slots=False)
+class Polynomial:
+    """The bounds for slabs.
+
+    Attributes
+    ----------
+    slabs : Slabs
+    derivative : Derivative
+    d : ndarray, shape (slabs, m)
+        The units.
+    Y, off : ndarray
+        Y_0, and |I - Y_0 G_0|.
+    E, C : ndarray
+        Of the preconditioner; None for slabs of no length.
+    left : ndarray
+        What Y(s) G' has of third order, and |F| and |H|, E, F and H being Y_0 times the coefficients of G'; stacked.
+    """
+
+    slabs: Slabs
+    derivative: Derivative
+    d: Array
+    Y: Array
+    off: Array
+    E: Single | None = None
+    C: Single | None = None
+    left: Single | None = None
+
+    @classmethod
+    def of(cls, slabs: Slabs, derivative: Derivative, radius: Array) -> Polynomial:
+        """With radii of the order of those that are wanted."""
+        d = np.exp2(np.round(np.log2(radius)))
+        chart, form = slabs.cells.chart, derivative.form
+        G0 = np.concatenate([derivative.matrix(0), chart[:, None, :]], axis=1) * d[:, None, :]
+        moving = bool(slabs.offset.any())
+
+        def product(Y: Array, place: Any) -> Array:
+            found = form.times(Y, derivative.a[place], derivative.b[place], chart[place], 4 if moving else 1)
+            found *= d[place][:, None, :]
+            return found
+
+        Y, off, found = inverted(G0, *form.pivots, radius / d, product)
+        if not moving:
+            return cls(slabs, derivative, d, Y, off)
+        E, F, H = found.astype(np.float32)
+        C = np.matmul(E, E) - F
+        third = np.matmul(E, F) - np.matmul(C, E) - H
+        return cls(slabs, derivative, d, Y, off, E, C, np.abs(np.concatenate([third, F, H], axis=1)))
+
+    @cached_property
+    def size_Y(self) -> Array:
+        """|Y_0| without its last column."""
+        return np.abs(self.Y[:, :, :-1])
+
+    @cached_property
+    def sizes(self) -> Single:
+        """|E| and |C|, side by side."""
+        assert self.E is not None and self.C is not None
+        return np.abs(np.concatenate([self.E, self.C], axis=2))
+
+    @cached_property
+    def _along(self) -> tuple[Array, Array]:
+        """Bounds of |Y H(p)| and of |Y (H(p))'|, H(p(s)) all but zero."""
+        image = Ball.of(self.derivative.residual).through(self.Y[:, :, :-1], self.size_Y)
+        if self.E is None or self.C is None:
+            return self.d * image.size[..., 0], self.d * image.size[..., 1]
+        both = [image, *(image.through(matrix.astype(float)) for matrix in (self.E, self.C))]
+        t = self.slabs.offset[:, None]
+        return self.d * _largest(*both, t), self.d * _largest(*(v.derivative for v in both), t)
+
+    @property
+    def misfit(self) -> Array:
+        """|Y(s) H(p(s))|."""
+        return self._along[0]
+
+    def applied(self, v: Ends) -> Ends:
+        """Y(s) = (I - x E + x^2 C) Y_0."""
+        t = self.slabs.offset[:, None]
+        return self._moved(Ends(-t, t), Ends(np.zeros_like(t), t * t * (1.0 + 4.0 * EPS)), self.Y, v)
+
+    def _moved(self, x: Ends, square: Ends, Y: Array, v: Ends) -> Ends:
+        image = Ball.of(v[..., None]).through(Y)
+        total = image.ends[..., 0]
+        if self.E is not None and self.C is not None:
+            by_E, by_C = (image.through(matrix.astype(float)).ends[..., 0] for matrix in (self.E, self.C))
+            total = total - x * by_E + square * by_C
+        return total * thin(self.d)
+
+    @cached_property
+    def _errors(self) -> tuple[Array, Array]:
+        """A vector x, and a bound of what rounding and Y_0 G_0 leave of |I - Y G'| x; both in the units.
+
+        With B_k = Y_0 G_k, of which I, E, F and H are off by e_k, and C by e_C off E E - F, that is
+        e_0 + t (e_1 + E e_0) + t^2 (e_2 + E e_1 + C e_0 + e_C) + t^3 (...) and so on.
+        """
+        with np.errstate(all="ignore"):
+            misfit = self.misfit / self.d
+            x = misfit + SHARE * misfit.max(axis=1, keepdims=True)
+            x = np.where(x == 0.0, 1.0, x)
+            m, t, real = x.shape[1], self.slabs.offset[:, None], x * self.d
+            gamma = accumulated(m + 16)
+            sizes, errors = self.derivative.image(real)
+            vectors = np.concatenate([gamma * sizes + errors], axis=1).transpose(0, 2, 1)
+            e = list(up_by(np.matmul(self.size_Y, vectors), m).transpose(2, 0, 1))
+            along = up_by((np.abs(self.slabs.cells.chart) * real).sum(axis=1, keepdims=True), m)
+            e[0] = up_by(times(self.off, x), m) + gamma * (np.abs(self.Y[:, :, -1]) * along + x) + e[0]
+            if self.E is None or self.C is None or self.left is None:
+                return x, up_by(e[0], 16)
+            lost = 4.0 * m * m * LOST * x.max(axis=1, keepdims=True)
+            third, by_F, by_H = np.split(image_of(self.left, x), 3, axis=1)
+            by_E, by_C = (image_of(np.abs(matrix), x) for matrix in (self.E, self.C))
+            for k, size in ((1, by_E), (2, by_F), (3, by_H)):
+                e[k] = e[k] + 2.0 * UNIT * size + lost
+            g = rounded(m) + 4.0 * UNIT
+            e[2] = e[2] + 2.0 * UNIT * by_C + lost
+            plain = e[0] + t * e[1] + t**2 * e[2] + t**3 * (e[3] + g * by_H + 2.0 * UNIT * third + 4.0 * lost)
+            total = t * e[0] + t**2 * e[1] + t**3 * e[2] + t**4 * e[3]
+            through_E = total + t**2 * g * by_E + t**3 * g * by_F
+            through_C = t * total + t**3 * g * by_E
+            return x, up_by(plain + image_of(self.sizes, np.concatenate([through_E, through_C], axis=1)), 64)
+
+    def _pushed(self, defect: Array, x: Array | None = None) -> Array:
+        """A bound of |Y(s)| defect, in the units, and of what terms of third and higher order make of x >= 0."""
+        size = up_by(times(self.size_Y, defect), defect.shape[1])
+        if self.E is None or self.left is None:
+            return size
+        t = self.slabs.offset[:, None]
+        through_E, through_C, third = t * size, t**2 * size, np.zeros(1)
+        if x is not None:
+            third, by_F, by_H = np.split(image_of(self.left, x), 3, axis=1)
+            through_E, through_C = through_E + t**4 * by_H, through_C + t**4 * by_F + t**5 * by_H
+        both = image_of(self.sizes, np.concatenate([through_E, through_C], axis=1))
+        return up_by(size + t**3 * third + both, 32)
+
+    def spread(self, x: Array, radius: Array) -> Array:
+        """See `Judged.spread`.
+
+        The terms are those of I - (I - x E + x^2 C) Y_0 (G_0 + x G_1 + x^2 G_2 + x^3 G_3) and of Y(s) 2 Q(d, .), where
+        C is about E E - F, and E F - C E - H is left of third order.
+        """
+        with np.errstate(all="ignore"):
+            unit, errors = self._errors
+            scaled = x / self.d
+            share = (scaled / unit).max(axis=1, keepdims=True)
+            found = self._pushed(self.derivative.products(x, radius), scaled) + share * errors
+            return up_by(self.d * found, 16)
+
+    def _turned(self, radius: Array) -> Array:
+        """A bound of |Y(s) 2 Q(d, p'(s))| for |d| <= radius, in the units.
+
+        2 Q(p', .) is the derivative of G' along the cubic, G_1 + 2 x G_2 + 3 x^2 G_3, and Y(s) times it
+        E + x (F - C) + x^2 (2 H - E F - (E F - C E - H)) + x^3 (2 C F - 3 E H) + 3 x^4 C H, with at most 3 / t times
+        the errors that x times it has in I - Y(s) G'.
+        """
+        if self.E is None or self.left is None:
+            return self._pushed(self.derivative.products(self._velocity.magnitude(), radius))
+        unit, errors = self._errors
+        t, r = self.slabs.offset[:, None], radius / self.d
+        third, by_F, by_H = np.split(image_of(self.left, r), 3, axis=1)
+        through_E = r + t**2 * by_F + 3.0 * t**3 * by_H
+        through_C = t * r + 2.0 * t**3 * by_F + 3.0 * t**4 * by_H
+        both = image_of(self.sizes, np.concatenate([through_E, through_C], axis=1))
+        share = (r / unit).max(axis=1, keepdims=True)
+        return up_by(both + t * by_F + t**2 * (third + 2.0 * by_H) + 3.0 / t * share * errors, 64)
+
+    def _drift(self, radius: Array, tube: Array, terms: int) -> Array:
+        """A bound of |u'(s) - p'(s)|, the curve u(s) being within `radius` of p(s).
+
+        H'(u) u' = 0 and c . (u' - p') = 0, so that u' - p' = -G'^{-1} (H'(u) p', 0), and H'(u) p' is (H(p))' and
+        2 Q(u - p, p'). With E = I - Y G' and E r <= kappa r, (I - E)^{-1} v is at most the sum of the first E^k v and,
+        where the next is at most theta r, theta / (1 - kappa) r.
+        """
+        with np.errstate(all="ignore"):
+            v = self._along[1] + self.d * self._turned(radius)
+            kappa = (self.spread(tube, radius) / tube).max(axis=1, keepdims=True) * (1.0 + 4.0 * EPS)
+            total = np.zeros_like(v)
+            for _ in range(terms):
+                total, v = total + v, self.spread(v, radius)
+            theta = (v / tube).max(axis=1, keepdims=True)
+            return up_by(total + np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * tube, 4 * terms + 16)
+
+    @cached_property
+    def _velocity(self) -> Ends:
+        return velocity(self.slabs)
+
+    def tangent(self, radius: Array, tube: Array) -> Ends:
+        """See `Judged.tangent`: u'(s)."""
+        room = self._drift(radius, tube, TERMS)
+        return self._velocity + Ends(-room, room)
+
+    def closed(self, tube: Array) -> tuple[Array, Ends]:
+        """See `Judged.closed`.
+
+        As |I - Y G'| r <= kappa r for the tube's r, it is for q r, q < 1, as well; the test holds for some of them.
+        """
+        cells, one = self.slabs.cells, np.ones((len(self.slabs), 1))
+        with np.errstate(all="ignore"):
+            x = thin(one) - thin(self.slabs.middle[:, None])
+            known = (x.hi <= self.slabs.offset[:, None]) & (x.lo >= 0.0)
+            residual = at_points(self.derivative.form, cells.end)
+            misfit = self._moved(x, x * x, self.Y[:, :, :-1], residual).magnitude()
+            kappa = (self.spread(tube, tube) / tube).max(axis=1, keepdims=True)
+            least = (misfit / tube).max(axis=1, keepdims=True)
+            part = np.maximum(SPARE * least / (1.0 - kappa), LEAST) * (1.0 + 16.0 * EPS)
+            good = known & (kappa < 1.0 - 16.0 * EPS) & (part < 1.0)
+            radius = np.where(good, part * tube, np.nan)
+            radius = np.fmin(radius, up_by(misfit + self.spread(radius, radius), 2))
+            room = self._drift(radius, tube, 0)
+            return radius, thin(cells.slope_end) + Ends(-room, room)
