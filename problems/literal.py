@@ -31,16 +31,10 @@ example 7, and a false end is off by 0.1 or more (example 1)."""
 class LiteralSettings:
     """Step 0: the numbers of the algorithm.
 
-    Attributes
-    ----------
-    l0 : float
-        The step is a = l0^l, with l = 0 at the start of every iteration; in (0, 1).
-    eps1, eps2, eps3 : float
-        Stop at lambda <= eps1; Step 4 compares lambda and its change with eps2; Step 3 shortens a down to eps3.
-    a0 : float
-        Step 2 shortens a down to a0. The paper gives no value; at 1e-6 it ends earlier on seven of the ten examples,
-        by Step 4 and at a negative lambda.
-    max_iterations : int
+    `l0`: The step is a = l0^l, with l = 0 at the start of every iteration; in (0, 1). `eps1`, `eps2`, `eps3`: Stop at
+    lambda <= eps1; Step 4 compares lambda and its change with eps2; Step 3 shortens a down to eps3. `a0`: Step 2
+    shortens a down to a0. The paper gives no value; at 1e-6 it ends earlier on seven of the ten examples, by Step 4 and
+    at a negative lambda.
     """
 
     l0: float = field(default=0.5, validator=FRACTION)
@@ -58,15 +52,8 @@ DEFAULT = LiteralSettings()
 class LiteralRun:
     """What the paper's algorithm did.
 
-    Attributes
-    ----------
-    u : Array of shape (iterations + 1, 3 n + 1)
-        Every accepted point (x, z1, z2, lambda), the start first.
-    ended_by : str
-        The step that ended it, in words.
-    claims_solution : bool
-        Whether that step says "stop with the solution".
-    problem : LCP
+    `u`, of shape (iterations + 1, 3 n + 1): Every accepted point (x, z1, z2, lambda), the start first. `ended_by`: The
+    step that ended it, in words. `claims_solution`: Whether that step says "stop with the solution".
     """
 
     u: Array
@@ -105,20 +92,9 @@ def run_literally(
 ) -> LiteralRun:
     """Run Steps 0-5 on the KKT homotopy from a strictly feasible start.
 
-    Parameters
-    ----------
-    problem : LCP
-        Small: the full system of 3 n unknowns is solved densely.
-    x0 : array_like, shape (n,)
-        x0 > 0 with A x0 + q > 0, which the algorithm presupposes.
-    z1, z2 : array_like, shape (n,), optional
-        Ones by default.
-    settings : LiteralSettings
-
-    Raises
-    ------
-    ValueError
-        If a vector is not positive or of the wrong length, or if x0 is not strictly feasible.
+    `problem`: Small: the full system of 3 n unknowns is solved densely. `x0`, of shape (n,): x0 > 0 with A x0 + q > 0,
+    which the algorithm presupposes. `z1`, `z2`, of shape (n,): Ones by default. Raises `ValueError` if a vector is not
+    positive or of the wrong length, or if x0 is not strictly feasible.
 
     References
     ----------

@@ -30,14 +30,7 @@ from continuation.archive.files import FAULTS, PATIENCE, open_for_reading
 from continuation.archive.locks import is_held
 from continuation.archive.problem import GROUP as PROBLEM
 from continuation.archive.problem import read_problem
-from continuation.archive.schema import (
-    EVENT_NAME,
-    KINK_COLUMNS,
-    ORIGIN_COLUMNS,
-    TANGENT_COLUMNS,
-    Column,
-    Layout,
-)
+from continuation.archive.schema import EVENT_NAME, KINK_COLUMNS, ORIGIN_COLUMNS, TANGENT_COLUMNS, Column, Layout
 from continuation.archive.structure import RESUME, SLOTS
 
 Array = np.ndarray[Any, Any]

@@ -19,16 +19,7 @@ from h5py import h5s
 
 from continuation.archive.atomic import short
 from continuation.archive.checkpoint import HEAD
-from continuation.archive.checks import (
-    GROUP,
-    PLACES,
-    RECORD_BYTES,
-    RECORDS,
-    Committed,
-    digest,
-    of_attributes,
-    seal,
-)
+from continuation.archive.checks import GROUP, PLACES, RECORD_BYTES, RECORDS, Committed, digest, of_attributes, seal
 from continuation.archive.errors import ArchiveError
 from continuation.archive.image import HEAD_BYTES, Sink, stated_length, to_nowhere
 from continuation.archive.locks import Lock

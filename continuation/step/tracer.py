@@ -32,14 +32,7 @@ from continuation.step.capabilities import checked_end, finish_of, max_step_of
 from continuation.step.options import Options, check_run, checked, documented
 from continuation.step.record import StepRecorder, observing
 from continuation.step.settings import complete_settings
-from continuation.step.start import (
-    StartError,
-    first_point,
-    guessed,
-    is_guess,
-    point_and_direction,
-    point_from_tangent,
-)
+from continuation.step.start import StartError, first_point, guessed, is_guess, point_and_direction, point_from_tangent
 from continuation.step.state import State
 from continuation.step.verdict import (
     INTERRUPTED,

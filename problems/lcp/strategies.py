@@ -10,17 +10,7 @@ from hypothesis import strategies as st
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
-from problems.lcp.matrix_strategies import (
-    CLASSES,
-    ORDERS,
-    POSITIVE,
-    Draw,
-    Entries,
-    Order,
-    matrices,
-    orders_of,
-    square,
-)
+from problems.lcp.matrix_strategies import CLASSES, ORDERS, POSITIVE, Draw, Entries, Order, matrices, orders_of, square
 
 __all__ = [
     "CLASSES",

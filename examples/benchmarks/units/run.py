@@ -17,15 +17,7 @@ import numpy as np
 from attrs import frozen
 
 import continuation
-from problems.bifurcation import (
-    Aircraft,
-    Bratu1D,
-    Bratu2D,
-    Circle,
-    Cusp,
-    ExponentialCosine,
-    FreudensteinRoth,
-)
+from problems.bifurcation import Aircraft, Bratu1D, Bratu2D, Circle, Cusp, ExponentialCosine, FreudensteinRoth
 from problems.nonlinear import brown, fixed_point
 
 sys.path.insert(0, str(File(__file__).parent))

@@ -27,22 +27,10 @@ LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
 class Registered:
     """One homotopy.
 
-    Attributes
-    ----------
-    name : str
-        For arguments and the command line.
-    title : str
-        For tables.
-    sentence : str
-        What it is and where it starts; a first line of help.
-    make : callable
-        (problem, x0 or None, structure=...) to the homotopy.
-    feasible : bool
-        Whether its own start must be strictly feasible, so that it has to be found by a linear program.
-    example : int
-        One of the paper's examples that it solves.
-    bounds : bool
-        Whether it takes problems with bounds other than 0 and infinity.
+    `name`: For arguments and the command line. `title`: For tables. `sentence`: What it is and where it starts; a first
+    line of help. `make`: (problem, x0 or None, structure=...) to the homotopy. `feasible`: Whether its own start must
+    be strictly feasible, so that it has to be found by a linear program. `example`: One of the paper's examples that it
+    solves. `bounds`: Whether it takes problems with bounds other than 0 and infinity.
     """
 
     name: str

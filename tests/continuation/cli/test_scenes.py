@@ -6,19 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, main
-
-
-@pytest.fixture
-def run(capsys):
-    """main(argv) -> (status, stdout, stderr)."""
-
-    def call(*argv):
-        status = main([str(argument) for argument in argv])
-        captured = capsys.readouterr()
-        return status, captured.out, captured.err
-
-    return call
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
 
 
 def test_a_scene_by_its_name(run, tmp_path):
