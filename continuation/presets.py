@@ -23,7 +23,7 @@ class Preset:
 FAST = Preset(
     "FAST",
     "steps that aim at a turn of 26 degrees and one factorisation for several increments; for smooth paths: an S-bend "
-    "of a few thousandths of the path may lie inside a step (9 of 120 did)",
+    "of a few thousandths of the path may lie inside a step (28 of 600 did)",
     Hermite(),
     BorderedNewton(reuse=0.5),
     AllgowerGeorg(contraction=0.5, distance=0.2, angle=0.45, deceleration=2.0),

@@ -273,3 +273,16 @@ def test_bad_arguments_are_named(matrix, column, row, error, words):
 def test_bad_structures_are_refused(make, error, words):
     with pytest.raises(error, match=words):
         make()
+
+
+@pytest.mark.parametrize("seed", [230, 2574])
+def test_a_tangent_whose_units_differ_by_sixteen_decades(seed):
+    """What is round-off in units of the problem is the largest entry of its row here: LU left an error of 0.8 %."""
+    r, n = np.random.default_rng(seed), 3
+    matrix, column = np.eye(n) - 1e-13 * (1.0 - np.eye(n)), np.array([1.0, 11.0, 11.0])
+    matrix[0, 1:] = 0.0
+    units, scales = (10.0 ** r.uniform(-8.0, 8.0, n) for _ in range(2))
+    unit = 10.0 ** r.uniform(-8.0, 8.0)
+    kernel = np.append(-column * units, unit)
+    system = factor_bordered(scales[:, None] * matrix / units, scales * column / unit, 0.25 / kernel)
+    np.testing.assert_allclose(system.solve(np.zeros(n), 1.0), kernel, rtol=1e-11)
