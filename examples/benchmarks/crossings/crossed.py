@@ -154,9 +154,10 @@ def transversal(rng: np.random.Generator, n: int, units: float, near: bool = Tru
         b = a + rng.normal(0.0, 1.0, 3) * (10.0 ** rng.uniform(-2.0, 0.0) if near else 1.0)
         begin = float(-2.0 + rng.uniform(-0.3, 0.3))
         roots, size = _roots(a - b, np.linspace(begin, 2.0, 4002)), np.abs(a - b).max()
-        # Crossings that touch, or lie at the ends, are not simple or not on the way.
+        # Crossings that touch, or lie at the ends, are not simple or not on the way. All cross at 0: where the table
+        # shows no change of sign there, a second one is next to it.
         if (
-            roots
+            any(abs(t) < 1e-9 for t in roots)
             and all(abs(_slope(a - b, t)) > 0.05 * size for t in roots)
             and min(abs(_graph(a - b, begin)), abs(_graph(a - b, 2.0))) > 1e-2 * size
             and all(begin < t < 2.0 for t in roots)
