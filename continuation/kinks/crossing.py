@@ -87,7 +87,7 @@ def cross(
         here = linearize(solver.evaluator, point.u, point.weights, point.border)
         corner = Corner(pieces, solver.evaluator, here, signs, beta)
         back = -here.tangent[None]
-        found = [ray for ray in rays_at(corner) if norm(here.weights, ray.v - back[0]) > SAME_RAY]
+        found = [ray for ray in rays_at(corner, come=True) if norm(here.weights, ray.v - back[0]) > SAME_RAY]
         leaving = [_linearized(corner, ray) for ray in found]
     except UnresolvedError as error:
         return Crossing(point, beta, back, reason=str(error))

@@ -8,7 +8,8 @@ G the gradients of beta. With M = [H'_sigma; border] factored once, M v = e_{N+1
 
     v_tau = alpha v - Z w,   w = G v_tau,   (I + G Z) w = alpha G v,
 
-a system of order |beta|.
+a system of order |beta|. Of many switches only the ray to which pivots lead is found: with w = D (p - n), D the signs
+on which the path came, p and n not negative and complementary, p = (I + D G Z D) n + alpha D G v.
 """
 
 from __future__ import annotations
@@ -18,15 +19,17 @@ from itertools import product
 
 import numpy as np
 from attrs import frozen
+from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
+from continuation.kinks.pivots import way
 from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization, linearize
 
 MOST = 10
-"""Switches whose 2^10 pieces are gone through; twice as many for each one more."""
+"""Switches whose 2^10 pieces are gone through; twice as many for each one more, so that beyond pivots find one ray."""
 
 RANK_ONE = 1e-5
 """How well the derivatives of two pieces with one common border differ by rank one. Derivatives by differences have
@@ -81,8 +84,10 @@ class Corner:
         return self.pieces.along(self.point.u, v)[list(self.beta)]
 
 
-def rays_at(corner: Corner) -> list[Ray]:
+def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
     """All branches that leave the corner, in no particular order, each once.
+
+    Of too many switches it is the one to which pivots lead, if a path has `come` there along the corner's tangent.
 
     Raises
     ------
@@ -91,19 +96,22 @@ def rays_at(corner: Corner) -> list[Ray]:
     EvaluationError
         If a derivative cannot be evaluated.
     """
-    if len(corner.beta) > MOST:
+    if len(corner.beta) > MOST and not come:
         raise UnresolvedError(f"Their number is {len(corner.beta)}; pieces of up to {MOST} switches are gone through.")
     found: list[Ray] = []
     for ray in _candidates(corner):
         if not any(norm(corner.point.weights, ray.v - other.v) <= SAME_RAY for other in found):
             found.append(ray)
+    if len(corner.beta) > MOST and not found:
+        raise UnresolvedError(f"Their number is {len(corner.beta)}, and where pivots lead no ray is found.")
     return found
 
 
 def _candidates(corner: Corner) -> Iterator[Ray]:
     family = _Family.of(corner)
     weights = corner.point.weights
-    for taus in product((1, -1), repeat=len(corner.beta)):
+    few = len(corner.beta) <= MOST
+    for taus in product((1, -1), repeat=len(corner.beta)) if few else [family.by_pivots()]:
         signs = corner.signs_with(taus)
         if not corner.pieces.exists(signs):
             continue
@@ -193,7 +201,27 @@ class _Family:
         yield v, w
         yield -v, -w
 
-    def _adds_up(self, signs: Signs, flipped: Array) -> bool:
+    def by_pivots(self) -> tuple[int, ...]:
+        """The signs on the ray to which pivots lead from the one come on."""
+        corner = self.corner
+        many = f"Their number is {len(corner.beta)}; pieces of up to {MOST} switches are gone through"
+        if self.GZ is None:
+            raise UnresolvedError(f"{many}, and pivots need pieces that differ in one switch each.")
+        came = np.array(corner.signs)[list(corner.beta)]
+        units = came * self.sizes
+        falls = self.tilts / units
+        on = None
+        if (falls <= TILT * norm(corner.point.weights, corner.point.tangent)).all():
+            on = way(np.eye(came.size) + self.GZ * units / units[:, None], np.minimum(falls, 0.0))
+        if on is None or on.ray.back:
+            raise UnresolvedError(f"{many}, and pivots lead {'nowhere' if on is None else 'back'}.")
+        flipped = np.isin(np.arange(came.size), on.switched)
+        taus = tuple(np.where(flipped, -came, came).tolist())
+        if not self._adds_up(corner.signs_with(taus), flipped):
+            raise UnresolvedError(f"{many}, and the changes of these do not add up, as pivots need it.")
+        return taus
+
+    def _adds_up(self, signs: Signs, flipped: NDArray[np.bool_]) -> bool:
         """Whether the change of several switches is the sum of the changes of each, as in complementarity problems."""
         if int(flipped.sum()) < 2 or self.columns is None:
             return True

@@ -19,6 +19,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "lcp"))
 sys.path.insert(0, str(Path(__file__).parent))
 import applied
+import gauss_seidel
 from all_pieces import compared
 from known_paths import frontier, integer_design, integer_problem, lasso, mairal_yu, murty
 
@@ -239,7 +240,10 @@ def several(seeds: int) -> None:
 
 
 def stepping(seeds: int) -> None:
-    """A pile under gravity, and an American option: seconds a step, without and with what was found before."""
+    """A pile under gravity, and an American option: seconds a step, without and with what was found before.
+
+    Projected Gauss-Seidel is given the impulses of the step before, and stops at the residual of `solve` or 1e-13.
+    """
     from generators import american_option
 
     optimize, number = rival("quantecon.optimize"), 8
@@ -247,13 +251,15 @@ def stepping(seeds: int) -> None:
     contacts = [(k, k - 1, side, float(k), 0.0, 1.0) for k in range(number) for side in (-0.5, 0.5)]
     A, J, inverse = time_step(bodies, contacts, 0.5)
     c, v, before, solver = len(contacts), np.zeros(inverse.size), None, lcp.Solver(A)
+    W, p, sweeps = (J * inverse) @ J.T, np.zeros(2 * len(contacts)), []
     times: dict[str, list[float]] = {
         "solve": [],
         "solve with guess": [],
         "Solver": [],
         "quantecon's Lemke": [],
-        "PGS": [],
+        "projected Gauss-Seidel": [],
     }
+    gauss_seidel.impulses(W, np.zeros(p.size), p, 0.5, 1.0, 1)
     for k in range(2 * seeds):
         force = np.tile([0.2 * np.sin(k / 8.0), -9.81, 0.0], number)
         free = v + 0.01 * inverse * force
@@ -269,36 +275,29 @@ def stepping(seeds: int) -> None:
         times["Solver"].append(timed(solver.solve, q)[1])
         if optimize is not None:
             times["quantecon's Lemke"].append(timed(optimize.lcp_lemke, A, q)[1])
+        enough = max(warm.residual, 1e-13)
+        (p, count), seconds = timed(gauss_seidel.impulses, W, u, p, 0.5, enough, 100_000)
+        times["projected Gauss-Seidel"].append(seconds)
+        sweeps.append(count)
         before, x = warm, warm.x
         v = free + inverse * (J.T @ impulses(x))
     for name, taken in times.items():
         if taken:
             say(f"pile, n = {4 * c}, {2 * seeds} steps, {name}: median {1e3 * np.median(taken):.2f} ms")
+    say(f"pile: sweeps of Gauss-Seidel, median {np.median(sweeps):.0f}, most {max(sweeps)} of 100,000")
     option = american_option(10 * seeds)
     dense = option.A.toarray() if option.sparse else option.A
-    found, taken, cold_times, gauss = None, [], [], []
+    found, taken, cold_times = None, [], []
     for k in range(seeds):
         problem = LCP(option.A, option.q * (1.0 + 0.002 * k))
         found, seconds = timed(lcp.solve, problem, guess=found)
         taken.append(seconds)
         cold_times.append(timed(lcp.solve, problem)[1])
-    x, seconds = timed(gauss_seidel, dense, problem.q, found.x * 0.998, max(found.residual, 1e-10))
-    gauss.append(seconds)
+    gauss_seidel.tridiagonal(dense, problem.q, found.x, np.inf)
+    x, seconds = timed(gauss_seidel.tridiagonal, dense, problem.q, found.x * 0.998, max(found.residual, 1e-10))
     say(f"American option, n = {option.n}, {seeds} steps: cold median {1e3 * np.median(cold_times):.2f} ms, with guess "
-        f"{1e3 * np.median(taken):.2f} ms; the last step by projected Gauss-Seidel {1e3 * gauss[-1]:.0f} ms, residual "
+        f"{1e3 * np.median(taken):.2f} ms; the last step by projected Gauss-Seidel {1e3 * seconds:.0f} ms, residual "
         f"{np.abs(np.minimum(x, dense @ x + problem.q)).max():.0e}")  # fmt: skip
-
-
-def gauss_seidel(A: Array, q: Array, x: Array, residual: float, most: int = 2000) -> Array:
-    """Projected Gauss-Seidel from a start, by triangular solves with the positive part, to a residual."""
-    x, diagonal = x.copy(), A.diagonal()
-    for _ in range(most):
-        for i in range(len(q)):
-            near = slice(max(0, i - 1), i + 2)
-            x[i] = max(0.0, x[i] - (A[i, near] @ x[near] + q[i]) / diagonal[i])
-        if np.abs(np.minimum(x, A @ x + q)).max() <= residual:
-            break
-    return x
 
 
 TABLES = (counts, integers, pieces, regression, assets, contact, games, several, stepping)

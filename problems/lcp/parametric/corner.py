@@ -1,73 +1,20 @@
-"""A corner of a path where several switches vanish at once: the small LCP whose solutions are all rays that leave.
-
-``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u are the distances that have fallen to zero, v those of their
-complements, which may grow from there, and e the variable that drives the path.
-"""
+"""A corner of a path where several switches vanish at once: all rays that leave it, and solutions of its small LCP."""
 
 from __future__ import annotations
 
 from itertools import combinations
 
 import numpy as np
-from attrs import frozen
 from scipy.linalg import null_space
 
 from continuation.arrays import Array
+from continuation.kinks.pivots import AT_ORDER, FEW, Ray
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 LARGEST_LISTED = 10
 """Switches up to which all 2^m pieces are tried: 30 ms for ten; beyond, the one ray that pivots find."""
-
-FEW = 1e-9
-"""Relative to the largest: what of a ray's components, and of the pieces' singular values, counts as zero."""
-
-IRRATIONAL = 0.5 * (5.0**0.5 - 1.0)
-"""Multiples of it, modulo one, are in no position that is special: by these the corner's switches are set apart."""
-
-AT_ORDER = 50
-"""Pivots at most, times the number of switches."""
-
-
-@frozen(eq=False)
-class Ray:
-    """A ray of the small LCP.
-
-    Attributes
-    ----------
-    grown : Array of shape (m,)
-        v', not negative.
-    driven : float
-        e', of any sign.
-    """
-
-    grown: Array
-    driven: float
-
-    @property
-    def back(self) -> bool:
-        """Whether the path has come along it."""
-        return self.driven < 0.0 and not self.grown.any()
-
-
-@frozen(eq=False)
-class Way:
-    """The basis behind a corner.
-
-    Attributes
-    ----------
-    switched : tuple of int
-        Of the m switches, those whose piece is another one.
-    driver : int
-        The switch whose pair drives from here on.
-    ray : Ray
-        Where it leads.
-    """
-
-    switched: tuple[int, ...]
-    driver: int
-    ray: Ray
 
 
 def rays(S: Array, r: Array) -> list[Ray]:
@@ -116,56 +63,6 @@ def _edges(signs: Array) -> list[Array]:
         if kernel.shape[1] == 1:
             candidates += [kernel[:, 0], -kernel[:, 0]]
     return [c for c in candidates if (signs @ c >= -FEW).all()]
-
-
-def way(S: Array, r: Array) -> Way | None:
-    """The way on, by pivots from where the path has come, with the switches set apart: then no two vanish at once.
-
-    Parameters
-    ----------
-    S : ndarray, shape (m, m)
-    r : ndarray, shape (m,)
-
-    Returns
-    -------
-    Way or None
-        None where rounding leads nowhere.
-
-    References
-    ----------
-    Cottle, Pang and Stone, section 4.9: that a perturbed problem, like a lexicographic rule, resolves ties.
-    """
-    m = r.size
-    apart = 1.0 + np.arange(1, m + 1) * IRRATIONAL % 1.0
-    scale = np.maximum(np.abs(r), np.abs(S).max(axis=1))
-    apart *= np.where(scale > 0.0, scale, 1.0)
-    table = np.column_stack([S, r, apart])
-    basic, other = np.arange(m), np.arange(m, 2 * m + 1)
-    column = m
-    for _ in range(AT_ORDER * m):
-        slopes = -table[:, column]
-        falling = np.flatnonzero((slopes > FEW * np.abs(slopes).max(initial=0.0)) & (basic != 2 * m))
-        if falling.size == 0:
-            entering = int(other[column])
-            if entering == 2 * m:
-                return None
-            rates = np.zeros(2 * m + 1)
-            rates[basic], rates[entering] = table[:, column], 1.0
-            rates[np.abs(rates) <= FEW * np.abs(rates).max()] = 0.0
-            switched = [*basic[(basic >= m) & (basic < 2 * m)].tolist(), *([entering] if entering >= m else [])]
-            return Way(tuple(i - m for i in switched), entering % m, Ray(rates[m : 2 * m], float(rates[2 * m])))
-        row = int(falling[np.argmin(table[falling, -1] / slopes[falling])])
-        pivot = table[row, column]
-        moved = table[row] / -pivot
-        moved[column] = 1.0 / pivot
-        steep = table[:, column].copy()
-        table[:, column] = 0.0
-        table += np.outer(steep, moved)
-        table[row] = moved
-        leaving = int(basic[row])
-        basic[row], other[column] = other[column], leaving
-        column = int(np.flatnonzero(other == (leaving + m if leaving < m else leaving - m))[0])
-    return None
 
 
 def a_solution(S: Array, r: Array) -> Array | None:

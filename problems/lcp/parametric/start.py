@@ -8,9 +8,10 @@ import numpy as np
 from scipy.linalg import qr
 
 from continuation.arrays import Array
+from continuation.kinks.pivots import FEW
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import Basis, SingularBasisError
-from problems.lcp.parametric.corner import FEW, LARGEST_LISTED, a_solution, rays
+from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
 from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.parametric.ties import aim, small
 from problems.lcp.parametric.walk import FLAT, Walk

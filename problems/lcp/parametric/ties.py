@@ -6,7 +6,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.parametric.corner import LARGEST_LISTED, Ray, rays, way
+from continuation.kinks.pivots import Ray, way
+from problems.lcp.parametric.corner import LARGEST_LISTED, rays
 from problems.lcp.parametric.walk import FLAT, Walk
 
 AIMED = 1e-5
@@ -52,11 +53,10 @@ def _turn_tied(walk: Walk) -> Corner | None:
     walk.degenerate = True
     S, r, along = small(walk)
     on = way(S, r)
-    every = tied.size <= LARGEST_LISTED
-    edges = rays(S, r) if every else []
+    edges = rays(S, r) if tied.size <= LARGEST_LISTED else []
     found = [_direction(ray, along) for ray in edges]
     onward = [ray for ray in edges if not ray.back]
-    if on is None or (on.ray.back and every):
+    if on is None or on.ray.back:
         if not onward:
             # That no other ray leaves may be said if the one come on is found.
             return Corner(tuple(tied.tolist()), found, dead=True) if edges else None

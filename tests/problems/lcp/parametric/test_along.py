@@ -182,3 +182,16 @@ def test_bad_input_is_refused(change, message):
     given = {"d": [1.0, 1.0], "t": (1.0, 0.0), **change}
     with pytest.raises(ValueError, match=message):
         along(LCP([[2.0, 1.0], [1.0, 2.0]], [-1.0, -1.0]), given.pop("d"), given.pop("t"), **given)
+
+
+@pytest.mark.parametrize("m", [11, 30])
+def test_more_pairs_at_once_than_all_pieces_can_be_tried_for(m):
+    for rho in (0.0, 0.5):
+        path = along(MixedLCP((1.0 - rho) * np.eye(m) + rho, -np.ones(m)), np.zeros(m), (np.inf, 0.0), level=1.0)
+        assert path.status is Status.REACHED_TARGET
+        assert [kink.switches for kink in path.kinks] == [tuple(range(m))]
+        assert np.abs(path.endpoint.y * (1.0 + rho * (m - 1)) - 1.0).max() < 1e-14
+    # All x that are not zero turn t back at t = 1.
+    path = along(LCP(-np.eye(m), -np.ones(m)), np.ones(m), (np.inf, 0.0))
+    assert path.status is Status.DIVERGED
+    assert [(kink.name, kink.switches, kink.lam) for kink in path.kinks] == [("turning kink", tuple(range(m)), 1.0)]

@@ -1,0 +1,111 @@
+"""The way through a corner where many switches vanish at once, by pivots in the small LCP whose solutions are its rays.
+
+``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``: u are the distances that have fallen to zero, v those of their
+complements, which may grow from there, and e the variable that drives the path.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+
+FEW = 1e-9
+"""Relative to the largest: what of a ray's components, and of the pieces' singular values, counts as zero."""
+
+IRRATIONAL = 0.5 * (5.0**0.5 - 1.0)
+"""Multiples of it, modulo one, are in no position that is special: by these the corner's switches are set apart."""
+
+AT_ORDER = 50
+"""Pivots at most, times the number of switches."""
+
+
+@frozen(eq=False)
+class Ray:
+    """A ray of the small LCP.
+
+    Attributes
+    ----------
+    grown : Array of shape (m,)
+        v', not negative.
+    driven : float
+        e', of any sign.
+    """
+
+    grown: Array
+    driven: float
+
+    @property
+    def back(self) -> bool:
+        """Whether the path has come along it."""
+        return self.driven < 0.0 and not self.grown.any()
+
+
+@frozen(eq=False)
+class Way:
+    """The basis behind a corner.
+
+    Attributes
+    ----------
+    switched : tuple of int
+        Of the m switches, those whose piece is another one.
+    driver : int
+        The switch whose pair drives from here on.
+    ray : Ray
+        Where it leads.
+    """
+
+    switched: tuple[int, ...]
+    driver: int
+    ray: Ray
+
+
+def way(S: Array, r: Array) -> Way | None:
+    """The way on, by pivots from where the path has come, with the switches set apart: then no two vanish at once.
+
+    Parameters
+    ----------
+    S : ndarray, shape (m, m)
+    r : ndarray, shape (m,)
+
+    Returns
+    -------
+    Way or None
+        None where rounding leads nowhere.
+
+    References
+    ----------
+    Cottle, Pang and Stone, section 4.9: that a perturbed problem, like a lexicographic rule, resolves ties.
+    """
+    m = r.size
+    apart = 1.0 + np.arange(1, m + 1) * IRRATIONAL % 1.0
+    scale = np.maximum(np.abs(r), np.abs(S).max(axis=1))
+    apart *= np.where(scale > 0.0, scale, 1.0)
+    table = np.column_stack([S, r, apart])
+    basic, other = np.arange(m), np.arange(m, 2 * m + 1)
+    column = m
+    for _ in range(AT_ORDER * m):
+        slopes = -table[:, column]
+        falling = np.flatnonzero((slopes > FEW * np.abs(slopes).max(initial=0.0)) & (basic != 2 * m))
+        if falling.size == 0:
+            entering = int(other[column])
+            if entering == 2 * m:
+                return None
+            rates = np.zeros(2 * m + 1)
+            rates[basic], rates[entering] = table[:, column], 1.0
+            rates[np.abs(rates) <= FEW * np.abs(rates).max()] = 0.0
+            switched = [*basic[(basic >= m) & (basic < 2 * m)].tolist(), *([entering] if entering >= m else [])]
+            return Way(tuple(i - m for i in switched), entering % m, Ray(rates[m : 2 * m], float(rates[2 * m])))
+        row = int(falling[np.argmin(table[falling, -1] / slopes[falling])])
+        pivot = table[row, column]
+        moved = table[row] / -pivot
+        moved[column] = 1.0 / pivot
+        steep = table[:, column].copy()
+        table[:, column] = 0.0
+        table += np.outer(steep, moved)
+        table[row] = moved
+        leaving = int(basic[row])
+        basic[row], other[column] = other[column], leaving
+        column = int(np.flatnonzero(other == (leaving + m if leaving < m else leaving - m))[0])
+    return None
