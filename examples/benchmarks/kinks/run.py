@@ -194,17 +194,17 @@ def contact(seeds: int) -> None:
 
 def games(seeds: int) -> None:
     """Seven kinds of games beside quantecon's Lemke-Howson."""
+    from outside import KINDS
     from outside import games as kinds
 
     theory = rival("quantecon.game_theory")
-    names = "normal", "0-1", "covariant -.9", "covariant .5", "zero-sum", "unit vectors", "dual cyclic"
     table: dict[tuple[str, int], list[Any]] = {}
     for k, (A, q) in enumerate(kinds(2026)):
         n, m = len(q), len(q) // 2
         if n > 10 * seeds + 40:
             continue
         found, ours = timed(lcp.solve, LCP(A, q))
-        row = table.setdefault((names[k % 7], n), [])
+        row = table.setdefault((KINDS[k % 7], n), [])
         entry = [found.solved, ours, False, np.nan]
         if theory is not None:
             game = theory.NormalFormGame([theory.Player(-A[:m, m:]), theory.Player(-A[m:, :m])])

@@ -103,27 +103,35 @@ def game(C: Array, D: Array) -> Data:
     return problem.A, problem.q
 
 
+KINDS = "normal", "0-1", "covariant -.9", "covariant .5", "zero-sum", "unit vectors", "dual cyclic", "uniform"
+
+
+def game_of(kind: str, m: int, r: np.random.Generator) -> Data:
+    """A game with m actions a player, of one of `KINDS`."""
+    X, Y = r.standard_normal((2, m, m))
+    if kind == "0-1":
+        X, Y = (X < 0.0).astype(float), (Y < 0.0).astype(float)
+    elif kind.startswith("covariant"):
+        rho = float(kind.split()[1])
+        Y = rho * X + math.sqrt(1.0 - rho * rho) * Y
+    elif kind == "zero-sum":
+        Y = -X
+    elif kind == "unit vectors":
+        X, Y = np.zeros((m, m)), -r.random((m, m))
+        X[r.integers(0, m, m), np.arange(m)] = -1.0
+    elif kind == "dual cyclic":
+        V = np.vander(np.linspace(-1.0, 1.0, 2 * m), m + 1, increasing=True)[:, 1:]
+        V = V - V.mean(axis=0)
+        X, Y = -V[m:], -V[:m][r.permutation(m)].T
+    elif kind == "uniform":
+        X, Y = r.random((2, m, m))
+    return game(X, Y)
+
+
 def games(seed: int) -> Iterator[Data]:
     """Seven kinds of games, n = 40, 100, 300: normal, 0-1, covariant, zero-sum, unit vectors, dual cyclic."""
     for k in range(63):
-        r = np.random.default_rng([seed, k])
-        m, kind = (20, 50, 150)[k // 21], k % 7
-        X, Y = r.standard_normal((2, m, m))
-        if kind == 1:
-            X, Y = (X < 0.0).astype(float), (Y < 0.0).astype(float)
-        elif kind in (2, 3):
-            rho = (-0.9, 0.5)[kind - 2]
-            Y = rho * X + math.sqrt(1.0 - rho * rho) * Y
-        elif kind == 4:
-            Y = -X
-        elif kind == 5:
-            X, Y = np.zeros((m, m)), -r.random((m, m))
-            X[r.integers(0, m, m), np.arange(m)] = -1.0
-        elif kind == 6:
-            V = np.vander(np.linspace(-1.0, 1.0, 2 * m), m + 1, increasing=True)[:, 1:]
-            V = V - V.mean(axis=0)
-            X, Y = -V[m:], -V[:m][r.permutation(m)].T
-        yield game(X, Y)
+        yield game_of(KINDS[k % 7], (20, 50, 150)[k // 21], np.random.default_rng([seed, k]))
 
 
 def planted(A: Array, r: np.random.Generator) -> Data:

@@ -178,7 +178,7 @@ class Structure:
         if (diagonal < 0.0).any():
             return False
         if self.problem.sparse and not self.problem.standard and self._few_in_symmetric_part():
-            return self._definite_where_it_has_entries()
+            return self.definite_where_it_has_entries()
         if self.problem.sparse:
             return bool((2.0 * diagonal >= np.asarray(abs(self.symmetrized).sum(axis=1))).all())
         return semidefinite(self.symmetrized)
@@ -186,8 +186,11 @@ class Structure:
     def _few_in_symmetric_part(self) -> bool:
         return int((np.diff(self.symmetrized.indptr) > 0).sum()) <= LARGEST_SYMMETRIC_PART
 
-    def _definite_where_it_has_entries(self) -> bool:
-        """Of the optimality conditions of a program that is P."""
+    def definite_where_it_has_entries(self) -> bool:
+        """Whether the symmetric part of a sparse A is semidefinite, by a dense factorisation of its rows with entries.
+
+        Of the optimality conditions of a program that is P.
+        """
         S = self.symmetrized
         S.eliminate_zeros()
         rows = np.flatnonzero(np.diff(S.indptr) > 0)

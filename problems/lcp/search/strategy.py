@@ -43,7 +43,7 @@ from problems.lcp.search.limits import (
     PROOF_SHARE,
     WHILE_REGULAR,
 )
-from problems.lcp.search.pivots import LARGEST, by_guess, by_lemke, by_lemke_howson
+from problems.lcp.search.pivots import LARGEST, by_guess, by_lemke, by_lemke_howson, convex
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
 
 
@@ -138,7 +138,7 @@ def _augmented(case: Case) -> bool:
 
 
 def _by_lemke_howson(case: Case) -> bool:
-    return by_lemke_howson(case.search)
+    return by_lemke_howson(case.search, case.seed)
 
 
 def _by_lemke(case: Case) -> bool:
@@ -223,8 +223,9 @@ def _stopped(case: Case) -> bool:
 
 def _pivotable(case: Case) -> bool:
     """Where the pure path is not asked for, and a table of n^2 numbers is no burden."""
-    small = case.problem.standard and case.problem.n <= LARGEST
-    return small and case.in_budget and case.search.finish is not None
+    if not case.problem.standard or not case.in_budget or case.search.finish is None:
+        return False
+    return case.problem.n <= LARGEST or convex(case.search.structure)
 
 
 def _game_perhaps(case: Case) -> bool:

@@ -5,6 +5,7 @@ import pytest
 
 from problems import lcp
 from problems.lcp import LCP
+from problems.lcp.pivoting import dictionary
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.pivoting.starts import Game, covering
@@ -64,19 +65,43 @@ def test_a_rebuilt_table_is_the_pivoted_one():
     path = covering(problem, np.ones(12))
     for _ in range(7):
         path.step()
-    (dictionary,) = path.dictionaries
-    rows, columns, table = dictionary.basic.copy(), dictionary.nonbasic.copy(), dictionary.table.copy()
-    assert dictionary.rebuilt() > -1e-10
-    again = dictionary.table[np.argsort(dictionary.basic)]
-    order = np.append(np.argsort(dictionary.nonbasic), 13)
+    (one,) = path.dictionaries
+    rows, columns, table = one.basic.copy(), one.nonbasic.copy(), one.table.copy()
+    assert one.rebuilt() > -1e-10
+    again = one.table[np.argsort(one.basic)]
+    order = np.append(np.argsort(one.nonbasic), 13)
     expected = table[np.argsort(rows)][:, np.append(np.argsort(columns), 13)]
     np.testing.assert_allclose(again[:, order], expected, rtol=1e-9, atol=1e-9)
 
 
+def test_pivots_that_wait_are_the_same_ones(monkeypatch):
+    """Put into the table together or one by one, with ties, which look at all of it, and without."""
+    most = 0
+    for k in range(60):
+        problem = random_problem(k)
+        if k % 6 == 0:
+            r = np.random.default_rng(k)
+            problem = LCP(np.abs(r.standard_normal((60, 60))), -r.random(60))
+        ends = []
+        for largest in (10**9, 0):
+            monkeypatch.setattr(dictionary, "LARGEST_AT_ONCE", largest)
+            path = covering(problem, np.ones(problem.n))
+            ended = path.run(1000)
+            ends.append((ended, path.pivots, tuple(path.active)))
+            (one,) = path.dictionaries
+            pivoted, basic = one.table.copy(), one.basic.copy()
+            assert one.rebuilt() > -1e-7
+            assert np.array_equal(np.sort(one.basic), np.sort(basic))
+            np.testing.assert_allclose(one.table[np.argsort(one.basic), -1], pivoted[np.argsort(basic), -1], atol=1e-7)
+        assert ends[0] == ends[1]
+        most = max(most, path.pivots)
+    assert most > dictionary.DELAYED
+
+
 def test_a_singular_basis_is_noticed():
-    dictionary = Dictionary(np.array([[1.0, 1.0, 1.0], [1.0, 1.0, 2.0]]), np.arange(2), np.arange(2, 4))
-    dictionary.basic, dictionary.nonbasic = np.array([2, 3]), np.array([0, 1])
-    assert np.isnan(dictionary.rebuilt())
+    one = Dictionary(np.array([[1.0, 1.0, 1.0], [1.0, 1.0, 2.0]]), np.arange(2), np.arange(2, 4))
+    one.basic, one.nonbasic = np.array([2, 3]), np.array([0, 1])
+    assert np.isnan(one.rebuilt())
 
 
 def test_from_the_solution_for_another_q():

@@ -1,13 +1,20 @@
-"""Games on which the paths of both labels are longer than ten times the order."""
+"""What takes many pivots: games with long paths from the first labels, traffic with more than a thousand unknowns."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
+import scipy.sparse as sp
 
 from problems.lcp import LCP, solve
+from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import Game
-from problems.lcp.search.pivots import AT_ORDER
+from problems.lcp.search import pivots
+from problems.lcp.search.pivots import AT_ORDER, convex
+from tests.util import benchmark
+
+HARD = benchmark("size/hard.py")
 
 
 def test_they_are_followed_on_before_any_path():
@@ -22,3 +29,36 @@ def test_they_are_followed_on_before_any_path():
     assert found.solved
     assert not found.paths
     assert "Lemke and Howson" in found.message
+
+
+@pytest.mark.parametrize("seed", [16, 28], ids=["of the first few", "of those that are given twice the pivots"])
+def test_other_labels_have_short_paths(seed, monkeypatch):
+    problem = LCP(*HARD.game_of("uniform", 60, np.random.default_rng(seed)))
+    # Neither of the two labels may go far.
+    monkeypatch.setattr(pivots, "AT_ORDER", 1)
+    monkeypatch.setattr(pivots, "GAME_WORK", 0)
+    assert all(Game.of(problem).path(label).run(120) is Ended.PIVOTS for label in (0, 119))
+    found = solve(problem)
+    assert found.solved
+    assert not found.paths
+    assert "Lemke and Howson" in found.message
+
+
+def test_traffic_with_more_than_a_thousand_unknowns_is_pivoted():
+    A, q = HARD.traffic(12, 0)
+    found = solve(LCP(A, q))
+    assert (found.problem.n, found.outcome.name, len(found.paths)) == (1188, "SOLVED", 0)
+    assert "Lemke" in found.message
+    assert convex(Structure(LCP(A, q)))
+    # Neither what is not convex nor what has few entries a row.
+    assert not convex(Structure(LCP(sp.csr_array(A - 1000.0 * sp.eye_array(1188)), q)))
+    assert not convex(Structure(LCP(sp.eye_array(1188, format="csr"), q)))
+
+
+@pytest.mark.parametrize("table", HARD.TABLES)
+def test_the_benchmark_runs(table, monkeypatch, capsys):
+    monkeypatch.setattr(HARD.sys, "argv", ["hard.py", table, "--seeds", "1", "--size", "0.05"])
+    HARD.main()
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == {"games": 25, "traffic": 4, "nonmonotone": 8}[table]
+    assert not any(": 0 of 1" in line for line in lines)
