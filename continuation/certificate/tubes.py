@@ -128,7 +128,8 @@ def search(engine: Engine, cells: Cells) -> Found:
             for k in np.flatnonzero(good).tolist():
                 told[pending[k]] = by_cell[k]
         undefined[pending] = ~np.isfinite(off)
-        radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
+        with np.errstate(all="ignore"):
+            radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
         # Bounds that hold for all radii are the same again; the others are not.
         more = ~good & (engine.exact | ~(kappa < CONTRACTING))
