@@ -133,7 +133,8 @@ def _search(engine: Engine, cells: Cells) -> Found:
                 told[pending[k]] = by_cell[k]
             ends.put(pending[good], _ends(parts, judged, tube).take(good))
         undefined[pending] = ~np.isfinite(off)
-        radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
+        with np.errstate(all="ignore"):
+            radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
         # Bounds that hold for all radii are the same again; the others are not.
         more = ~good & (engine.exact | ~(kappa < CONTRACTING))

@@ -110,6 +110,15 @@ def test_units_do_not_matter(seed):
         assert len(proof.turning_points) == len(trace(inner).turning_points)
 
 
+def test_in_random_units_what_is_complete_has_all_its_turning_points_and_no_jump():
+    found = benchmark("proof/units.py").campaign("cusp", 4)
+    assert sum(found.values()) == 8
+    assert found["complete", "all turns"] == 4
+    wrong = ("careless, jumped", "careless, turns missed", "TURNS MISSED")
+    assert sum(found["gap", kind] for kind in wrong) > 0
+    assert sum(found["complete", kind] for kind in wrong) == 0
+
+
 # --- what is no path --------------------------------------------------------------------------------------
 
 
