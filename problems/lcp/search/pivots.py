@@ -24,7 +24,7 @@ LARGEST = 1000
 
 LARGEST_CONVEX = 3000
 """Of the conditions of a convex program, on which Lemke's method ends, a larger one is: 72 MB. Traffic takes 1,224
-pivots at n = 1188 and 2,427 at 2376, 0.2 and 1.2 s, where a path takes 2 and 40,"""
+pivots at n = 1188 and 2,427 at 2376, 0.2 and 1.2 s, where a path takes 2 s at n = 1188,"""
 
 MANY_ENTRIES = 10
 """if its rows have so many entries on average, so that factors fill: a stencil has 5 to 9, and paths are quicker."""
