@@ -24,7 +24,7 @@ LARGEST = 1000
 
 LARGEST_CONVEX = 3000
 """Of the conditions of a convex program, on which Lemke's method ends, a larger one is: 72 MB. Traffic takes 1,224
-pivots at n = 1188 and 2,427 at 2376, 0.2 and 1.2 s, where a path takes 2 and 40,"""
+pivots at n = 1188 and 2,427 at 2376, 0.2 and 1.2 s, where a path takes 2 s at n = 1188,"""
 
 MANY_ENTRIES = 10
 """if its rows have so many entries on average, so that factors fill: a stencil has 5 to 9, and paths are quicker."""
@@ -180,7 +180,7 @@ def constraints(problem: LCP) -> Mask:
 
 
 def by_lemke_howson(search: Search, seed: int) -> bool:
-    """The method of Lemke and Howson from many labels, shortly, and from `LABELS`; whether it led to a solution.
+    """The method of Lemke and Howson from `LABELS`, and from many others, shortly; whether it led to a solution.
 
     Parameters
     ----------
@@ -207,14 +207,14 @@ def by_lemke_howson(search: Search, seed: int) -> bool:
 
     most, labels, batch = AT_ORDER * n, np.random.default_rng(seed).permutation(n), SHORT * AT_ORDER
     paths = [game.path(LABELS[0] % n)]
-    if leads(paths[0], most) or shortly(labels[:batch], n // SHORT):
+    if leads(paths[0], most):
         return True
     paths += [game.path(label % n) for label in LABELS[1:]]
     while 2 * most <= GAME_WORK // (m * (n - m)) and any(path.ended is None for path in paths):
         most *= 2
         if any(leads(path, most) for path in paths):
             return True
-    return shortly(labels[batch : 3 * batch], 2 * n // SHORT)
+    return shortly(labels[:batch], n // SHORT) or shortly(labels[batch : 3 * batch], 2 * n // SHORT)
 
 
 def _reached(search: Search, path: AlmostComplementary, ended: Ended) -> bool:
