@@ -17,7 +17,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, joined
-from continuation.certificate.engine import Engine
+from continuation.certificate.engine import Engine, up_by
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import distance, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
@@ -179,19 +179,20 @@ def _joined(before: Arc, after: Arc, switches: ByIntervals, kink: LocatedEvent) 
         sides = joined([left, left])
         at = nodes(before.engine, sides, np.array([1.0 - delta, 1.0 + delta]))
         window = nodes(before.engine, left, np.ones(1), delta)
-        if not (at.proved.all() and window.proved.all() and (window.radius <= left.radius).all()):
+        # Within the tube it is the tube's curve; a nan, where nothing is proved, is not.
+        if not ((at.radius <= left.radius).all() and (window.radius <= left.radius).all()):
             continue
         room = Slabs(here, np.ones(1), np.full(1, delta), left)
         slabs = Slabs(np.arange(2), np.array([1.0 - delta, 1.0 + delta]), np.zeros(2), sides)
         change = value_at(switches, slabs, at.radius)[:, j]
         if change[0] != before.signs[j] or change[1] != after.signs[j]:
             continue
-        off = window.radius + distance(room, u)
+        off = up_by(window.radius + distance(room, u), 2)
         if not (reach(right, np.zeros(1), off) <= right.radius).all():
             continue
         onward = nodes(after.engine, right, np.zeros(1), 0.9 * OVERHANG)
         rates = [float(np.sign(t.lo[0, -1])) for t in (window.tangent, onward.tangent) if t.lo[0, -1] * t.hi[0, -1] > 0]
-        if len(rates) < 2:
+        if len(rates) < 2 or not (onward.radius <= right.radius).all():
             return "whether the parameter turns in the kink is not decided"
         if (rates[0] != rates[1]) != (kink.name == "turning kink"):
             return "the parameter does not turn in the kink as the path says"

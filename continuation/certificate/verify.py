@@ -82,7 +82,7 @@ def verified(
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
     places = [_place(cells, event, path.arclength) for event in path.events]
     places = _on_curve(engine, cells, path.events, places)
-    told = _between_nodes(known or pieces(engine, plain, cells), ends.tangent, at.tangent)
+    told = _between_nodes(known or pieces(engine, plain, cells), cells, ends, at)
     turning, more = _turning(cells, told, path, places)
     gaps += more + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
@@ -157,10 +157,13 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
 # --- turning points and events ----------------------------------------------------------------------------
 
 
-def _between_nodes(found: list[Piece], start: Ends, at: Ends) -> list[Piece]:
+def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) -> list[Piece]:
     """With the signs at the first and the last point, where they have one: what lies beyond these does not count."""
-    rates = (Ends(t.lo[k, -1], t.hi[k, -1]) for t, k in ((start, 0), (at, -1)))
-    first, last = (int(np.sign(rate.lo)) if rate.lo * rate.hi > 0.0 else 0 for rate in rates)
+    signs = []
+    for node, k in ((start, 0), (at, -1)):
+        lo, hi = node.tangent.lo[k, -1], node.tangent.hi[k, -1]
+        signs.append(int(np.sign(lo)) if lo * hi > 0.0 and (node.radius[k] <= cells.radius[k]).all() else 0)
+    first, last = signs
     begin = [Piece(0, 0.0, 0.0, first, 0)] if first else []
     return [*begin, *found, *([Piece(found[-1].cell, 1.0, 1.0, last, 0)] if last else [])]
 
