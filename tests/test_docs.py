@@ -3,6 +3,7 @@
 The pages themselves are made by `make docs`, warnings as errors, which CI runs too.
 """
 
+import ast
 import re
 import runpy
 import shlex
@@ -10,6 +11,8 @@ from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
+from docutils.utils.math import MathError
+from docutils.utils.math.latex2mathml import tex2mathml
 
 from continuation.cli.commands import register
 from continuation.cli.parser import Parser
@@ -26,6 +29,8 @@ PAGES = [
 SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("plot_*.py"))
 NAMES = [str(path.relative_to(ROOT)) for path in PAGES]
 _SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
+_DISPLAYED = re.compile(r"```.*?```|`[^`\n]*`|\$\$(.+?)\$\$", re.DOTALL)
+_INLINE = re.compile(r"```.*?```|`[^`\n]*`|\$\$.+?\$\$|(?<![\\$])\$(?!\s)([^$]+?)\$", re.DOTALL)
 _TREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
@@ -61,6 +66,29 @@ def test_the_commands_of_a_page_exist(page):
             words = shlex.split(line, comments=True)
             if words and words[0] == "continuation":
                 parser.parse_args(words[1:])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_the_formulas_of_a_page_are_ones_that_docutils_sets(page):
+    text = page.read_text(encoding="utf-8")
+    for formula in filter(None, _DISPLAYED.findall(text) + _INLINE.findall(text)):
+        _set(formula, page)
+
+
+@pytest.mark.parametrize("room", ["continuation", "problems", "examples"])
+def test_the_formulas_of_docstrings_are_ones_that_docutils_sets(room):
+    for path in sorted((ROOT / room).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+                for formula in re.findall(r":math:`(.+?)`", ast.get_docstring(node) or "", re.DOTALL):
+                    _set(formula, path)
+
+
+def _set(formula, path):
+    try:
+        tex2mathml(formula)
+    except MathError as error:
+        pytest.fail(f"{path.relative_to(ROOT)}: {formula}: {error}")
 
 
 def test_every_page_is_in_the_table_of_contents():

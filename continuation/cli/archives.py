@@ -9,7 +9,7 @@ from importlib import import_module
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, positive
+from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, above_zero, positive
 
 if TYPE_CHECKING:
     from continuation.step.options import Options
@@ -26,7 +26,9 @@ def register(subparsers: Subparsers) -> None:
     parser.add_argument("options", metavar="KEY=VALUE", nargs="*", help="of the homotopy; the file's own by default")
     parser.add_argument("--homotopy", metavar="NAME", help="a name of `continuation plugins`, or module:object")
     parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
-    parser.add_argument("--steps", type=positive, metavar="N", help="a new budget: accepted steps")
+    for name in ("--steps", "--budget-steps"):  # the second as `trace` has it
+        parser.add_argument(name, dest="steps", type=positive, metavar="N", help="a new budget: accepted steps")
+    parser.add_argument("--budget-seconds", dest="seconds", type=above_zero, metavar="S", help="wall-clock time")
     parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
     _add_trust(parser)
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
@@ -79,7 +81,8 @@ def _resume(arguments: argparse.Namespace) -> int:
     from continuation.budget import Budget
     from continuation.progress import Progress
 
-    limits = {name: getattr(arguments, name) for name in ("steps", "factorizations") if getattr(arguments, name)}
+    names = ("steps", "seconds", "factorizations")
+    limits = {name: getattr(arguments, name) for name in names if getattr(arguments, name)}
     options: Options = {"budget": Budget(**limits)} if limits else {}
     observers = (Progress(),) if arguments.progress else ()
     homotopy = None if arguments.homotopy is None else _given(arguments)

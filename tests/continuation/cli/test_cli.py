@@ -179,7 +179,7 @@ def test_resume_goes_on_to_the_end(run, tmp_path):
 def test_resume_that_does_not_arrive_exits_with_one(run, tmp_path):
     file = tmp_path / "run.h5"
     trace_fold(file, budget=continuation.Budget(steps=3))
-    status, out, _ = run("resume", file, "--steps", 4, "--trust", f"{__name__}:Fold")
+    status, out, _ = run("resume", file, "--budget-steps", 4, "--budget-seconds", 60, "--trust", f"{__name__}:Fold")
     assert status == FAILURE
     assert out.startswith("BUDGET_EXHAUSTED")
 
