@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -127,7 +128,7 @@ def sizes(cells: Cells, still: Array | None = None) -> Array:
     return out + 64.0 * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end)) + np.finfo(float).tiny
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Slabs:
     """Parts of cells: the parameter within `half` of `middle`; arrays of shape (slabs,) and of cells, one a slab.
 
@@ -156,6 +157,17 @@ class Slabs:
     def offset(self) -> Array:
         """At least the distance of any parameter of the range from the middle, shape (slabs,)."""
         return np.where(self.half > 0.0, self.half * (1.0 + 8.0 * EPS) + 8.0 * EPS * (1.0 + np.abs(self.middle)), 0.0)
+
+    @cached_property
+    def expansion(self) -> Expansion:
+        """The cubics about the middles."""
+        return expansion(self)
+
+    @cached_property
+    def velocity(self) -> Ends:
+        """The range of p' over each slab, shape (slabs, N + 1)."""
+        x = self.offset[:, None]
+        return self.expansion.over(Ends(-x, x))[1]
 
     def halved(self, parts: int) -> Slabs:
         """Each cut into so many."""
@@ -240,14 +252,8 @@ def _ends(x: Ends) -> tuple[Array, Array]:
 
 def advance(slabs: Slabs) -> Array:
     """A lower bound of c . p'(s) over each slab, shape (slabs,)."""
-    bound, _ = along(slabs.cells.chart, velocity(slabs))
+    bound, _ = along(slabs.cells.chart, slabs.velocity)
     return bound
-
-
-def velocity(slabs: Slabs) -> Ends:
-    """The range of p' over each slab, shape (slabs, N + 1)."""
-    x = slabs.offset[:, None]
-    return expansion(slabs).over(Ends(-x, x))[1]
 
 
 def along(chart: Array, v: Ends) -> tuple[Array, Array]:

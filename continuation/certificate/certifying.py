@@ -48,8 +48,8 @@ STILL = 1e-10
 """Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
 
 
-def engines(homotopy: Any, points: Array | None = None) -> tuple[Engine, ByIntervals]:
-    """What bounds derivatives for this homotopy: by products where it is quadratic; and by intervals, which all can.
+def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
+    """What bounds derivatives for this homotopy: by products where it is quadratic, else by intervals.
 
     Parameters
     ----------
@@ -62,14 +62,14 @@ def engines(homotopy: Any, points: Array | None = None) -> tuple[Engine, ByInter
     TypeError
         If the residual does not run on interval arrays; the message names the operation.
     """
+    if isinstance(homotopy, SupportsQuadratic):
+        return ByProducts(homotopy.quadratic())
     y, lam = homotopy.start()
     start = np.append(np.asarray(y, dtype=float), float(lam))
     still = points is not None and bool((np.ptp(points, axis=0) <= STILL * np.abs(points).max(axis=0)).any())
-    plain = ByIntervals(homotopy.residual, len(start) - 1, still)
-    if isinstance(homotopy, SupportsQuadratic):
-        return ByProducts(homotopy.quadratic()), plain
-    plain.probe(start)
-    return plain, plain
+    engine = ByIntervals(homotopy.residual, len(start) - 1, still)
+    engine.probe(start)
+    return engine
 
 
 def certify(path: Path, homotopy: Any) -> Proof:
@@ -125,11 +125,11 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, list
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engine]:
-    engine, plain = engines(homotopy, path.u)
+    engine = engine_of(homotopy, path.u)
     if cells is not None:
-        return verified(engine, plain, cells, path, homotopy, []), engine
-    cells, gaps, found, ends = Search(engine, plain, homotopy, path).run()
-    return verified(engine, plain, cells, path, homotopy, gaps, (found, ends)), engine
+        return verified(engine, cells, path, homotopy, []), engine
+    cells, gaps, found, ends = Search(engine, homotopy, path).run()
+    return verified(engine, cells, path, homotopy, gaps, (found, ends)), engine
 
 
 def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
@@ -193,7 +193,6 @@ class Search:
     """
 
     engine: Engine
-    plain: ByIntervals
     homotopy: Any
     path: Path
 
@@ -242,7 +241,7 @@ class Search:
         if not len(cells):
             return np.zeros(0, bool), []
         by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
-        for piece in pieces(self.engine, self.plain, cells, known):
+        for piece in pieces(self.engine, cells, known):
             by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]

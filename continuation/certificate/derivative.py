@@ -1,4 +1,4 @@
-"""A quadratic homotopy and its derivative along a cubic: polynomials of degree 6 and 3 in the offset from the middle."""
+"""A quadratic homotopy and its derivative along a cubic: polynomials of degree 6 and 3 in the offset."""
 
 from __future__ import annotations
 
@@ -13,17 +13,28 @@ from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin, 
 
 def _apply(part: Affine, q: Ends) -> Ends:
     """The part along a cubic, shape (slabs, 4, N) for coefficients of shape (slabs, 4, N + 1)."""
-    middle, count = q.middle(), q.shape[-1] + 4
-    size = np.abs(middle)
-    # The matrix is off by its errors, q by its radius; products are rounded.
-    room = np.matmul(q.radius(middle) + accumulated(count) * size, part.size.T)
-    if part.sizes is not None:
-        room = room + np.matmul(size + q.radius(middle), part.error.T)
-    room, centre = up_by(room, 2 * count), np.matmul(middle, part.matrix.T)
-    image = Ends(-up_sum(room - centre), up_sum(centre + room))
+    image = _linear(part, q)
     value = image[:, 0] + part.constant_ends
     image.lo[:, 0], image.hi[:, 0] = value.lo, value.hi
     return image
+
+
+def _linear(part: Affine, q: Ends) -> Ends:
+    """The matrix of the part times intervals, shape (slabs, any, N + 1)."""
+    middle, count = q.middle(), q.shape[-1] + 4
+    size = np.abs(middle)
+    # The matrix is off by its errors, q by its radius; products are rounded.
+    room = _rows(q.radius(middle) + accumulated(count) * size, part.size)
+    if part.sizes is not None:
+        room = room + _rows(size + q.radius(middle), part.error)
+    room, centre = up_by(room, 2 * count), _rows(middle, part.matrix)
+    return Ends(-up_sum(room - centre), up_sum(centre + room))
+
+
+def _rows(q: Array, matrix: Array) -> Array:
+    """The matrix times each coefficient: one product for all slabs."""
+    product: Array = np.matmul(q.reshape(-1, q.shape[-1]), matrix.T).reshape(*q.shape[:-1], -1)
+    return product
 
 
 _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
@@ -39,6 +50,11 @@ def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
     lower, upper = (np.zeros((count, n, 7)) for _ in range(2))
     lower[..., :4], upper[..., :4] = value.lo.transpose(0, 2, 1), value.hi.transpose(0, 2, 1)
     return total + Ends(lower, upper)
+
+
+def bent(form: Quadratic, t: Ends) -> Ends:
+    """Half the second derivative of H along vectors t, whatever the point is, shape (slabs, N)."""
+    return _linear(form.first, t[:, None])[:, 0] * _linear(form.second, t[:, None])[:, 0]
 
 
 def at_points(form: Quadratic, u: Array) -> Ends:

@@ -77,6 +77,10 @@ class Engine(Protocol):
         """So many slabs with m unknowns are best judged together."""
         ...
 
+    def bent(self, box: Ends, t: Ends) -> Ends | None:
+        """The range of H''(t, t) / 2 over boxes, shape (slabs, N); None where H has no second derivative."""
+        ...
+
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
         ...

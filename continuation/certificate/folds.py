@@ -8,11 +8,9 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, expansion, slabs_of, velocity
+from continuation.certificate.cells import Cells, Index, Slabs, slabs_of
 from continuation.certificate.engine import Engine, Judged, solved
-from continuation.certificate.krawczyk import ByIntervals
-from continuation.intervals.calculus import along_curve
-from continuation.intervals.ends import EPS, Ends, thin
+from continuation.intervals.ends import EPS, Ends
 
 DEPTH = 3
 """A slab without a sign is cut so often at most: where that does not help the tube is too wide."""
@@ -61,14 +59,12 @@ class Turn:
     certain: bool
 
 
-def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Signs] = ()) -> list[Piece]:
+def pieces(engine: Engine, cells: Cells, known: Sequence[Signs] = ()) -> list[Piece]:
     """Pieces of all cells in order, cut until the sign of the tangent, or of its derivative, is known.
 
     Parameters
     ----------
     engine : Engine
-    plain : ByIntervals
-        For second derivatives.
     cells : Cells
         Proved ones.
     known : sequence of Signs, optional
@@ -79,21 +75,15 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Sig
     found: list[Piece] = []
     parts = PARTS[engine.order]
     for depth in range(DEPTH + 1):
-        bend, wide = np.zeros(len(slabs), dtype=np.intp), np.zeros(len(slabs), bool)
         if known and not depth:
-            sign, radius = (np.concatenate([getattr(one, name) for one in known]) for name in ("sign", "radius"))
-            # Where the cubic itself does not turn, its tube is too wide: no cut makes it narrower, a shorter cell does.
-            slope = velocity(slabs)[:, -1]
-            wide = (sign == 0) & ((slope.lo > 0.0) | (slope.hi < 0.0))
+            told = Signs(*(np.concatenate([getattr(one, name) for one in known]) for name in Signs.__annotations__))
         else:
-            told, judged = _judged_signs(engine, slabs, radius, depth > 0)
-            sign, radius = told.sign, told.radius
-            # Where bounds are sharp, a first cut tells most of what has no sign, for less than the second derivative.
-            if not sign.all() and (depth or not engine.exact):
-                bend = np.where(sign == 0, _bends(plain, judged, slabs, radius), 0)
+            told = _judged_signs(engine, slabs, radius, depth > 0)
+        sign, bend, radius = told.sign, told.bend, told.radius
         clear = (sign != 0) | (bend != 0)
         share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
-        keep = clear | wide | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
+        # A shorter cell tells more than parts of a slab: its cubic is nearer, and it has a smaller tube.
+        keep = clear | bool(known) | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
         rows = zip(*(x[keep].tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
         found += [Piece(cell, middle - half, middle + half, a, b) for cell, middle, half, a, b in rows]
         if keep.all():
@@ -105,23 +95,29 @@ def pieces(engine: Engine, plain: ByIntervals, cells: Cells, known: Sequence[Sig
 
 @frozen(eq=False)
 class Signs:
-    """Signs of the parameter's component of the tangent on slabs, and radii within which the curve lies there."""
+    """Signs of the parameter's component of the tangent on slabs, of its derivative where it has none, as in `Piece`.
+
+    The curve lies within the radii.
+    """
 
     sign: Index
+    bend: Index
     radius: Array
 
     def split(self, owner: Index, count: int) -> list[Signs]:
         """Those of each cell; the slabs are in the order of their cells."""
         ends = np.cumsum(np.bincount(owner, minlength=count))[:-1]
-        return [Signs(*part) for part in zip(np.split(self.sign, ends), np.split(self.radius, ends))]
+        return [Signs(*part) for part in zip(*(np.split(x, ends) for x in (self.sign, self.bend, self.radius)))]
 
 
-def signs(judged: Judged, radius: Array, tube: Array) -> Signs:
+def signs(engine: Engine, judged: Judged, slabs: Slabs, radius: Array, tube: Array) -> Signs:
     """From bounds that hold for all radii.
 
     Parameters
     ----------
+    engine : Engine
     judged : Judged
+    slabs : Slabs
     radius : ndarray, shape (slabs, N + 1)
         Within which the curve lies.
     tube : ndarray, shape (slabs, N + 1)
@@ -132,18 +128,19 @@ def signs(judged: Judged, radius: Array, tube: Array) -> Signs:
         for _ in range(NARROWER):
             radius = _narrowed(judged, radius)
         sign = _sign(judged, radius, tube)
-    return Signs(sign, radius)
+    return Signs(sign, _bends(engine, judged, slabs, radius, tube, sign), radius)
 
 
-def _judged_signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> tuple[Signs, Judged]:
-    """From new bounds, and these."""
+def _judged_signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> Signs:
+    """From new bounds."""
     judged, tube = engine.judge(slabs, radius), slabs.cells.radius
     if engine.exact:
-        return signs(judged, radius, tube), judged
+        return signs(engine, judged, slabs, radius, tube)
     if narrow:
         radius = _narrowed(judged, radius)
         judged = engine.judge(slabs, radius)
-    return Signs(_sign(judged, radius, tube), radius), judged
+    sign = _sign(judged, radius, tube)
+    return Signs(sign, _bends(engine, judged, slabs, radius, tube, sign), radius)
 
 
 def _narrowed(judged: Judged, radius: Array) -> Array:
@@ -158,22 +155,25 @@ def _sign(judged: Judged, radius: Array, tube: Array) -> Index:
     return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0))
 
 
-def _bends(plain: ByIntervals, judged: Judged, slabs: Slabs, radius: Array) -> Index:
-    """Signs of the derivative of the parameter's component of t, c . t = 1, along the path.
+def _bends(engine: Engine, judged: Judged, slabs: Slabs, radius: Array, tube: Array, sign: Index) -> Index:
+    """Signs of the derivative of the parameter's component of t, c . t = 1, along the path, where it has none itself.
 
     H' t = 0 gives H' t' = -H''(u', t), where u' is t times c . p' > 0: the sign is that of the last component of
     -G'^{-1} (H''(t, t), 0).
     """
-    tube, x = slabs.cells.radius, slabs.offset[:, None]
+    if sign.all():
+        return np.zeros_like(sign)
+    x = slabs.offset[:, None]
     t = judged.tangent(radius, tube)
-    box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
+    box = slabs.expansion.over(Ends(-x, x))[0] + Ends(-radius, radius)
     with np.errstate(all="ignore"):
-        image = plain.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).ends
-        if len(image.lo) < 3:  # constant along every line: no derivative has a sign
-            return np.zeros(len(slabs), dtype=np.intp)
-        lo, hi = (np.concatenate([half[2], np.zeros((len(slabs), 1))], axis=1) for half in (image.lo, image.hi))
-        v = solved(judged, judged.applied(Ends(0.5 * lo, 0.5 * hi)), radius, tube)
-        return np.where(v.hi[:, -1] < 0.0, 1, np.where(v.lo[:, -1] > 0.0, -1, 0))
+        second = engine.bent(box, t)
+        if second is None:  # no derivative has a sign
+            return np.zeros_like(sign)
+        lo, hi = (np.concatenate([half, np.zeros((len(slabs), 1))], axis=1) for half in (second.lo, second.hi))
+        v = solved(judged, judged.applied(Ends(lo, hi)), radius, tube)
+        bend = np.where(v.hi[:, -1] < 0.0, 1, np.where(v.lo[:, -1] > 0.0, -1, 0))
+    return np.where(sign == 0, bend, 0)
 
 
 def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:

@@ -84,8 +84,8 @@ class Quadratic:
         kinds = ((matrix, self.even), (matrix, rest), (self.first.matrix, every), (self.plain.matrix, every))
         return tuple(Blocks.of(*kind) for kind in kinds)
 
-    def times(self, left: Array, a: Array, b: Array, chart: Array, powers: int) -> Array:
-        """Products with the coefficients of G' along cubics, shape (powers, slabs, m, N + 1).
+    def times(self, left: Array, a: Array, b: Array, chart: Array, scale: Array, powers: int) -> Array:
+        """Products with the coefficients of G' along cubics, in units of the unknowns, shape (powers, slabs, m, N + 1).
 
         Parameters
         ----------
@@ -94,6 +94,8 @@ class Quadratic:
             Coefficients of `first`, the same for even rows, and of `second`.
         chart : ndarray, shape (slabs, N + 1)
             The last row of the coefficient of power 0.
+        scale : ndarray, shape (slabs, N + 1)
+            The units.
         powers : int
             How many coefficients.
         """
@@ -105,13 +107,14 @@ class Quadratic:
             shared = out[0].copy()
             for k in range(powers):
                 np.multiply(shared, a[:, k, self.even[0], None, None], out=out[k])
+        for block in plain:
+            block.add(out[0], left)
+        out[0] += left[:, :, -1:] * chart[:, None, :]
         for k in range(powers):
             for blocks, factor in ((rest, a), (first, b)):
                 for block in blocks:
                     block.add(out[k], left, factor[:, k])
-        for block in plain:
-            block.add(out[0], left)
-        out[0] += left[:, :, -1:] * chart[:, None, :]
+            out[k] *= scale[:, None, :]
         return out
 
     @cached_property

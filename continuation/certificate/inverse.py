@@ -105,4 +105,5 @@ def inverted(
 
 
 def _plain(matrices: Array, Y: Array, place: Any) -> Array:
-    return np.matmul(Y, matrices[place])[None]
+    found: Array = np.matmul(Y, matrices[place])[None]
+    return found

@@ -98,6 +98,11 @@ class ByIntervals:
         """All of them: `judge` parts them itself."""
         return ENTRIES
 
+    def bent(self, box: Ends, t: Ends) -> Ends | None:
+        """See `Engine`."""
+        image = self.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).ends
+        return image[2] if len(image.lo) == 3 else None  # constant along every line
+
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`."""
         m = radius.shape[1]
@@ -228,7 +233,7 @@ class Bounded:
 
     def closed(self, tube: Array) -> None:
         """They are wider than what a node needs."""
-        return None
+        return
 
     def applied(self, v: Ends) -> Ends:
         """Y(s) = (I - x E) Y_0."""

@@ -14,7 +14,7 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_node, expansion, velocity
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_node, expansion
 from continuation.certificate.engine import Engine, up_by
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 
@@ -118,7 +118,7 @@ def reach(cells: Cells, s: Array, radius: Array) -> Array:
     """
     count = len(cells)
     room = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells)
-    speed = velocity(room)
+    speed = room.velocity
     least, _ = along(cells.chart, speed)
     with np.errstate(all="ignore"):
         off = up_by((np.abs(cells.chart) * radius).sum(axis=1), radius.shape[1])

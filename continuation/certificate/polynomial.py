@@ -16,7 +16,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Slabs, velocity
+from continuation.certificate.cells import Slabs
 from continuation.certificate.derivative import Derivative, at_points
 from continuation.certificate.engine import up_by
 from continuation.certificate.inverse import inverted, times
@@ -54,7 +54,8 @@ def image_of(matrix: Single, x: Array) -> Array:
     # What is clamped does not underflow on its way to single precision.
     scaled = np.maximum(x / unit, 2.0**-60).astype(np.float32)
     image: Array = np.matmul(matrix, scaled[..., None])[..., 0].astype(float)
-    return (image * (1.0 + 4.0 * rounded(m)) + 2.0 * m * LOST) * unit * (1.0 + 4.0 * EPS)
+    bound: Array = (image * (1.0 + 4.0 * rounded(m)) + 2.0 * m * LOST) * unit * (1.0 + 4.0 * EPS)
+    return bound
 
 
 @frozen(eq=False)
@@ -74,7 +75,9 @@ class Ball:
         """Matrices times them; `size` are the absolute values of the entries, where they are known already."""
         count = matrix.shape[-1] + 4
         room = self.radius + accumulated(count) * np.abs(self.middle)
-        return Ball(np.matmul(matrix, self.middle), up_by(np.matmul(np.abs(matrix) if size is None else size, room), count))
+        return Ball(
+            np.matmul(matrix, self.middle), up_by(np.matmul(np.abs(matrix) if size is None else size, room), count)
+        )
 
     @property
     def size(self) -> Array:
@@ -161,9 +164,7 @@ class Polynomial:
         moving = bool(slabs.offset.any())
 
         def product(Y: Array, place: Any) -> Array:
-            found = form.times(Y, derivative.a[place], derivative.b[place], chart[place], 4 if moving else 1)
-            found *= d[place][:, None, :]
-            return found
+            return form.times(Y, derivative.a[place], derivative.b[place], chart[place], d[place], 4 if moving else 1)
 
         Y, off, found = inverted(G0, *form.pivots, radius / d, product)
         if not moving:
@@ -181,8 +182,10 @@ class Polynomial:
     @cached_property
     def sizes(self) -> Single:
         """|E| and |C|, side by side."""
-        assert self.E is not None and self.C is not None
-        return np.abs(np.concatenate([self.E, self.C], axis=2))
+        assert self.E is not None
+        assert self.C is not None
+        found: Single = np.abs(np.concatenate([self.E, self.C], axis=2))
+        return found
 
     @cached_property
     def _along(self) -> tuple[Array, Array]:
@@ -190,9 +193,10 @@ class Polynomial:
         image = Ball.of(self.derivative.residual).through(self.Y[:, :, :-1], self.size_Y)
         if self.E is None or self.C is None:
             return self.d * image.size[..., 0], self.d * image.size[..., 1]
-        both = [image, *(image.through(matrix.astype(float)) for matrix in (self.E, self.C))]
+        by_E, by_C = (image.through(matrix.astype(float)) for matrix in (self.E, self.C))
         t = self.slabs.offset[:, None]
-        return self.d * _largest(*both, t), self.d * _largest(*(v.derivative for v in both), t)
+        slope = _largest(image.derivative, by_E.derivative, by_C.derivative, t)
+        return self.d * _largest(image, by_E, by_C, t), self.d * slope
 
     @property
     def misfit(self) -> Array:
@@ -201,15 +205,11 @@ class Polynomial:
 
     def applied(self, v: Ends) -> Ends:
         """Y(s) = (I - x E + x^2 C) Y_0."""
-        t = self.slabs.offset[:, None]
-        return self._moved(Ends(-t, t), Ends(np.zeros_like(t), t * t * (1.0 + 4.0 * EPS)), self.Y, v)
-
-    def _moved(self, x: Ends, square: Ends, Y: Array, v: Ends) -> Ends:
-        image = Ball.of(v[..., None]).through(Y)
+        image, t = Ball.of(v[..., None]).through(self.Y), self.slabs.offset[:, None]
         total = image.ends[..., 0]
         if self.E is not None and self.C is not None:
             by_E, by_C = (image.through(matrix.astype(float)).ends[..., 0] for matrix in (self.E, self.C))
-            total = total - x * by_E + square * by_C
+            total = total + Ends(-t, t) * by_E + Ends(np.zeros_like(t), t * t * (1.0 + 4.0 * EPS)) * by_C
         return total * thin(self.d)
 
     @cached_property
@@ -279,7 +279,7 @@ class Polynomial:
         the errors that x times it has in I - Y(s) G'.
         """
         if self.E is None or self.left is None:
-            return self._pushed(self.derivative.products(self._velocity.magnitude(), radius))
+            return self._pushed(self.derivative.products(self.slabs.velocity.magnitude(), radius))
         unit, errors = self._errors
         t, r = self.slabs.offset[:, None], radius / self.d
         third, by_F, by_H = np.split(image_of(self.left, r), 3, axis=1)
@@ -305,14 +305,14 @@ class Polynomial:
             theta = (v / tube).max(axis=1, keepdims=True)
             return up_by(total + np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * tube, 4 * terms + 16)
 
-    @cached_property
-    def _velocity(self) -> Ends:
-        return velocity(self.slabs)
-
     def tangent(self, radius: Array, tube: Array) -> Ends:
         """See `Judged.tangent`: u'(s)."""
-        room = self._drift(radius, tube, TERMS)
-        return self._velocity + Ends(-room, room)
+        for terms in (0, TERMS):
+            room = self._drift(radius, tube, terms)
+            found = self.slabs.velocity + Ends(-room, room)
+            if ((found.lo[:, -1] > 0.0) | (found.hi[:, -1] < 0.0)).all():
+                break
+        return found
 
     def closed(self, tube: Array) -> tuple[Array, Ends]:
         """See `Judged.closed`.
@@ -323,8 +323,10 @@ class Polynomial:
         with np.errstate(all="ignore"):
             x = thin(one) - thin(self.slabs.middle[:, None])
             known = (x.hi <= self.slabs.offset[:, None]) & (x.lo >= 0.0)
-            residual = at_points(self.derivative.form, cells.end)
-            misfit = self._moved(x, x * x, self.Y[:, :, :-1], residual).magnitude()
+            residual = Ball.of(at_points(self.derivative.form, cells.end)[..., None])
+            image = residual.through(self.Y[:, :, :-1], self.size_Y).size[..., 0]
+            both = np.concatenate([x.hi * image, x.hi**2 * image], axis=1)
+            misfit = up_by(self.d * (image + image_of(self.sizes, both)), 8)
             kappa = (self.spread(tube, tube) / tube).max(axis=1, keepdims=True)
             least = (misfit / tube).max(axis=1, keepdims=True)
             part = np.maximum(SPARE * least / (1.0 - kappa), LEAST) * (1.0 + 16.0 * EPS)

@@ -60,7 +60,9 @@ class Blocks:
         ]
         kinds: list[tuple[Any, Any, Array]] = []
         if len(alone):
-            for part in np.split(np.arange(len(alone)), np.flatnonzero((np.diff(alone) != 1) | (np.diff(owners) != 1)) + 1):
+            for part in np.split(
+                np.arange(len(alone)), np.flatnonzero((np.diff(alone) != 1) | (np.diff(owners) != 1)) + 1
+            ):
                 i, j = owners[part], alone[part]
                 kinds.append((_runs(i)[0], _runs(j)[0], matrix[i, j]))
             if len(kinds) > RUNS:

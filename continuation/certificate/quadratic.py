@@ -13,8 +13,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Slabs, expansion
-from continuation.certificate.derivative import Derivative
+from continuation.certificate.cells import Slabs
+from continuation.certificate.derivative import Derivative, bent
 from continuation.certificate.engine import Judged
 from continuation.certificate.form import Quadratic
 from continuation.certificate.krawczyk import Several
@@ -47,6 +47,10 @@ class ByProducts:
         """See `Engine`."""
         return max(1, ENTRIES // (m * m))
 
+    def bent(self, box: Ends, t: Ends) -> Ends:
+        """See `Engine`; the same everywhere."""
+        return bent(self.form, t)
+
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`; valid for all radii."""
         places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // self.together(radius.shape[1])))
@@ -54,9 +58,11 @@ class ByProducts:
         # again each time took a third of a judgement. Nothing is written to this one.
         np.empty(ROOM)
         with np.errstate(all="ignore"):
+            if len(places) == 1:
+                return self._judge(slabs, radius)
             return Several.of([(place, self._judge(slabs.take(place), radius[place])) for place in places])
 
     def _judge(self, slabs: Slabs, radius: Array) -> Polynomial:
-        q = expansion(slabs).q
+        q = slabs.expansion.q
         cubic = Ends(np.stack([k.lo for k in q], axis=1), np.stack([k.hi for k in q], axis=1))
         return Polynomial.of(slabs, Derivative.of(self.form, cubic), radius)

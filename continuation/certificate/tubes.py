@@ -10,7 +10,7 @@ from continuation.certificate.cells import Cells, Index, Slabs, advance, joined,
 from continuation.certificate.engine import Engine, Judged
 from continuation.certificate.folds import Signs, signs
 from continuation.certificate.links import Nodes
-from continuation.intervals.ends import EPS, Ends, Mask
+from continuation.intervals.ends import EPS, Mask
 
 FLOOR = 1e-6
 """Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's
@@ -94,7 +94,8 @@ def search(engine: Engine, cells: Cells) -> Found:
     found = [_search(engine, cells.take(place)) for place in _together(engine, cells)]
     return Found(
         joined([one.cells for one in found]),
-        *(np.concatenate([getattr(one, name) for one in found]) for name in ("proved", "undefined")),
+        np.concatenate([one.proved for one in found]),
+        np.concatenate([one.undefined for one in found]),
         [signs for one in found for signs in one.signs],
         Nodes.joined([one.ends for one in found]),
     )
@@ -128,7 +129,7 @@ def _search(engine: Engine, cells: Cells) -> Found:
         good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             tube = wanted[parts.owner]
-            by_cell = signs(judged, tube, tube).split(parts.owner, len(tried))
+            by_cell = signs(engine, judged, parts, tube, tube).split(parts.owner, len(tried))
             for k in np.flatnonzero(good).tolist():
                 told[pending[k]] = by_cell[k]
             ends.put(pending[good], _ends(parts, judged, tube).take(good))

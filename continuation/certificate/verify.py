@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import numpy as np
 from attrs import evolve
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, expansion, joined, sizes
+from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, certificate_of, series_of
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Turn, pieces, turns
-from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check, checked
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
-from continuation.status import Kind, Status
+from continuation.status import Kind
 
 NOT_A_NODE = "a point of the path is no node of the proof"
 NO_END = "no tube was found at the end"
-NO_CURVE = "no point of the curve was found at the end"
-
-NEAR_END = 1e-5
-"""How far the parameter may be from its target, of its way there, where an exact end takes the place of the rest."""
 
 CLOSE = 1e-4
 """How far an event may be from the curve, in sizes of its cell: located ones are off by their tolerance, of 1e-6."""
@@ -37,7 +33,6 @@ WIDER = 1.5
 
 def verified(
     engine: Engine,
-    plain: ByIntervals,
     cells: Cells,
     path: Path,
     homotopy: Any,
@@ -49,7 +44,6 @@ def verified(
     Parameters
     ----------
     engine : Engine
-    plain : ByIntervals
     cells : Cells
         In order.
     path : Path
@@ -76,16 +70,18 @@ def verified(
         if cells.place[k, 1] == cells.place[k + 1, 0]
     ]
     gaps += _order(cells, path, ends.take(slice(0, 1)))
-    certificate = _certificate(cells, at, ends, path, homotopy)
-    if certificate:
-        before = float(cells.place[-1, 1])
+    certificate, before = certificate_of(cells, at, ends, path, homotopy), float(cells.place[-1, 1])
+    series = "" if certificate else series_of(cells, at, path)
+    if certificate or series:
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
     places = [_place(cells, event, path.arclength) for event in path.events]
     places = _on_curve(engine, cells, path.events, places)
-    told = _between_nodes(known or pieces(engine, plain, cells), cells, ends, at)
+    told = _between_nodes(known or pieces(engine, cells), cells, ends, at)
     turning, more = _turning(cells, told, path, places)
     gaps += more + _events(path, places)
-    end, radius, missing = (certificate, None, []) if certificate else _end(cells, at, ends, path)
+    end, radius, missing = (certificate, None, []) if certificate else at_end(cells, at, ends, path)
+    if series:
+        end, missing = series, [Gap(before, float(path.arclength[-1]), LIMIT)]
     gaps += missing
     return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
@@ -297,56 +293,3 @@ def _events(path: Path, places: list[float | None]) -> list[Gap]:
             gaps.append(Gap(s, s, f"the event {event.name!r} is out of order"))
         last = last if place is None else max(last, place)
     return gaps
-
-
-# --- the end ----------------------------------------------------------------------------------------------
-
-
-@runtime_checkable
-class SupportsEndCertificate(Protocol):
-    """A homotopy whose ends can be proved to be solutions by other means than the path."""
-
-    def certify_end(self, y: Array) -> str:
-        """What is proved of the end, as a sentence; empty where nothing is.
-
-        Parameters
-        ----------
-        y : ndarray, shape (N,)
-
-        Returns
-        -------
-        str
-        """
-        ...
-
-
-def _certificate(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> str:
-    """What is said of an end that the tubes do not reach, or not at the target, where the homotopy can prove it."""
-    last, end = float(cells.end[-1, -1]), path.steps[-1]
-    if path.status is not Status.REACHED_TARGET or not isinstance(homotopy, SupportsEndCertificate):
-        return ""
-    if not at.proved[-1] or _at_target(cells, ends, path):
-        return ""
-    if not abs(last - end.lam) <= NEAR_END * abs(path.steps[0].lam - end.lam):
-        return ""
-    sentence = homotopy.certify_end(end.y)
-    return f"Proved to lam = {last:.1e}. {sentence}" if sentence else ""
-
-
-def _at_target(cells: Cells, ends: Nodes, path: Path) -> bool:
-    """Whether the last tube has a point of the curve exactly at the parameter of the last point of the path."""
-    last, there = cells.take(slice(-1, None)), ends.take(slice(1, 2))
-    whole = last.place[0, 1] == path.arclength[-1] and bool((last.end[0] == path.steps[-1].u).all())
-    held = reach(last, np.ones(1), there.radius) <= last.radius
-    return bool(whole and there.proved.all() and held.all())
-
-
-def _end(cells: Cells, at: Nodes, ends: Nodes, path: Path) -> tuple[str, Array | None, list[Gap]]:
-    """What is proved of the end: where the path reached its target, a point of the curve exactly there."""
-    s = float(path.arclength[-1])
-    if path.status is not Status.REACHED_TARGET:
-        found = bool(at.proved[-1])
-        return ("The end is a point of the curve.", None, []) if found else ("", None, [Gap(s, s, NO_CURVE)])
-    if _at_target(cells, ends, path):
-        return f"The end lies on it, exactly at lam = {path.steps[-1].lam:g}.", ends.radius[1], []
-    return "", None, [Gap(s, s, "no point of the curve was found at the target")]

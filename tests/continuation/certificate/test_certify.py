@@ -7,7 +7,7 @@ from attrs import evolve
 import continuation
 from continuation import Budget, Path, Status, Step, certify, refine, trace
 from continuation.certificate import folds, links, second, tubes, verify
-from continuation.certificate.certifying import engines
+from continuation.certificate.certifying import engine_of
 from problems import paper
 from problems.bifurcation import Aircraft, Bratu1D, Circle, Cusp, ExponentialCosine, FreudensteinRoth, Pitchfork
 from problems.lcp import LCP, homotopies
@@ -161,7 +161,7 @@ def test_without_the_direction_at_nodes_a_reversed_run_would_pass(monkeypatch):
 
 def test_without_the_spread_of_derivatives_wide_tubes_would_pass(monkeypatch):
     homotopy, _, proof = corrupted.subjects()[0]
-    engine, _ = engines(homotopy)
+    engine = engine_of(homotopy)
     wide = proof.cells.with_tubes(30.0 * proof.cells.radius, proof.cells.slabs)
     assert tubes.check(engine, proof.cells).all()
     assert not tubes.check(engine, wide).all()
