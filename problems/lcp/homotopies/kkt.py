@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
@@ -16,6 +15,7 @@ from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies.cores import Recent
+from problems.lcp.homotopies.in_full import kkt_in_full
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.kkt_system import KKTSystem, factor_kkt
 from problems.lcp.homotopies.quadratics import exact_end, kkt_form
@@ -246,41 +246,7 @@ class KKTHomotopy:
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for an LCP of order 3n, sparse as A is: for reference, the engine uses `bordered`."""
-        s, rows, mu = self._system(y, lam), self.rows, 1.0 - lam
-        column = np.concatenate([s.column, -s.c1, s.factor * s.rho - s.c2, -s.c3])
-        if not self.problem.sparse:
-            return self._dense(s), column
-        sides, eye = rows.sides, sp.eye_array(self.n, format="csr")
-        pull = sp.diags_array(sides.sign) @ eye[sides.index]
-        at = eye[rows.boxed]
-        slope = mu * sp.csr_array(self.structure.symmetrized) + lam * eye
-        whole = sp.block_array(
-            [
-                [slope, -mu * pull.T, -mu * sp.csr_array(self.structure.transpose), None],
-                [sp.diags_array(s.z1) @ pull, sp.diags_array(s.gap), None, None],
-                [sp.diags_array(s.factor) @ sp.csr_array(self.problem.A), None, sp.diags_array(s.rest),
-                 sp.diags_array(s.factor) @ at.T],
-                [None, None, -sp.diags_array(s.t) @ at, sp.diags_array(rows.width - s.z2[rows.boxed])],
-            ],
-            format="csr",
-        )  # fmt: skip
-        return whole, column
-
-    def _dense(self, s: KKTSystem) -> Array:
-        """The same in numpy alone: blocks of sparse matrices cost a small problem a hundred times as much."""
-        rows, sides, mu, N = self.rows, self.rows.sides, 1.0 - s.lam, s.c1.size + s.c3.size + 2 * self.n
-        x, first, second, third = (np.arange(N + 1)[block] for block in self.places)
-        boxed = second[rows.boxed]
-        whole = np.zeros((N, N))
-        whole[: self.n, : self.n] = mu * self.structure.symmetrized
-        whole[x, x] += s.lam
-        whole[sides.index, first], whole[first, sides.index] = -mu * sides.sign, s.z1 * sides.sign
-        whole[: self.n, self.places[2]] = -mu * self.structure.transpose
-        whole[self.places[2], : self.n] = s.factor[:, None] * self.problem.A
-        whole[first, first], whole[second, second] = s.gap, s.rest
-        whole[boxed, third], whole[third, boxed] = s.factor[rows.boxed], -s.t
-        whole[third, third] = rows.width - s.z2[rows.boxed]
-        return whole
+        return kkt_in_full(self._system(y, lam))
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:

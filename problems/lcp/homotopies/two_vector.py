@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
@@ -20,6 +19,7 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import references
 from problems.lcp.homotopies.cores import Recent
+from problems.lcp.homotopies.in_full import pairs_in_full
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.quadratics import exact_end, pairs_form
@@ -130,21 +130,7 @@ class TwoVectorHomotopy:
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for an LCP of order 2n, sparse as A is: for reference, the engine uses `bordered`."""
-        s, sign, n = self._system(y, lam), self.blend.sign, self.n
-        column = np.concatenate([sign * s.column, -self.c])
-        if not self.problem.sparse:
-            index, turn, force = self.sides.index, self.sides.sign, n + np.arange(self.sides.index.size)
-            dense = np.zeros((y.size, y.size))
-            dense[:n, :n] = sign * s.alpha * self.problem.A
-            dense[np.arange(n), np.arange(n)] += sign * s.beta
-            dense[index, force], dense[force, index], dense[force, force] = -sign * s.gamma * turn, s.y * turn, s.gap
-            return dense, column
-        eye = sp.eye_array(n, format="csr")
-        pull = eye if self.problem.standard else sp.diags_array(self.sides.sign) @ eye[self.sides.index]
-        diagonal = sp.diags_array(np.broadcast_to(sign * s.beta, n))
-        top = [sp.csr_array(sign * s.alpha * self.problem.A) + diagonal, -sign * s.gamma * pull.T]
-        whole = sp.block_array([top, [sp.diags_array(s.y) @ pull, sp.diags_array(s.gap)]], format="csr")
-        return whole, column
+        return pairs_in_full(self._system(y, lam))
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:

@@ -12,8 +12,6 @@ import continuation
 from continuation import Budget, Monitor, Status, TargetValue, Tracer, from_functions, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack, unpack
-from continuation.archive.resume import stored_homotopy
-from continuation.archive.trust import registry
 from continuation.metric import Relative
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth
 
@@ -241,40 +239,6 @@ def test_a_homotopy_that_says_what_to_store(tmp_path):
     with pytest.raises(ArchiveError, match=r"Telling is not registered: pass it in trust=.*pass homotopy="):
         resume(tmp_path / "run.h5")
     assert_same_path(resume(tmp_path / "run.h5", trust=[Telling]), trace(Telling(2.0)))
-
-
-@attrs.frozen(eq=False)
-class Quadric:
-    """A matrix, twice, of either layout."""
-
-    matrix: np.ndarray
-    scaled: tuple[np.ndarray, float]
-    target = 1.0
-
-    def start(self):
-        return np.zeros(len(self.matrix)), 0.0
-
-    def residual(self, y, lam):
-        return y + 0.3 * np.tanh(self.matrix @ y) - lam * self.scaled[1] * (self.scaled[0] @ np.ones(len(y)))
-
-
-@pytest.mark.parametrize("order", ["C", "F"])
-@pytest.mark.parametrize("first", [True, False])
-def test_matrices_come_back_as_they_lay_in_memory(tmp_path, order, first):
-    """BLAS adds up in another order for the one layout than for the other."""
-    matrix = np.asarray(np.random.default_rng(4).standard_normal((9, 9)), order=order)
-    homotopy = Quadric(matrix, (matrix, 0.5))
-    with PathLog(tmp_path / "run.h5") as log:
-        if not first:
-            trace(Quadric(np.eye(9), (np.eye(9), 2.0)), archive=log)
-        steps = iter(Tracer(homotopy, observers=(log,)))
-        assert any(step.index == 2 for step in steps)
-        steps.close()
-    with open_archive(tmp_path / "run.h5") as archive:
-        made = stored_homotopy(archive, archive.checkpoint(), registry([Quadric]))
-    assert made.matrix.flags == matrix.flags
-    assert np.array_equal(made.matrix, matrix)
-    assert_same_path(resume(tmp_path / "run.h5", trust=[Quadric]), trace(homotopy))
 
 
 def test_a_monitor_that_cannot_be_stored_is_asked_for(tmp_path):

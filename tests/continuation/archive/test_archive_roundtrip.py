@@ -8,11 +8,15 @@ import xarray
 
 import continuation
 from continuation import Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
-from continuation.archive import Limits, PathLog, open_archive
+from continuation.archive import Limits, PathLog, open_archive, resume
+from continuation.archive.resume import stored_homotopy
 from continuation.archive.schema import SCHEMA
+from continuation.archive.trust import registry
 from continuation.counts import Counts
 from continuation.path import LocatedEvent, Step
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth, Pitchfork
+
+from .test_archive_resume import assert_same_path
 
 EVENTS = (TargetValue(0.25, terminal=0), TargetValue(20.0, component=0, terminal=0))
 CASES = {
@@ -104,7 +108,11 @@ def test_xarray_opens_the_file_without_us(tmp_path, engine):
     with xarray.open_dataset(tmp_path / "run.h5", engine=engine) as data:
         data.load()
     assert dict(data.sizes) == {
-        "point": len(path) + len(path.turning_points), "path": 1, "component": 2, "controller": 4, "event": 2,
+        "point": len(path) + len(path.turning_points),
+        "path": 1,
+        "component": 2,
+        "controller": 4,
+        "event": 2,
     }
     assert set(data.coords) == {"path", "component"}
     assert data.y.dims == ("point", "component")
@@ -259,3 +267,37 @@ def test_paths_of_another_size_are_refused(tmp_path):
             trace(FreudensteinRoth(), archive=log)
     with open_archive(tmp_path / "run.h5") as archive:
         assert [path.status for path in archive] == [Status.CLOSED, Status.RAISED]
+
+
+@attrs.frozen(eq=False)
+class Quadric:
+    """A matrix, twice, of either layout."""
+
+    matrix: np.ndarray
+    scaled: tuple[np.ndarray, float]
+    target = 1.0
+
+    def start(self):
+        return np.zeros(len(self.matrix)), 0.0
+
+    def residual(self, y, lam):
+        return y + 0.3 * np.tanh(self.matrix @ y) - lam * self.scaled[1] * (self.scaled[0] @ np.ones(len(y)))
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("first", [True, False])
+def test_matrices_come_back_as_they_lay_in_memory(tmp_path, order, first):
+    """BLAS adds up in another order for the one layout than for the other."""
+    matrix = np.asarray(np.random.default_rng(4).standard_normal((9, 9)), order=order)
+    homotopy = Quadric(matrix, (matrix, 0.5))
+    with PathLog(tmp_path / "run.h5") as log:
+        if not first:
+            trace(Quadric(np.eye(9), (np.eye(9), 2.0)), archive=log)
+        steps = iter(Tracer(homotopy, observers=(log,)))
+        assert any(step.index == 2 for step in steps)
+        steps.close()
+    with open_archive(tmp_path / "run.h5") as archive:
+        made = stored_homotopy(archive, archive.checkpoint(), registry([Quadric]))
+    assert made.matrix.flags == matrix.flags
+    assert np.array_equal(made.matrix, matrix)
+    assert_same_path(resume(tmp_path / "run.h5", trust=[Quadric]), trace(homotopy))
