@@ -268,6 +268,13 @@ def branch_point_near(
             if (here.weak or accuracy > RANK) and kernels(here.matrix, accuracy)[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes that regular.
                 return None
+            if newton.size > HALTED[0]:
+                # A regular zero, from so near that the first increments did not halve: the next one is round-off.
+                before = newton.size
+                newton.run(increment, measure, lambda size: True)
+                if newton.size < before:
+                    u = newton.x[:-1]
+                    here = at(u)
             found = directions(scaled, here, u, heading / extent)
     except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):
         return None

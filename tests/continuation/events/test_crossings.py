@@ -260,3 +260,11 @@ def test_random_crossings_in_random_units(family, preset):
     for _ in range(4):
         problem = campaign.FAMILIES[family](rng, int(rng.integers(1, 9)), float(rng.choice([0.0, 6.0])))
         assert campaign.judged(problem, family == "arm", preset)[0] == ""
+
+
+def test_from_very_near_the_first_increments_need_not_halve():
+    """Newton's method stopped 3e-8 from the crossing, at which its next increment would have been round-off."""
+    *_, problem = campaign.drawn("transversal", 263, 5005)
+    wrong, error, _ = campaign.judged(problem, False, continuation.SERIES)
+    assert wrong == ""
+    assert error < 1e-9
