@@ -196,23 +196,8 @@ def _every(values: Mask, owner: Index, count: int) -> Mask:
     return out
 
 
-def check(engine: Engine, cells: Cells) -> Mask:
-    """Whether the tubes of these cells are proved, with the radii and slabs that they have.
-
-    Parameters
-    ----------
-    engine : Engine
-    cells : Cells
-
-    Returns
-    -------
-    ndarray of bool, shape (cells,)
-    """
-    return checked(engine, cells)[0]
-
-
-def checked(engine: Engine, cells: Cells) -> tuple[Mask, Nodes]:
-    """`check`, and the curve at the ends of the cells.
+def check(engine: Engine, cells: Cells) -> tuple[Mask, Nodes]:
+    """Whether the tubes of these cells are proved, with the radii and slabs that they have; the curve at their ends.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Turn, pieces, turns
 from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
-from continuation.certificate.tubes import check, checked
+from continuation.certificate.tubes import check
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
@@ -57,7 +57,7 @@ def verified(
     gaps = list(gaps)
     known, at = found or (None, Nodes.unknown(*cells.radius.shape))
     if found is None and len(cells):
-        good, at = checked(engine, cells)
+        good, at = check(engine, cells)
         gaps += [Gap(begin, end, "the tube does not hold") for begin, end in cells.place[~good].tolist()]
         cells, at = cells.take(good), at.take(good)
     if not len(cells):
@@ -116,7 +116,7 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
         if not len(changed):
             break
         tried = cells.take(changed).with_tubes(wanted[changed], cells.slabs[changed])
-        good = check(engine, tried)
+        good, _ = check(engine, tried)
         radius = cells.radius.copy()
         radius[changed[good]] = wanted[changed[good]]
         cells = cells.with_tubes(radius, cells.slabs)
