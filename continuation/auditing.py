@@ -185,9 +185,13 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
         here = linearize(solver.evaluator, step.u, weights, weights * step.tangent)
         # At a branch point no plane is met regularly: it is met where the retrace locates the same one.
         located = [event for event in tracer.path.branch_points if event.step == step.index]
-        while before is not None and met < len(knots) and (
-            _meets(solver, knots[met], before, here)
-            or any(_same(weights, event, knots[met], solver.tolerance) for event in located)
+        while (
+            before is not None
+            and met < len(knots)
+            and (
+                _meets(solver, knots[met], before, here)
+                or any(_same(weights, event, knots[met], solver.tolerance) for event in located)
+            )
         ):
             met, met_at = met + 1, step.arclength
         # Between two points of one path lies little more than their chord; a loop that was left out is longer.

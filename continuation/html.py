@@ -8,7 +8,7 @@ from typing import Any
 
 from continuation.path import Path
 
-MOST_ROWS = 10
+TABLE_ROWS = 10
 
 
 def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = ()) -> str:
@@ -41,8 +41,8 @@ def path_page(path: Path) -> str:
     rows.append(("cost", f"{path.counts.factorizations} factorisations, {path.seconds:.3g} s"))
     page = table(f"Path: {path.status.name}", rows)
     if path.events:
-        found = [(e.name, f"{e.lam:.10g}", f"{e.arclength:.6g}") for e in path.events[:MOST_ROWS]]
-        more = len(path.events) - MOST_ROWS
+        found = [(e.name, f"{e.lam:.10g}", f"{e.arclength:.6g}") for e in path.events[:TABLE_ROWS]]
+        more = len(path.events) - TABLE_ROWS
         caption = "Events" if more <= 0 else f"Events, {more} more"
         page += table(caption, found, ("event", path.labels.parameter(), "arclength"))
     return page
@@ -50,7 +50,7 @@ def path_page(path: Path) -> str:
 
 def archive_page(archive: Any) -> str:
     """What an archive holds, path by path."""
-    shown = range(min(len(archive), MOST_ROWS))
+    shown = range(min(len(archive), TABLE_ROWS))
     rows = [
         (k, archive.status(k).name, int(archive.paths["n_points"][k]), archive.paths["message"][k].decode())
         for k in shown

@@ -83,9 +83,7 @@ def _length(solver: PathSolver, a: Linearization, b: Linearization, measure: Arr
     border = a.weights * (b.u - a.u) / chord
     segment = hermite(a.u, a.tangent, b.u, b.tangent, border)
     nearer = (a if t < 0.5 else b for t in _NODES)
-    inside = [
-        solver.project_and_linearize(near, segment.at(t), border) for near, t in zip(nearer, _NODES)
-    ]
+    inside = [solver.project_and_linearize(near, segment.at(t), border) for near, t in zip(nearer, _NODES)]
     points = (a, *inside, b)
     along = np.array([float(np.dot(border, point.tangent)) for point in points])
     if (along > 0.0).all():

@@ -152,7 +152,7 @@ class Automatic:
         ----------
         current, origin, u : ndarray, shape (N + 1,)
         """
-        return np.minimum(current, self.of_extent(np.maximum(np.abs(u - origin), TINY)))
+        return np.minimum(current, self.of_extent(np.maximum(np.abs(u - origin), INVERTIBLE)))
 
 
 @frozen(eq=False)
@@ -206,7 +206,7 @@ class Inherited:
         return np.minimum(weights, self.before / self.part**2)
 
 
-TINY = 1e-150
+INVERTIBLE = 1e-150
 """Below this a distance counts as this: its square can still be inverted."""
 
 

@@ -51,15 +51,11 @@ def refined_path(homotopy: Any, path: Path, accuracy: float = 1e-3) -> Path:
     steps = [evolve(step, index=k) for k, step in enumerate(steps)]
     arclengths = np.array([step.arclength for step in steps])
     after = np.maximum(np.searchsorted(arclengths, [event.arclength for event in path.events]), 1).tolist()
-    events = [
-        evolve(event, step=first[event.step] if event.ends_step else k) for event, k in zip(path.events, after)
-    ]
+    events = [evolve(event, step=first[event.step] if event.ends_step else k) for event, k in zip(path.events, after)]
     return evolve(path, steps=steps, events=events)
 
 
-def _between(
-    solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int
-) -> list[Step]:
+def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int) -> list[Step]:
     """The points that an arc needs between its ends."""
     guess, slope = segment.at(0.5), segment.derivative(0.5)
     weights = np.ones_like(guess) if after.weights is None else after.weights

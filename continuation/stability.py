@@ -27,27 +27,27 @@ from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
-SMALL, INSIDE = 31, (0.25, 0.5, 0.75)
+SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
 """Up to 30 unknowns, where eigenvalues take less time than a step, an arc is looked at between its ends too: a pair may
 cross, become real, and one of the two come back through a turning point, within one step (MatCont's catalyst)."""
 
-BESIDE = 0.02
+EVENT_MARGIN = 0.02
 """So far from where it lies on an arc, in its lengths, an event may change what is seen on the segment."""
 
 CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
 """How many eigenvalues change sides there, at most."""
 
-KEPT = 12
+SPECTRA_KEPT = 12
 """Spectra that are remembered: those along an arc, and the event that is being looked at."""
 
 ON_AXIS = 1e-6
 """The real part of a Hopf point's pair, relative to its modulus: more, and a pair appeared or vanished, and none
 crossed."""
 
-CLOSE = 1e-12
+LOCATED_TO = 1e-12
 """Of an arc: nearer a point is not moved."""
 
-RESOLVED = 1e-14
+ZERO_RESOLVED = 1e-14
 """The same where it is zero: what is left is round-off of the eigenvalues."""
 
 SECANTS, ROUGH = 10, 1e-8
@@ -161,7 +161,7 @@ class BoundHopf:
         """The eigenvalues at a point, on the piece that the path is on."""
         key = (id(self.evaluator.homotopy), u.tobytes())
         if key not in self._known:
-            while len(self._known) >= KEPT:
+            while len(self._known) >= SPECTRA_KEPT:
                 del self._known[next(iter(self._known))]
             self._known[key] = self._computed(u)
         return self._known[key]
@@ -209,7 +209,7 @@ class BoundHopf:
 
     def _looks(self, arc: Arc) -> list[tuple[float, Spectrum]]:
         """Spectra along an arc: at its ends, and between them on its segment where eigenvalues cost next to nothing."""
-        inside = INSIDE if arc.a.u.size <= SMALL else ()
+        inside = ARC_QUARTERS if arc.a.u.size <= SMALL else ()
         found = ((t, self.at(arc.segment.at(t))) for t in inside)
         return [(0.0, self.at(arc.a.u)), *found, (1.0, self.at(arc.b.u))]
 
@@ -219,7 +219,7 @@ class BoundHopf:
         if rank >= found.pairs.size:
             return -found.size
         pair = found.pairs[rank]
-        return float(pair.real) if abs(pair.real) > RESOLVED * abs(pair) else 0.0
+        return float(pair.real) if abs(pair.real) > ZERO_RESOLVED * abs(pair) else 0.0
 
     def _located(self, solver: PathSolver, arc: Arc, t: float | None) -> Linearization | None:
         """The point of the path at a place, if a pair is on the axis there."""
@@ -243,7 +243,7 @@ class BoundHopf:
         if real_part(left) * real_part(right) > 0.0:
             # What the segment shows is not so on the path itself.
             return None
-        return float(brentq(real_part, left, right, xtol=CLOSE, rtol=CLOSE, disp=False))
+        return float(brentq(real_part, left, right, xtol=LOCATED_TO, rtol=LOCATED_TO, disp=False))
 
     def _followed(
         self, solver: PathSolver, arc: Arc, ends: Sequence[tuple[float, Spectrum]], rank: int
@@ -282,7 +282,7 @@ class BoundHopf:
         places = [(kind, position(arc, point.u) / length) for kind, point in found]
         for (left, before), (right, after) in pairwise(self._looks(arc)):
             sure = before.covered and after.covered and not (before.critical or after.critical)
-            near = [CROSSING.get(kind, 0) for kind, t in places if left - BESIDE <= t <= right + BESIDE]
+            near = [CROSSING.get(kind, 0) for kind, t in places if left - EVENT_MARGIN <= t <= right + EVENT_MARGIN]
             if sure and abs(after.unstable - before.unstable) > sum(near):
                 return False
         return True

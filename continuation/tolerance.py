@@ -11,7 +11,7 @@ from continuation.arrays import Array
 from continuation.checks import FRACTION, POSITIVE, complain, is_number
 from continuation.metric import norm
 
-LEAST = sys.float_info.epsilon**2
+LEAST_TOLERANCE = sys.float_info.epsilon**2
 """Of a fraction of the path: after an increment of the size of round-off the error is about its square."""
 
 
@@ -63,6 +63,6 @@ def as_tolerance(value: float | Tolerance) -> Tolerance:
         if value >= 1.0:
             raise complain(ValueError, "tolerance", "less than 1, since it is a fraction of the path", value)
     tolerance = value if isinstance(value, Tolerance) else Tolerance(relative=float(value))
-    if tolerance.relative < LEAST:
-        raise complain(ValueError, "tolerance", f"at least {LEAST:.1e}, the square of round-off", value)
+    if tolerance.relative < LEAST_TOLERANCE:
+        raise complain(ValueError, "tolerance", f"at least {LEAST_TOLERANCE:.1e}, the square of round-off", value)
     return tolerance

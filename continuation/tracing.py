@@ -145,9 +145,7 @@ def trace_both(
     return path
 
 
-def solve_at(
-    homotopy: Any, lam: float, guess: Any = None, tolerance: float | Tolerance = 1e-8
-) -> Array:
+def solve_at(homotopy: Any, lam: float, guess: Any = None, tolerance: float | Tolerance = 1e-8) -> Array:
     """The unknowns at a value of the parameter, by Newton's method from a guess: H(y, lam) = 0.
 
     Parameters

@@ -3,8 +3,6 @@
 `analyse` knows nothing of this library: it is what somebody runs who has only the file.
 """
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

@@ -22,7 +22,7 @@ from problems.options import quiet
 MAX_ITERATIONS = 10_000
 """The paper names no limit; example 8 needs 3,289 iterations."""
 
-SOLVED_TO = 1e-3
+LITERAL_SOLVED_TO = 1e-3
 """Natural residual, relative to 1 + max |q|, at which an end counts as a solution: the stopping rule leaves 8e-5 on
 example 7, and a false end is off by 0.1 or more (example 1)."""
 
@@ -83,8 +83,8 @@ class LiteralRun:
 
     @property
     def solved(self) -> bool:
-        """Whether x is a solution, to `SOLVED_TO`, with or without a claim."""
-        return self.residual <= SOLVED_TO * (1.0 + float(np.abs(self.problem.q).max()))
+        """Whether x is a solution, to `LITERAL_SOLVED_TO`, with or without a claim."""
+        return self.residual <= LITERAL_SOLVED_TO * (1.0 + float(np.abs(self.problem.q).max()))
 
 
 def run_literally(

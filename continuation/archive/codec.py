@@ -45,10 +45,6 @@ class UnstorableError(TypeError):
     """An object that cannot be written as class path and fields; the message says which and why."""
 
 
-class UnknownError(LookupError):
-    """A stored description that cannot be turned into an object again; the message says why."""
-
-
 def path_of(thing: Any) -> str:
     """``module:name`` of a class or function that can be imported under that name.
 

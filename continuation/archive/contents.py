@@ -24,9 +24,9 @@ from continuation.archive.checks import (
     of_attributes,
     width,
 )
-from continuation.archive.datasets import LIMIT, StructureError, check_size, dataset, names, subgroup
+from continuation.archive.datasets import DATASET_BYTES, StructureError, check_size, dataset, names, subgroup
 from continuation.archive.errors import ArchiveError
-from continuation.archive.files import FAULTS, PATIENCE, open_for_reading
+from continuation.archive.files import FAULTS, WRITER_SECONDS, open_for_reading
 from continuation.archive.locks import is_held
 from continuation.archive.problem import GROUP as PROBLEM
 from continuation.archive.problem import read_problem
@@ -46,7 +46,7 @@ class Contents:
     `ArchiveError` for anything wrong with it, here and in the methods.
     """
 
-    def __init__(self, file: str | PathLike[str], *, limit: int = LIMIT, salvage: bool = False) -> None:
+    def __init__(self, file: str | PathLike[str], *, limit: int = DATASET_BYTES, salvage: bool = False) -> None:
         self.file, self._limit, self._salvage = as_file("file", file), limit, salvage
         self.flaws: list[str] = []
         self._open()
@@ -75,7 +75,7 @@ class Contents:
 
     def _guarded(self, read: Callable[[], _T]) -> _T:
         """What `read` returns; a file that is being written is given time to be read right."""
-        end = time.monotonic() + PATIENCE
+        end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
                 return read()
@@ -243,7 +243,7 @@ _STRIDE = 1 << 16
 """Rows that are checked at once."""
 
 
-def _rows(found: Any, count: int, limit: int = LIMIT, stored: Any = None) -> Array:
+def _rows(found: Any, count: int, limit: int = DATASET_BYTES, stored: Any = None) -> Array:
     """The first rows of a dataset, if they are there."""
     base = found if stored is None else stored
     if base.shape[0] < count:

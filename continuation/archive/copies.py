@@ -171,13 +171,7 @@ def _filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Any], ro
 def put(target: File, write: Callable[[File], Store], *, replace: bool = False) -> None:
     """Write a whole new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
 
-    Parameters
-    ----------
-    target : pathlib.Path
-    write : callable
-        From the name to write to, to the open store.
-    replace : bool
-        Take the place of an old file.
+    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file.
     """
     with beside(target) as part:
         store = write(part)

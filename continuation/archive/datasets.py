@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 from h5py import h5d, h5l, h5o, h5z
 
-LIMIT = 1 << 28
+DATASET_BYTES = 1 << 28
 """Bytes that a compressed dataset may unfold to, unless the caller says more. Others are no larger than their file."""
 
 _CHUNK = 1 << 26
@@ -57,7 +57,7 @@ def subgroup(group: Any, name: str) -> Any:
 
 
 def dataset(
-    group: Any, name: str, kind: np.dtype[Any] | None, shape: Sequence[int | None] | None, limit: int = LIMIT
+    group: Any, name: str, kind: np.dtype[Any] | None, shape: Sequence[int | None] | None, limit: int = DATASET_BYTES
 ) -> Any:
     """A dataset in a group, its storage checked.
 
@@ -91,7 +91,7 @@ def dataset(
     return found
 
 
-def check_size(found: Any, claimed: int, limit: int = LIMIT) -> None:
+def check_size(found: Any, claimed: int, limit: int = DATASET_BYTES) -> None:
     """Whether so many bytes may be read of a dataset.
 
     Raises `StructureError` if less is stored, or more than the limit would unfold from what is.

@@ -17,7 +17,7 @@ from continuation.archive.image import Image
 from continuation.archive.locks import is_held
 from continuation.archive.schema import SCHEMA, UNCHECKED
 
-PATIENCE = 2.0
+WRITER_SECONDS = 2.0
 """Seconds for which a file that is being written may seem to be damaged: its writer is in the middle of something."""
 
 _PAUSE = 0.02
@@ -43,7 +43,7 @@ def open_for_reading(file: str | PathLike[str], *, truncated: bool = False) -> t
 
 
 def _opened(name: File, image: Image, truncated: bool) -> Any:
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + WRITER_SECONDS
     while True:
         try:
             _check_length(image, truncated)

@@ -24,6 +24,24 @@ _WORD = 0xFFFFFFFF
 _HEAP = b"GCOL"
 
 
+def _seek(file: Image | Sink, offset: int, whence: int = os.SEEK_SET) -> int:
+    """Move; the end of a file that is read is where it should be."""
+    file.at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: file.at, os.SEEK_END: file.length}[whence]
+    return file.at
+
+
+def _tell(file: Image | Sink) -> int:
+    """Where it is."""
+    return file.at
+
+
+def _read(file: Image | Sink, size: int) -> bytes:
+    """So many bytes; h5py knows a file by this method, and uses `readinto`."""
+    buffer = bytearray(size)
+    file.readinto(buffer)
+    return bytes(buffer)
+
+
 class Image:
     """A file opened for reading, as it would be if its writer had closed it.
 
@@ -32,18 +50,18 @@ class Image:
     """
 
     def __init__(self, file: File) -> None:
-        self.file, self._at = file, 0
-        self._descriptor = _opened(file)
+        self.file, self.at = file, 0
+        self.descriptor = _opened(file)
         try:
             self.refresh()
         except BaseException:
-            os.close(self._descriptor)
+            os.close(self.descriptor)
             raise
 
     def refresh(self) -> None:
         """Read the beginning anew, of a file that is being written."""
-        head = os.pread(self._descriptor, HEAD_BYTES, 0)
-        size = os.fstat(self._descriptor).st_size
+        head = os.pread(self.descriptor, HEAD_BYTES, 0)
+        size = os.fstat(self.descriptor).st_size
         _check(self.file, head)
         self.closed_by_writer, self.missing, self.length = True, 0, size
         if head[_VERSION] in (2, 3):
@@ -58,58 +76,40 @@ class Image:
             head = closed + struct.pack("<I", lookup3(closed))
         self._head = head
 
-    @property
-    def descriptor(self) -> int:
-        """The file's, for its status."""
-        return self._descriptor
-
     # -- what h5py asks for -----------------------------------------------------------------------------------
 
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Move; the end is where the file should have it."""
-        self._at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self.length}[whence]
-        return self._at
-
-    def tell(self) -> int:
-        """Where it is."""
-        return self._at
-
-    def read(self, size: int) -> bytes:
-        """So many bytes; h5py knows a file by this method, and uses the next one."""
-        buffer = bytearray(size)
-        self.readinto(buffer)
-        return bytes(buffer)
+    seek, tell, read = _seek, _tell, _read
 
     def readinto(self, buffer: bytearray) -> int:
         """Fill the buffer."""
         view = memoryview(buffer).cast("B")
         done = 0
         while done < len(view):
-            count = os.preadv(self._descriptor, [view[done:]], self._at + done)
+            count = os.preadv(self.descriptor, [view[done:]], self.at + done)
             if not count:
                 view[done:] = bytes(len(view) - done)
                 break
             done += count
-        if self._at < len(self._head):
-            count = min(len(self._head) - self._at, len(view))
-            view[:count] = self._head[self._at : self._at + count]
-        self._at += len(view)
+        if self.at < len(self._head):
+            count = min(len(self._head) - self.at, len(view))
+            view[:count] = self._head[self.at : self.at + count]
+        self.at += len(view)
         if view[:4] == _HEAP:
             _check_heap(view)
         return len(view)
 
     def close(self) -> None:
         """Give the file back."""
-        if self._descriptor >= 0:
-            os.close(self._descriptor)
-            self._descriptor = -1
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+            self.descriptor = -1
 
 
 class Sink:
     """A new file that HDF5 writes to through Python: a write that fails is kept in memory, and told by `check`."""
 
     def __init__(self, file: File) -> None:
-        self.file, self._at, self._length = file, 0, 0
+        self.file, self.at, self.length = file, 0, 0
         self.descriptor = os.open(file, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         self._error: OSError | None = None
         self._kept: list[tuple[int, bytes]] = []
@@ -119,32 +119,19 @@ class Sink:
         if self._error is not None:
             raise self._error
 
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Move."""
-        self._at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self._length}[whence]
-        return self._at
-
-    def tell(self) -> int:
-        """Where it is."""
-        return self._at
-
-    def read(self, size: int) -> bytes:
-        """So many bytes; h5py knows a file by this method, and uses the next one."""
-        buffer = bytearray(size)
-        self.readinto(buffer)
-        return bytes(buffer)
+    seek, tell, read = _seek, _tell, _read
 
     def readinto(self, buffer: bytearray) -> int:
         """Fill the buffer; what could not be written is read all the same, so that HDF5 can close the file."""
         view = memoryview(buffer).cast("B")
-        got = os.pread(self.descriptor, len(view), self._at)
+        got = os.pread(self.descriptor, len(view), self.at)
         view[: len(got)] = got
         view[len(got) :] = bytes(len(view) - len(got))
         for at, data in self._kept:
-            first, last = max(at, self._at), min(at + len(data), self._at + len(view))
+            first, last = max(at, self.at), min(at + len(data), self.at + len(view))
             if first < last:
-                view[first - self._at : last - self._at] = data[first - at : last - at]
-        self._at += len(view)
+                view[first - self.at : last - self.at] = data[first - at : last - at]
+        self.at += len(view)
         return len(view)
 
     def write(self, data: bytes) -> int:
@@ -153,23 +140,23 @@ class Sink:
         done = 0
         try:
             while self._error is None and done < len(view):
-                done += os.pwrite(self.descriptor, view[done:], self._at + done)
+                done += os.pwrite(self.descriptor, view[done:], self.at + done)
         except OSError as error:
             self._error = error
         if self._error is not None:
-            self._kept.append((self._at, bytes(view)))
-        self._at += len(view)
-        self._length = max(self._length, self._at)
+            self._kept.append((self.at, bytes(view)))
+        self.at += len(view)
+        self.length = max(self.length, self.at)
         return len(view)
 
     def truncate(self, size: int | None = None) -> int:
         """Set the length."""
-        self._length = self._at if size is None else size
+        self.length = self.at if size is None else size
         try:
-            os.ftruncate(self.descriptor, self._length)
+            os.ftruncate(self.descriptor, self.length)
         except OSError as error:
             self._error = self._error or error
-        return self._length
+        return self.length
 
     def flush(self) -> None:
         """Nothing is held back."""

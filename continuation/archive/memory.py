@@ -80,16 +80,7 @@ def dataframe_of(path: Path) -> Any:
 def save(path: Path, file: str | PathLike[str], title: str = "") -> None:
     """Write a path to a new archive.
 
-    Parameters
-    ----------
-    path : Path
-    file : path
-    title : str
-
-    Raises
-    ------
-    ArchiveError
-        If it exists, or cannot be written.
+    Raises `ArchiveError` if it exists, or cannot be written.
     """
     save_all([path], file, title)
 
@@ -97,17 +88,8 @@ def save(path: Path, file: str | PathLike[str], title: str = "") -> None:
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
     """Write paths of one homotopy to a new archive.
 
-    Parameters
-    ----------
-    many : sequence of Path
-        At least one; all of one number of unknowns, with the same scalars observed.
-    file : path
-    title : str
-
-    Raises
-    ------
-    ArchiveError
-        If it exists, or cannot be written.
+    `many`: At least one; all of one number of unknowns, with the same scalars observed. Raises `ArchiveError` if it
+    exists, or cannot be written.
     """
     target = as_file("file", file)
     check_new(target)

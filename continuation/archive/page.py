@@ -26,6 +26,10 @@ _SHOWN = 4
 _WIDTH = 92
 _MOST_LINES = 5
 _UNBROKEN = "\N{NO-BREAK SPACE}"
+_SOFTWARE = {
+    "continuation": "library", "Python": "python", "numpy": "numpy", "scipy": "scipy", "h5py": "h5py", "HDF5": "hdf5",
+}  # fmt: skip
+_SETTINGS = ("predictor", "corrector", "controller", "metric", "tolerance", "budget", "target", "events")
 
 
 def describe(archive: Archive) -> str:
@@ -73,19 +77,16 @@ def _head(archive: Archive) -> str:
     about = archive.attributes
     title = str(about.get("title", ""))
     homotopy = " ".join(filter(None, (about.get("homotopy", ""), _within(about.get("homotopy_distribution", "")))))
-    versions = ", ".join(
-        f"{name} {about.get(f'{key}_version', '?')}"
-        for name, key in (("continuation", "library"), ("Python", "python"), ("numpy", "numpy"), ("scipy", "scipy"),
-                          ("h5py", "h5py"), ("HDF5", "hdf5"))
-    )
+    held = f"{_plural(len(archive), 'path')}, {_plural(archive.points.size, 'point')}"
+    settings = json.loads(about.get("settings", "{}"))
+    versions = ", ".join(f"{name} {about.get(f'{key}_version', '?')}" for name, key in _SOFTWARE.items())
     lines = [
         ("file", f"{archive.file}, {_bytes(archive.contents.size)}, {about.get('schema', '')}"),
-        ("holds", f"{_plural(len(archive), 'path')}, {_plural(archive.points.size, 'point')} of "
-                  f"{_plural(archive.layout.unknowns, 'unknown')}"),
+        ("holds", f"{held} of {_plural(archive.layout.unknowns, 'unknown')}"),
         ("when", f"{about.get('created', '')} on {about.get('host', '')}"),
         ("homotopy", homotopy),
         ("parameters", _fields(json.loads(about.get("parameters", "{}") or "{}"))),
-        *_settings(json.loads(about.get("settings", "{}"))),
+        *((name, _shown(settings[name])) for name in _SETTINGS if name in settings),
         ("software", versions),
         ("BLAS", f"{about.get('blas', '')}, threads {about.get('blas_threads', '')}"),
         ("parent", str(about.get("parent", ""))),
@@ -93,11 +94,6 @@ def _head(archive: Archive) -> str:
     ]
     body = "\n".join(_wrapped(f"  {name:<11}", text) for name, text in lines if text)
     return f"{title}\n{'=' * len(title)}\n{body}"
-
-
-def _settings(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
-    names = ("predictor", "corrector", "controller", "metric", "tolerance", "budget", "target", "events")
-    return [(name, _shown(settings[name])) for name in names if name in settings]
 
 
 def _shown(tree: Any) -> str:
@@ -232,10 +228,8 @@ def _makeable(archive: Archive, checkpoint: Checkpoint) -> bool:
     described: Any = checkpoint.run.get("homotopy", {})
     if described.get("problem"):
         described = json.loads(archive.problem()[0])
-    known = registry()
-    return isinstance(described, dict) and "class" in described and (
-        described["class"] in known or is_registered(described["class"])
-    )
+    name = described.get("class") if isinstance(described, dict) else None
+    return name is not None and (name in registry() or is_registered(name))
 
 
 # -- words ----------------------------------------------------------------------------------------------------

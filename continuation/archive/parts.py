@@ -16,7 +16,7 @@ from continuation.archive.workers import Batch
 from continuation.archive.writer import PathLog
 from continuation.status import Status
 
-PATIENCE = 10.0
+THREAD_SECONDS = 10.0
 """Seconds for those that cannot be ended, as threads: a file is merged when its writer has left it."""
 
 _LOOK = 0.05
@@ -36,7 +36,7 @@ def finished(batch: Batch) -> set[int]:
 
 def end_repeats(target: File, token: str, sign: File) -> None:
     """Let those end that do a batch again whose result is here: dask begins it elsewhere when its worker dies then."""
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + THREAD_SECONDS
     while any(map(is_held, _files(target, token))) and time.monotonic() < until:
         sign.touch()
         time.sleep(_LOOK)

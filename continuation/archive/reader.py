@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from numbers import Integral
 from os import PathLike
 from types import TracebackType
@@ -14,7 +15,7 @@ import numpy as np
 from continuation.archive import frames, record
 from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.datasets import LIMIT
+from continuation.archive.datasets import DATASET_BYTES
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES
 from continuation.archive.selection import Selection, selected
@@ -52,7 +53,7 @@ class Archive(Sequence[Path]):
         False for a file that is growing, or was left by a kill: `recover` makes it whole.
     """
 
-    def __init__(self, file: str | PathLike[str], *, limit: int = LIMIT) -> None:
+    def __init__(self, file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> None:
         self.contents = contents = Contents(file, limit=limit)
         self.file = contents.file
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
@@ -75,7 +76,7 @@ class Archive(Sequence[Path]):
         if rest:
             self._first_rows = np.append(self._first_rows, self._committed_points)
             self._unended = self._record_of_unended(rest)
-        self.points = Table(self.layout.point_columns, self._committed_points, self._fetch_point)
+        self.points = Table(self.layout.point_columns, self._committed_points, partial(self.contents.read, "point"))
         self.paths = Table(self.layout.path_columns, len(self), self._fetch_path)
 
     # -- the sequence -----------------------------------------------------------------------------------------
@@ -271,9 +272,6 @@ class Archive(Sequence[Path]):
 
     # -- within -----------------------------------------------------------------------------------------------
 
-    def _fetch_point(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        return self.contents.read("point", name, rows)
-
     def _fetch_path(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
         committed = slice(min(rows.start, self._committed_paths), min(rows.stop, self._committed_paths))
         values = self.contents.read("path", name, committed)
@@ -300,7 +298,7 @@ class Archive(Sequence[Path]):
         return row
 
 
-def open_archive(file: str | PathLike[str], *, limit: int = LIMIT) -> Archive:
+def open_archive(file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> Archive:
     """Open an archive for reading; also one that is still growing, or was left by a kill.
 
     Nothing in the file is executed, imported or obeyed. Every block of rows is checked when it is read.

@@ -12,9 +12,7 @@ import numpy as np
 from continuation.archive.provenance import class_path, scalars
 from continuation.archive.schema import COUNT_NAMES, Layout, text
 from continuation.path import Path
-from continuation.status import Status
 from continuation.step.tracer import Tracer
-from continuation.step.verdict import sentence
 
 counted = attrgetter(*COUNT_NAMES)
 """The counters of `Counts` as a tuple, in the order of `COUNT_NAMES`."""
@@ -38,12 +36,6 @@ def of_path(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Record:
         "homotopy": "" if homotopy is None else class_path(homotopy),
         "source": "",
     }
-
-
-def of_failure(homotopy: Any, error: BaseException) -> Record:
-    """A path that could not begin."""
-    path = Path(status=Status.RAISED, message=sentence(error))
-    return {**of_path(path, homotopy, ()), "n_points": 0}
 
 
 def to_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:

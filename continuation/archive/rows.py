@@ -17,11 +17,11 @@ from continuation.point.segment import hermite
 
 _FLOATS = (
     "arclength", "step_length", "residual_norm", "event_monitor", "contraction", "distance", "angle", "parameter_share",
-)
+)  # fmt: skip
 _INTEGERS = {
     "orientation": "i1", "kind": "i1", "role": "i1",
     "event_index": "i2", "corrector_iterations": "i2", "rejections": "i2",
-}
+}  # fmt: skip
 _NAN = math.nan
 
 
@@ -110,7 +110,7 @@ def _values(row: Row, number: Callable[[str], int]) -> tuple[tuple[float, ...], 
         (step.arclength, step.step_length, step.residual_norm, monitor, step.contraction, step.distance, step.angle,
          step.share),
         (step.orientation, step.kind, ACCEPTED, index, step.corrector_iterations, step.rejections),
-    )
+    )  # fmt: skip
 
 
 def _observed(row: Row, name: str) -> float:
@@ -172,7 +172,7 @@ def _event(
         name=names[cells["event_index"][i]], kind=cells["kind"][i], arclength=cells["arclength"][i], u=u, tangent=v,
         residual_norm=cells["residual_norm"][i], monitor=cells["event_monitor"][i], orientation=cells["orientation"][i],
         step=step, observed=observed,
-    )
+    )  # fmt: skip
 
 
 def _step(cells: Mapping[str, Any], i: int, u: Any, v: Any, observed: Mapping[str, float], index: int) -> Step:
@@ -182,4 +182,4 @@ def _step(cells: Mapping[str, Any], i: int, u: Any, v: Any, observed: Mapping[st
         corrector_iterations=cells["corrector_iterations"][i], rejections=cells["rejections"][i],
         contraction=cells["contraction"][i], distance=cells["distance"][i], angle=cells["angle"][i],
         share=cells["parameter_share"][i], observed=observed,
-    )
+    )  # fmt: skip

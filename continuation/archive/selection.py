@@ -4,41 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from numbers import Integral
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from continuation.archive import frames
 from continuation.archive.schema import KINK_PART
-from continuation.archive.tables import Table
+from continuation.archive.stored import OpenArchive
 from continuation.checks import complain, is_number
 from continuation.path import Path
 from continuation.status import Status
 
 
-class Archive(Protocol):
-    """What is asked of `continuation.archive.Archive`, which stands above this module."""
-
-    file: Any
-    points: Table
-    paths: Table
-    event_names: tuple[str, ...]
-    attributes: dict[str, Any]
-    layout: Any
-
-    def __len__(self) -> int:
-        """How many paths it has."""
-        ...
-
-    def path(self, index: int) -> Path:
-        """One of them."""
-        ...
-
-
 class Selection:
     """Some points of an archive, and the paths they belong to."""
 
-    def __init__(self, archive: Archive, points: Any, paths: Any) -> None:
+    def __init__(self, archive: OpenArchive, points: Any, paths: Any) -> None:
         self.archive = archive
         self.numbers: list[int] = paths.tolist()
         self.points = archive.points.choose(points)
@@ -63,7 +44,7 @@ class Selection:
         return frames.dataframe(self.points)
 
 
-def selected(archive: Archive, status: Any, kind: Any, event: Any, parameter: Any) -> Selection:
+def selected(archive: OpenArchive, status: Any, kind: Any, event: Any, parameter: Any) -> Selection:
     """What `Archive.select` returns, with its arguments.
 
     Raises `TypeError` or `ValueError` if one of them is nothing of its kind, or the event does not occur in the file at

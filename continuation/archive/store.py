@@ -77,7 +77,8 @@ class Store:
             raise
 
     def _bind(self) -> None:
-        self._data = {name: self._h5[name] for name in self._names()}
+        columns = (*self.layout.point_columns, *self.layout.path_columns, EVENT_NAME)
+        self._data = {name: self._h5[name] for name in (*(column.name for column in columns), "point", "event")}
         self._counters = {name: self._h5[f"committed_{name}"] for name in ("points", "paths")}
         self._checks = {name: self._h5[GROUP][name] for name in (*_TABLES, "event", RECORDS)}
         self._slots = self._h5[RESUME]["slots"]
@@ -103,11 +104,6 @@ class Store:
         finally:
             sink.close()
             self._sink = None
-
-    def _names(self) -> tuple[str, ...]:
-        """Of the datasets that grow."""
-        columns = (*self.layout.point_columns, *self.layout.path_columns, EVENT_NAME)
-        return (*(column.name for column in columns), "point", "event")
 
     # -- writing ----------------------------------------------------------------------------------------------
 

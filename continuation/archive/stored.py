@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path as File
 from typing import Any, Protocol, overload
@@ -14,7 +14,7 @@ import numpy as np
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import ACCEPTED, KINK_PART
 from continuation.archive.tables import Table
-from continuation.path import LocatedEvent, Step
+from continuation.path import LocatedEvent, Path, Step
 
 _WINDOW = 4096
 """Rows that are read at once."""
@@ -23,23 +23,28 @@ _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
 """What of a step is a column of the file. A tangent may be in memory alone."""
 
 
-class _Archive(Protocol):
-    """What is asked of an open archive."""
+Opener = Callable[[File], AbstractContextManager[Any]]
+"""Opens an archive: `continuation.archive.open_archive`, which this module is too low to know."""
 
+
+class OpenArchive(Protocol):
+    """What is asked of `continuation.archive.Archive` by the modules below it."""
+
+    file: File
     points: Table
+    paths: Table
     event_names: tuple[str, ...]
+    attributes: dict[str, Any]
     layout: Any
+
+    def __len__(self) -> int: ...
+
+    def path(self, index: int) -> Path:
+        """One of its paths."""
+        ...
 
     def rows(self, index: int) -> slice:
         """The path's rows."""
-        ...
-
-
-class Opener(Protocol):
-    """Opens an archive: `continuation.archive.open_archive`, which this module is too low to know."""
-
-    def __call__(self, file: File) -> AbstractContextManager[Any]:
-        """An archive, in a ``with`` statement."""
         ...
 
 
@@ -173,14 +178,14 @@ class StoredSteps(Sequence[Step]):
         return steps[start - before :]
 
 
-def window(archive: _Archive, path: int, start: int, stop: int, index: int) -> tuple[list[Step], list[LocatedEvent]]:
+def window(archive: OpenArchive, path: int, start: int, stop: int, index: int) -> tuple[list[Step], list[LocatedEvent]]:
     """Steps and events of some rows of a path; `index` is that of the first step among them."""
     first = archive.rows(path).start
     block = archive.points.block(slice(first + start, first + stop))
     return from_columns(block, archive.event_names, archive.layout.observed, index)
 
 
-def events(archive: _Archive, path: int) -> list[LocatedEvent]:
+def events(archive: OpenArchive, path: int) -> list[LocatedEvent]:
     """The events of a path, without its steps."""
     rows = archive.rows(path)
     size = rows.stop - rows.start
@@ -199,7 +204,7 @@ def events(archive: _Archive, path: int) -> list[LocatedEvent]:
     return found
 
 
-def stored_path(archive: _Archive, opener: Opener, file: File, path: int, every: int = 0) -> StoredSteps:
+def stored_path(archive: OpenArchive, opener: Opener, file: File, path: int, every: int = 0) -> StoredSteps:
     """The steps of a path in an archive, of which only the ends are in memory."""
     rows = archive.rows(path)
     size = rows.stop - rows.start

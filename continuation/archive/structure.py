@@ -30,12 +30,7 @@ def chunk_rows(unknowns: int) -> int:
 def build(file: Any, layout: Layout, compression: int) -> None:
     """Make all the datasets of a new file, without rows.
 
-    Parameters
-    ----------
-    file : h5py.File
-    layout : Layout
-    compression : int
-        Level of gzip; 0 for none.
+    `compression`: Level of gzip; 0 for none.
     """
     filters = {"compression": "gzip", "compression_opts": compression, "shuffle": True} if compression else {}
     rows = chunk_rows(layout.unknowns)
@@ -72,9 +67,7 @@ def _scale(file: Any, name: str, length: int | None, chunk: int = 0) -> None:
     scale.make_scale(_NO_VARIABLE.format(length or 0))
 
 
-def _variable(
-    file: Any, column: Column, width: tuple[int, ...], chunk: int, filters: Mapping[str, Any]
-) -> Any:
+def _variable(file: Any, column: Column, width: tuple[int, ...], chunk: int, filters: Mapping[str, Any]) -> Any:
     if column.name in file:
         dataset = file[column.name]
         dataset.attrs.update(column.attributes)

@@ -17,7 +17,7 @@ from typing import Any, Unpack
 from attrs import define, field
 
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.parts import PATIENCE, collect, end_repeats, finished
+from continuation.archive.parts import THREAD_SECONDS, collect, end_repeats, finished
 from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
 from continuation.checks import complain, instance_with, is_number
@@ -94,7 +94,7 @@ def trace_many(
     target = None if archive is None else as_file("archive", archive)
     if target is not None:
         check_new(target)
-    report = progress or _silent
+    report = progress or (lambda done, total: None)
     if executor is None:
         result = work(Batch(tasks, 0, target, None, options), lambda done: report(done, len(tasks)))
         if result.stopped:
@@ -109,22 +109,17 @@ def _interrupted(paths: Sequence[Path]) -> Interrupted:
     return Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
 
 
-def _silent(done: int, total: int) -> None:
-    pass
-
-
 # -- over an executor -----------------------------------------------------------------------------------------
 
 
 def _spread(
-    executor: Executor, tasks: list[Any], target: File | None, report: Progress, timeout: float | None,
-    options: Options,
+    executor: Executor, tasks: list[Any], target: File | None, report: Progress, timeout: float | None, options: Options
 ) -> Result:
     # A worker may run in another directory, on another machine.
     target = None if target is None else target.absolute()
     token = secrets.token_hex(4)
-    stop = (File(tempfile.gettempdir()) / f"continuation-{token}.stop" if target is None
-            else target.with_name(f"{target.stem}.sweep-{token}.stop"))
+    sign = f"continuation-{token}.stop" if target is None else f"{target.stem}.sweep-{token}.stop"
+    stop = (File(tempfile.gettempdir()) if target is None else target.parent) / sign
     parts = len(tasks) if timeout is not None else _parts(executor, len(tasks))
     batches = _batches(tasks, max(parts, 1), target, token, stop, options)
     run = _Run(executor, batches, report, timeout)
@@ -190,11 +185,7 @@ class _Run:
 
     def _count(self, number: int) -> None:
         self.done += number
-        self.report(self.done, self._total)
-
-    @property
-    def _total(self) -> int:
-        return sum(len(batch.homotopies) for batch in self.batches)
+        self.report(self.done, sum(len(batch.homotopies) for batch in self.batches))
 
     def mend(self) -> None:
         """Do again, one by one, what was lost with a worker, or with a batch that could not be sent to one.
@@ -204,9 +195,9 @@ class _Run:
         """
         if any(isinstance(found, BrokenExecutor) for found in self.results.values()):
             self._join()
+        lost = f"took longer than {self.timeout:g} s" if self.timeout else "was never begun"
         for k, batch in enumerate(self.batches):
-            error = self.results.setdefault(k, TimeoutError(f"took longer than {self.timeout:g} s" if self.timeout
-                                                            else "was never begun"))
+            error = self.results.setdefault(k, TimeoutError(lost))
             if isinstance(error, Result):
                 continue
             written = finished(batch)
@@ -249,7 +240,7 @@ class _Run:
         if wait(self.futures, timeout=_GRACE).not_done:
             ended = _end_processes(self.executor)
             self._join()
-            wait(self.futures, timeout=_GRACE / 4 if ended else PATIENCE)
+            wait(self.futures, timeout=_GRACE / 4 if ended else THREAD_SECONDS)
         for future, k in self.futures.items():
             if future.done():
                 self.results[k] = _outcome(future)

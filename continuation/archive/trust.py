@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib import metadata
 from typing import Any
@@ -40,14 +40,7 @@ class UnknownError(LookupError):
 def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
     """What may be made by name: the parts of the library, and what the caller trusts.
 
-    Parameters
-    ----------
-    trust : iterable of class or function
-
-    Raises
-    ------
-    TypeError
-        If something else is to be trusted, or a thing that has no name to be found by.
+    Raises `TypeError` if something else is to be trusted, or a thing that has no name to be found by.
     """
     found = {}
     for module in _MODULES:
@@ -179,7 +172,7 @@ def _items(hint: Any, count: int) -> tuple[Any, ...]:
         arguments = typing.get_args(option)
         if typing.get_origin(option) is tuple and len(arguments) == count and ... not in arguments:
             return arguments
-        if typing.get_origin(option) in (tuple, list) or _abstract(option, "Sequence"):
+        if typing.get_origin(option) in (tuple, list, Sequence):
             return (arguments[0] if arguments else Any,) * count
     return (Any,) * count
 
@@ -194,10 +187,6 @@ def _classes(hint: Any) -> list[type]:
     """The attrs classes among what is expected."""
     found = (typing.get_origin(option) or option for option in _options(hint))
     return [cls for cls in found if isinstance(cls, type) and attrs.has(cls)]
-
-
-def _abstract(hint: Any, name: str) -> bool:
-    return getattr(typing.get_origin(hint), "__name__", "") == name
 
 
 def _fits(value: Any, hint: Any) -> bool:

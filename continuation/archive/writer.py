@@ -29,9 +29,10 @@ from continuation.archive.stored import StoredSteps, kept_every
 from continuation.archive.structure import SLOTS
 from continuation.checks import complain
 from continuation.homotopy import SupportsPieces
-from continuation.path import LocatedEvent, Step
+from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
 from continuation.step.tracer import Tracer
+from continuation.step.verdict import sentence
 
 
 class PathLog:
@@ -91,12 +92,11 @@ class PathLog:
         if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
             raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
         check_new(as_file("file", file))
-        self._begin(File(file), durable, tangents, title, limits, kept_every(keep), parameters, int(save_every))
+        self._begin(File(file), durable, tangents, title, limits, kept_every(keep))
+        self._parameters: Mapping[str, Any] = dict(parameters or {})
+        self._save_every: int = int(save_every)
 
-    def _begin(
-        self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int,
-        parameters: Mapping[str, Any] | None = None, save_every: int = 1,
-    ) -> None:
+    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
         self.file, self._every = file, every
         self.member: int | None = None
         self._durable, self._tangents, self._title, self._limits = durable, tangents, title, limits
@@ -105,8 +105,7 @@ class PathLog:
         self._open: OpenPath | None = None
         self._buffer = Buffer(0)
         self._paths = self._sequence = 0
-        self._save_every = save_every
-        self._parameters = dict(parameters or {})
+        self._parameters, self._save_every = {}, 1
         self._identifier = ""
         self._known: tuple[Any, Any] = (None, None)
         self._early: list[Record] = []
@@ -197,7 +196,8 @@ class PathLog:
         error : BaseException
         """
         self._check_open()
-        self._finish(record.of_failure(homotopy, error), self._paths, 0)
+        path = Path(status=Status.RAISED, message=sentence(error))
+        self._finish(record.of_path(path, homotopy, ()), self._paths, 0)
 
     def close(self) -> None:
         """Commit what is there and close the file; a second call does nothing."""

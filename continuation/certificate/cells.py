@@ -212,6 +212,12 @@ class Expansion:
 
     q: tuple[Ends, Ends, Ends, Ends]
 
+    @property
+    def last(self) -> Expansion:
+        """Of the last component, the parameter, shape (slabs, 1)."""
+        q0, q1, q2, q3 = (q[:, -1:] for q in self.q)
+        return Expansion((q0, q1, q2, q3))
+
     def over(self, x: Ends) -> tuple[Ends, Ends, Ends]:
         """p, p' and p''/2 over offsets x of shape (slabs, 1)."""
         q0, q1, q2, q3 = self.q

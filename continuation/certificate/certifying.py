@@ -14,7 +14,7 @@ from continuation.budget import Budget
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Piece, Signs, pieces
+from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
@@ -40,11 +40,11 @@ NEXT_TO_END = 1e-6
 
 TAIL_STEPS = 300
 
-DEPTH = 8
+CELL_HALVINGS = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
 
 
-STILL = 1e-10
+STANDS_STILL = 1e-10
 """Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
 
 
@@ -66,7 +66,7 @@ def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
         return ByProducts(homotopy.quadratic())
     y, lam = homotopy.start()
     start = np.append(np.asarray(y, dtype=float), float(lam))
-    still = points is not None and bool((np.ptp(points, axis=0) <= STILL * np.abs(points).max(axis=0)).any())
+    still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
     engine = ByIntervals(homotopy.residual, len(start) - 1, still)
     engine.probe(start)
     return engine
@@ -207,7 +207,7 @@ class Search:
         told: list[list[Piece]] = []
         gaps: list[Gap] = []
         own = getattr(self.homotopy, "metric", None) is not None
-        for depth in range(DEPTH + 1):
+        for depth in range(CELL_HALVINGS + 1):
             if not pending:
                 break
             trial = joined([_cell(a, b) for a, b in pending])
@@ -215,8 +215,8 @@ class Search:
             trial = trial.with_tubes(still, np.full(len(trial), self.engine.fine) if depth else trial.slabs)
             found = search(self.engine, trial)
             proved = found.cells.take(found.proved)
-            known = [one for one in found.signs if one is not None]
-            counted, by_cell = self._counted(proved, known, depth == DEPTH)
+            known = [some for some, good in zip(found.pieces, found.proved) if good and some]
+            counted, by_cell = self._counted(proved, known, depth == CELL_HALVINGS)
             settled = found.proved.copy()
             settled[settled] = counted
             done.append(proved.take(counted))
@@ -225,7 +225,7 @@ class Search:
             failed = [(pair, bool(found.undefined[k])) for k, pair in enumerate(pending) if not settled[k]]
             pending = []
             for (a, b), undefined in failed:
-                middle = self._middle(solver, a, b) if depth < DEPTH else "no tube holds it, however short"
+                middle = self._middle(solver, a, b) if depth < CELL_HALVINGS else "no tube holds it, however short"
                 if isinstance(middle, Node):
                     pending += [(a, middle), (middle, b)]
                 else:
@@ -236,7 +236,7 @@ class Search:
         numbered = [evolve(piece, cell=k) for k, old in enumerate(order.tolist()) for piece in told[old]]
         return cells.take(order), gaps, numbered, Nodes.joined(ends).take(order)
 
-    def _counted(self, cells: Cells, known: list[Signs], last: bool) -> tuple[Mask, list[list[Piece]]]:
+    def _counted(self, cells: Cells, known: list[list[Piece]], last: bool) -> tuple[Mask, list[list[Piece]]]:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
         if not len(cells):
             return np.zeros(0, bool), []

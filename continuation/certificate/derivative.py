@@ -7,7 +7,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.engine import up_by
-from continuation.certificate.form import ROUNDED, Affine, Quadratic
+from continuation.certificate.form import SUM_ROUNDING, Affine, Quadratic
 from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin, up_sum
 
 
@@ -24,17 +24,11 @@ def _linear(part: Affine, q: Ends) -> Ends:
     middle, count = q.middle(), q.shape[-1] + 4
     size = np.abs(middle)
     # The matrix is off by its errors, q by its radius; products are rounded.
-    room = _rows(q.radius(middle) + accumulated(count) * size, part.size)
+    room = part.linear_size(q.radius(middle) + accumulated(count) * size)
     if part.sizes is not None:
-        room = room + _rows(size + q.radius(middle), part.error)
-    room, centre = up_by(room, 2 * count), _rows(middle, part.matrix)
+        room = room + part.linear_error(size + q.radius(middle))
+    room, centre = up_by(room, 2 * count), part.linear(middle)
     return Ends(-up_sum(room - centre), up_sum(centre + room))
-
-
-def _rows(q: Array, matrix: Array) -> Array:
-    """The matrix times each coefficient: one product for all slabs."""
-    product: Array = np.matmul(q.reshape(-1, q.shape[-1]), matrix.T).reshape(*q.shape[:-1], -1)
-    return product
 
 
 _SUMS = np.array([[float(i + j == k) for i in range(4) for j in range(4)] for k in range(7)])
@@ -50,11 +44,6 @@ def _coefficients(value: Ends, alpha: Ends, beta: Ends) -> Ends:
     lower, upper = (np.zeros((count, n, 7)) for _ in range(2))
     lower[..., :4], upper[..., :4] = value.lo.transpose(0, 2, 1), value.hi.transpose(0, 2, 1)
     return total + Ends(lower, upper)
-
-
-def bent(form: Quadratic, t: Ends) -> Ends:
-    """Half the second derivative of H along vectors t, whatever the point is, shape (slabs, N)."""
-    return _linear(form.first, t[:, None])[:, 0] * _linear(form.second, t[:, None])[:, 0]
 
 
 def at_points(form: Quadratic, u: Array) -> Ends:
@@ -103,18 +92,18 @@ class Derivative:
     def image(self, x: Array) -> tuple[Array, Array]:
         """Bounds of |exact| x, and of |exact - matrix| x, for all coefficients; shape (slabs, 4, N)."""
         form, count = self.form, 2 * x.shape[1]
-        by_second, by_first = (np.matmul(x, part.size.T)[:, None] for part in (form.second, form.first))
+        by_second, by_first = (part.linear_size(x)[:, None] for part in (form.second, form.first))
         error = self.ra * by_second + self.rb * by_first
         size = np.abs(self.a) * by_second + np.abs(self.b) * by_first + error
         for part, factor in ((form.second, self.a), (form.first, self.b)):
             if part.sizes is not None:
-                error = error + np.abs(factor) * np.matmul(x, part.error.T)[:, None]
-        size[:, 0] += np.matmul(x, form.plain.size.T)
-        error[:, 0] += np.matmul(x, form.plain.error.T)
+                error = error + np.abs(factor) * part.linear_error(x)[:, None]
+        size[:, 0] += form.plain.linear_size(x)
+        error[:, 0] += form.plain.linear_error(x)
         return up_by(size, count), up_by(error + 4.0 * EPS * size, count)
 
     def products(self, x: Array, radius: Array) -> Array:
         """A bound of |2 Q(d, x)| for |d| <= radius."""
-        first, second = self.form.first.size.T, self.form.second.size.T
-        crossed = np.matmul(radius, first) * np.matmul(x, second) + np.matmul(x, first) * np.matmul(radius, second)
-        return up_by(crossed * (1.0 + ROUNDED) ** 2, 2 * x.shape[1])
+        first, second = self.form.first.linear_size, self.form.second.linear_size
+        crossed = first(radius) * second(x) + first(x) * second(radius)
+        return up_by(crossed * (1.0 + SUM_ROUNDING) ** 2, 2 * x.shape[1])

@@ -31,6 +31,19 @@ class Judged(Protocol):
         """
         ...
 
+    def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends] | None:
+        """The ranges of the first two derivatives of the parameter along the curve, on parts of each slab of equal
+        length and in order, shape (slabs, parts); None where the bounds of a slab do not tell them.
+
+        The second is nan where the first has a sign all along.
+
+        Parameters
+        ----------
+        radius, tube : ndarray, shape (slabs, N + 1)
+            As in `tangent`.
+        """
+        ...
+
     def closed(self, tube: Array) -> tuple[Array, Ends] | None:
         """How far the curve in the tube is from the end of the cubic there, and its tangent; nan where that is no end.
 
@@ -78,7 +91,7 @@ class Engine(Protocol):
         ...
 
     def bent(self, box: Ends, t: Ends) -> Ends | None:
-        """The range of H''(t, t) / 2 over boxes, shape (slabs, N); None where H has no second derivative."""
+        """The range of H''(t, t) / 2 over boxes, shape (slabs, N); None where there is none, or nobody asks."""
         ...
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:

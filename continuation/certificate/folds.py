@@ -5,22 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, slabs_of
 from continuation.certificate.engine import Engine, Judged, solved
 from continuation.intervals.ends import EPS, Ends
 
-DEPTH = 3
+SLAB_CUTS = 3
 """A slab without a sign is cut so often at most: where that does not help the tube is too wide."""
 
-PARTS = {1: 4, 2: 2, 3: 2}
+FOLD_PARTS = {1: 4, 2: 2, 3: 2}
 """Into how many parts, by the engine's order: with either what it leaves of the derivative is a quarter at most."""
 
-
-NARROWER = 3
-"""How often the box around a curve is replaced by its image where that takes no new bounds."""
 
 HOPE = 0.3
 """A cell of whose parts fewer than that are told is not cut further: its tube is too wide."""
@@ -59,7 +56,7 @@ class Turn:
     certain: bool
 
 
-def pieces(engine: Engine, cells: Cells, known: Sequence[Signs] = ()) -> list[Piece]:
+def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> list[Piece]:
     """Pieces of all cells in order, cut until the sign of the tangent, or of its derivative, is known.
 
     Parameters
@@ -67,80 +64,66 @@ def pieces(engine: Engine, cells: Cells, known: Sequence[Signs] = ()) -> list[Pi
     engine : Engine
     cells : Cells
         Proved ones.
-    known : sequence of Signs, optional
-        Of each cell, where the bounds of its test told them; those serve where they hold for all radii.
+    known : sequence of list of Piece, optional
+        Of each cell, as `told` gives them, where the bounds of its test told them.
     """
+    if known:
+        return [evolve(piece, cell=k) for k, part in enumerate(known) for piece in part]
     slabs = slabs_of(cells)
     radius = slabs.cells.radius
     found: list[Piece] = []
-    parts = PARTS[engine.order]
-    for depth in range(DEPTH + 1):
-        if known and not depth:
-            told = Signs(*(np.concatenate([getattr(one, name) for one in known]) for name in Signs.__annotations__))
-        else:
-            told = _judged_signs(engine, slabs, radius, depth > 0)
-        sign, bend, radius = told.sign, told.bend, told.radius
+    parts = FOLD_PARTS[engine.order]
+    for depth in range(SLAB_CUTS + 1):
+        judged, tube = engine.judge(slabs, radius), slabs.cells.radius
+        if engine.exact:
+            return told(judged, slabs, radius)
+        if depth:
+            radius = _narrowed(judged, radius)
+            judged = engine.judge(slabs, radius)
+        sign = _sign(judged.tangent(radius, tube))
+        bend = _bends(engine, judged, slabs, radius, tube, sign)
         clear = (sign != 0) | (bend != 0)
         share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
         # A shorter cell tells more than parts of a slab: its cubic is nearer, and it has a smaller tube.
-        keep = clear | bool(known) | (depth == DEPTH) | (depth > 1) & (share[slabs.owner] < HOPE)
-        rows = zip(*(x[keep].tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
-        found += [Piece(cell, middle - half, middle + half, a, b) for cell, middle, half, a, b in rows]
+        keep = clear | (depth == SLAB_CUTS) | (depth > 1) & (share[slabs.owner] < HOPE)
+        found += _rows(slabs.take(keep), sign[keep], bend[keep])
         if keep.all():
             break
         # The curve in a part lies where that in the whole does: radii that were found are kept.
         slabs, radius = slabs.take(~keep).halved(parts), np.repeat(radius[~keep], parts, axis=0)
-    return sorted(found, key=lambda piece: (piece.cell, piece.lo))
+    return sorted(found, key=_where)
 
 
-@frozen(eq=False)
-class Signs:
-    """Signs of the parameter's component of the tangent on slabs, of its derivative where it has none, as in `Piece`.
-
-    The curve lies within the radii.
-    """
-
-    sign: Index
-    bend: Index
-    radius: Array
-
-    def split(self, owner: Index, count: int) -> list[Signs]:
-        """Those of each cell; the slabs are in the order of their cells."""
-        ends = np.cumsum(np.bincount(owner, minlength=count))[:-1]
-        return [Signs(*part) for part in zip(*(np.split(x, ends) for x in (self.sign, self.bend, self.radius)))]
-
-
-def signs(engine: Engine, judged: Judged, slabs: Slabs, radius: Array, tube: Array) -> Signs:
-    """From bounds that hold for all radii.
+def told(judged: Judged, slabs: Slabs, tube: Array) -> list[Piece]:
+    """Pieces of the slabs' cells, from bounds that hold for all radii: of whole slabs, or of parts where they turn.
 
     Parameters
     ----------
-    engine : Engine
     judged : Judged
     slabs : Slabs
-    radius : ndarray, shape (slabs, N + 1)
-        Within which the curve lies.
+        In the order of their cells.
     tube : ndarray, shape (slabs, N + 1)
         Radii with which the test holds.
     """
-    sign = _sign(judged, radius, tube)
-    if not sign.all():
-        for _ in range(NARROWER):
-            radius = _narrowed(judged, radius)
-        sign = _sign(judged, radius, tube)
-    return Signs(sign, _bends(engine, judged, slabs, radius, tube, sign), radius)
+    pace = judged.pace(tube, tube)
+    if pace is None:
+        sign = _sign(judged.tangent(tube, tube))
+        return _rows(slabs, sign, np.zeros_like(sign))
+    slope, bend = (_sign_of(one) for one in pace)
+    same = np.asarray((slope != 0).all(axis=1) & (slope == slope[:, :1]).all(axis=1))
+    parts = slabs.take(~same).halved(slope.shape[1])
+    turned = np.where(slope == 0, bend, 0)
+    whole = _rows(slabs.take(same), slope[same, 0], turned[same, 0])
+    return sorted([*whole, *_rows(parts, slope[~same].ravel(), turned[~same].ravel())], key=_where)
 
 
-def _judged_signs(engine: Engine, slabs: Slabs, radius: Array, narrow: bool) -> Signs:
-    """From new bounds."""
-    judged, tube = engine.judge(slabs, radius), slabs.cells.radius
-    if engine.exact:
-        return signs(engine, judged, slabs, radius, tube)
-    if narrow:
-        radius = _narrowed(judged, radius)
-        judged = engine.judge(slabs, radius)
-    sign = _sign(judged, radius, tube)
-    return Signs(sign, _bends(engine, judged, slabs, radius, tube, sign), radius)
+def _where(piece: Piece) -> tuple[int, float]:
+    return piece.cell, piece.lo
+
+
+def _rows(slabs: Slabs, sign: Index, bend: Index) -> list[Piece]:
+    rows = zip(*(x.tolist() for x in (slabs.owner, slabs.middle, slabs.half, sign, bend)))
+    return [Piece(cell, middle - half, middle + half, a, b) for cell, middle, half, a, b in rows]
 
 
 def _narrowed(judged: Judged, radius: Array) -> Array:
@@ -150,9 +133,13 @@ def _narrowed(judged: Judged, radius: Array) -> Array:
         return np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
 
 
-def _sign(judged: Judged, radius: Array, tube: Array) -> Index:
-    t = judged.tangent(radius, tube)
-    return np.where(t.lo[:, -1] > 0.0, 1, np.where(t.hi[:, -1] < 0.0, -1, 0))
+def _sign(t: Ends) -> Index:
+    """That of the last component."""
+    return _sign_of(t[:, -1])
+
+
+def _sign_of(x: Ends) -> Index:
+    return np.where(x.lo > 0.0, 1, np.where(x.hi < 0.0, -1, 0))
 
 
 def _bends(engine: Engine, judged: Judged, slabs: Slabs, radius: Array, tube: Array, sign: Index) -> Index:

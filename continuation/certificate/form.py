@@ -40,18 +40,57 @@ class Affine:
     @cached_property
     def error(self) -> Array:
         """Of each entry."""
-        return np.zeros_like(self.matrix) if self.sizes is None else ROUNDED * self.sizes
+        return np.zeros_like(self.matrix) if self.sizes is None else SUM_ROUNDING * self.sizes
+
+    @cached_property
+    def _alone(self) -> Index | None:
+        """Columns of the entries, where no row has two: then nothing needs to be summed."""
+        there = self.size != 0.0
+        return there.argmax(axis=1) if (there.sum(axis=1) <= 1).all() else None
+
+    def linear(self, x: Array) -> Array:
+        """The matrix times vectors.
+
+        Parameters
+        ----------
+        x : ndarray, shape (..., N + 1)
+        """
+        return self._times(self.matrix, x)
+
+    def linear_size(self, x: Array) -> Array:
+        """The sizes of its entries times vectors >= 0.
+
+        Parameters
+        ----------
+        x : ndarray, shape (..., N + 1)
+        """
+        return self._times(self.size, x)
+
+    def linear_error(self, x: Array) -> Array:
+        """Their errors times vectors >= 0.
+
+        Parameters
+        ----------
+        x : ndarray, shape (..., N + 1)
+        """
+        return self._times(self.error, x)
+
+    def _times(self, matrix: Array, x: Array) -> Array:
+        if self._alone is not None:
+            return np.asarray(x[..., self._alone] * matrix[np.arange(len(matrix)), self._alone])
+        # One product for all vectors.
+        return np.asarray(np.matmul(x.reshape(-1, x.shape[-1]), matrix.T).reshape(*x.shape[:-1], -1))
 
     @cached_property
     def constant_ends(self) -> Ends:
         """The constant."""
         if self.constant_sizes is None:
             return thin(self.constant)
-        room = ROUNDED * self.constant_sizes
+        room = SUM_ROUNDING * self.constant_sizes
         return Ends(self.constant - room, self.constant + room)
 
 
-ROUNDED = 8.0 * EPS
+SUM_ROUNDING = 8.0 * EPS
 """Error of a sum of up to eight exact terms, against the sum of their sizes: seven roundings, and that of the bound."""
 
 
@@ -100,21 +139,19 @@ class Quadratic:
             How many coefficients.
         """
         even, rest, first, plain = self._blocks
-        out = np.zeros((powers, *left.shape[:2], chart.shape[1]))
-        if len(self.even):
-            for block in even:
-                block.add(out[0], left)
-            shared = out[0].copy()
-            for k in range(powers):
-                np.multiply(shared, a[:, k, self.even[0], None, None], out=out[k])
-        for block in plain:
-            block.add(out[0], left)
-        out[0] += left[:, :, -1:] * chart[:, None, :]
+        shared = np.zeros((*left.shape[:2], chart.shape[1]))
+        for block in even:
+            block.add(shared, left, scale)
+        out = np.empty((powers, *shared.shape))
         for k in range(powers):
+            # Of what no row is even, this is zero.
+            np.multiply(shared, a[:, k, self.even[:1], None] if len(self.even) else 0.0, out=out[k])
             for blocks, factor in ((rest, a), (first, b)):
                 for block in blocks:
-                    block.add(out[k], left, factor[:, k])
-            out[k] *= scale[:, None, :]
+                    block.add(out[k], left, scale, factor[:, k])
+        for block in plain:
+            block.add(out[0], left, scale)
+        out[0] += left[:, :, -1:] * (chart * scale)[:, None, :]
         return out
 
     @cached_property

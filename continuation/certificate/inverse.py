@@ -11,7 +11,7 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.certificate.cells import Index
 
-ROUGH = 1e-4
+INVERSE_ERROR = 1e-4
 """An eliminated inverse farther off than this, in the norm of the radii, is replaced: a test has room for as much."""
 
 
@@ -96,7 +96,7 @@ def inverted(
     Y = eliminated(matrices, rows, columns) if len(rows) else inverses(matrices)
     found = product(Y, slice(None))
     off = np.abs(eye - found[0])
-    bad = np.flatnonzero(~(times(off, radius) < ROUGH * radius).all(axis=1))
+    bad = np.flatnonzero(~(times(off, radius) < INVERSE_ERROR * radius).all(axis=1))
     if len(rows) and len(bad):
         Y[bad] = inverses(matrices[bad])
         found[:, bad] = product(Y[bad], bad)

@@ -25,10 +25,10 @@ from continuation.intervals.array import Interval, UndecidedError, as_interval
 from continuation.intervals.calculus import along_curve, derivatives, with_gradient
 from continuation.intervals.ends import Ends, accumulated, thin
 
-ENTRIES = 2_000_000
+RESIDUAL_NUMBERS = 2_000_000
 """Numbers of one array while many slabs go through a residual together: 16 MB."""
 
-FEW = 16
+DIRECTIONS_THAT_PAY = 16
 """Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
 Bratu's equation with 30 none, and its proof took eight times as long."""
 
@@ -45,7 +45,7 @@ class ByIntervals:
     residual : callable
         ``residual(y, lam)``, of the homotopy.
     unknowns : int
-        N. Up to `FEW` the preconditioner follows the path.
+        N. Up to `DIRECTIONS_THAT_PAY` the preconditioner follows the path.
     still : bool
         Whether some component stands still along all of the path: it has no size then in which to take differences of
         second derivatives, and the preconditioner stays as it is.
@@ -59,7 +59,7 @@ class ByIntervals:
     @property
     def moving(self) -> bool:
         """Whether the preconditioner follows the path."""
-        return self.unknowns <= FEW and not self.still
+        return self.unknowns <= DIRECTIONS_THAT_PAY and not self.still
 
     @property
     def order(self) -> int:
@@ -96,7 +96,7 @@ class ByIntervals:
 
     def together(self, m: int) -> int:
         """All of them: `judge` parts them itself."""
-        return ENTRIES
+        return RESIDUAL_NUMBERS
 
     def bent(self, box: Ends, t: Ends) -> Ends | None:
         """See `Engine`."""
@@ -106,7 +106,7 @@ class ByIntervals:
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`."""
         m = radius.shape[1]
-        size = max(1, ENTRIES // (6 * m * (m + 1)))
+        size = max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
         places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
         return Several.of([part for place in places for part in self._judge(slabs, radius, place)])
 
@@ -231,6 +231,10 @@ class Bounded:
         """See `Judged.tangent`; c . t = 1."""
         return solved(self, self._moved(thin(self.Y[:, :, -1])), radius, tube)
 
+    def pace(self, radius: Array, tube: Array) -> None:
+        """They are valid for one tube."""
+        return
+
     def closed(self, tube: Array) -> None:
         """They are wider than what a node needs."""
         return
@@ -286,6 +290,13 @@ class Several:
         if any(one is None for one in found):
             return None
         return self._gathered([one[0] for one in found]), self._both([one[1] for one in found])
+
+    def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends] | None:
+        """Part by part."""
+        found = [part.pace(radius[k], tube[k]) for k, part in self.parts]
+        if any(one is None for one in found):
+            return None
+        return self._both([one[0] for one in found]), self._both([one[1] for one in found])
 
     def applied(self, v: Ends) -> Ends:
         """Part by part."""

@@ -18,13 +18,13 @@ from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_nod
 from continuation.certificate.engine import Engine, up_by
 from continuation.intervals.ends import EPS, Ends, Mask, thin
 
-ROUNDS, RADII = 4, 8
+NODE_TESTS, NODE_RADII = 4, 8
 """Tests of a node, with derivatives over ever larger boxes, and radii that are tried with one of them."""
 
-CLOSE, ROOM = 1e-9, 1e-3
+LEAST_BOX, FIRST_BOX = 1e-9, 1e-3
 """Of the radii of the tube: the least box around a node, and the one over which derivatives are bounded first."""
 
-NEAR = 32.0
+NODE_ULPS = 32.0
 """Units in the last place: the least box around a node."""
 
 
@@ -86,15 +86,15 @@ def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
     """
     slabs = evolve(at_node(cells, s), half=np.full(len(s), half))
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
-    least = NEAR * EPS * np.abs(u) + CLOSE * cells.radius
-    largest, done = ROOM * cells.radius + 4.0 * least, np.zeros(len(cells), bool)
+    least = NODE_ULPS * EPS * np.abs(u) + LEAST_BOX * cells.radius
+    largest, done = FIRST_BOX * cells.radius + 4.0 * least, np.zeros(len(cells), bool)
     judged = engine.judge(slabs, largest)
-    for k in range(ROUNDS):
+    for k in range(NODE_TESTS):
         if k and not engine.exact:
             judged = engine.judge(slabs, largest)
         with np.errstate(all="ignore"):
             radius = np.fmin(np.maximum(2.0 * judged.misfit, least), largest)
-            for _ in range(RADII):
+            for _ in range(NODE_RADII):
                 total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
                 done = np.asarray((total < radius).all(axis=1))
                 if done.all():

@@ -8,27 +8,19 @@ digits: they are in single precision, which costs half, and whose rounding is bo
 from __future__ import annotations
 
 from functools import cached_property
-from math import comb
+from math import factorial
 from typing import Any
 
 import numpy as np
-from attrs import frozen
-from numpy.typing import NDArray
+from attrs import field, frozen
 
 from continuation.arrays import Array
+from continuation.certificate.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, image_of, largest, rounded
 from continuation.certificate.cells import Slabs
 from continuation.certificate.derivative import Derivative, at_points
 from continuation.certificate.engine import up_by
 from continuation.certificate.inverse import inverted, times
-from continuation.intervals.ends import EPS, Ends, accumulated, thin, up_sum
-
-Single = NDArray[np.float32]
-
-UNIT = 2.0**-24
-"""Relative error of one operation in single precision."""
-
-LOST = 2.0**-126
-"""What underflow costs one operation there, also where such numbers are flushed to zero."""
+from continuation.intervals.ends import EPS, Ends, accumulated, thin
 
 SHARE = 1e-3
 """Rounding is bounded once, for a vector in the shape of the misfit and with this share of its largest component."""
@@ -39,93 +31,8 @@ LEAST, SPARE = 1e-9, 2.0
 TERMS = 6
 """Of the series for the tangent: what is left of it is bounded in the shape of the tube, which is not its own."""
 
-
-def rounded(count: int) -> float:
-    """`accumulated` in single precision: gamma_n of Higham, Section 3.1, with eight more operations."""
-    whole = (count + 8) * UNIT
-    return whole / (1.0 - whole) * (1.0 + 8.0 * EPS) if whole < 0.5 else np.inf
-
-
-def image_of(matrix: Single, x: Array) -> Array:
-    """A bound of matrices >= 0 times vectors >= 0, slab by slab."""
-    m = x.shape[1]
-    unit = x.max(axis=1, keepdims=True)
-    unit = np.where(unit == 0.0, 1.0, unit)
-    # What is clamped does not underflow on its way to single precision.
-    scaled = np.maximum(x / unit, 2.0**-60).astype(np.float32)
-    image: Array = np.matmul(matrix, scaled[..., None])[..., 0].astype(float)
-    bound: Array = (image * (1.0 + 4.0 * rounded(m)) + 2.0 * m * LOST) * unit * (1.0 + 4.0 * EPS)
-    return bound
-
-
-@frozen(eq=False)
-class Ball:
-    """Intervals by middle and radius, shape (slabs, any, any)."""
-
-    middle: Array
-    radius: Array
-
-    @classmethod
-    def of(cls, v: Ends) -> Ball:
-        """Those of these ends."""
-        middle = v.middle()
-        return cls(middle, v.radius(middle))
-
-    def through(self, matrix: Array, size: Array | None = None) -> Ball:
-        """Matrices times them; `size` are the absolute values of the entries, where they are known already."""
-        count = matrix.shape[-1] + 4
-        room = self.radius + accumulated(count) * np.abs(self.middle)
-        return Ball(
-            np.matmul(matrix, self.middle), up_by(np.matmul(np.abs(matrix) if size is None else size, room), count)
-        )
-
-    @property
-    def size(self) -> Array:
-        """The largest absolute value."""
-        return (np.abs(self.middle) + self.radius) * (1.0 + 4.0 * EPS)
-
-    @property
-    def ends(self) -> Ends:
-        """As ends."""
-        return Ends(-up_sum(self.radius - self.middle), up_sum(self.middle + self.radius))
-
-    @property
-    def derivative(self) -> Ball:
-        """Of polynomials of degree 6."""
-        count = np.arange(1.0, 7.0)
-        middle, radius = self.middle[..., 1:] * count, self.size[..., 1:] * (8.0 * EPS * count)
-        radius = up_by(radius + self.radius[..., 1:] * count, 4)
-        return Ball(*(np.pad(x, ((0, 0), (0, 0), (0, 1))) for x in (middle, radius)))
-
-
-PARTS = 8
-"""Into so many parts a slab is cut for the range of H along the cubic: it all but vanishes at both ends of a cell, so
-that the sum of its coefficients' sizes is several times as much."""
-
-
-def _shifts() -> Array:
-    """For polynomials of degree 8 on [-1, 1], their coefficients on each part; exact, (9, PARTS * 9)."""
-    out = np.zeros((9, PARTS, 9))
-    for part in range(PARTS):
-        middle = (2 * part + 1) / PARTS - 1.0
-        for k in range(9):
-            out[k, part, : k + 1] = [comb(k, i) * middle ** (k - i) / PARTS**i for i in range(k + 1)]
-    return out.reshape(9, -1)
-
-
-_SHIFTS = _shifts()
-
-
-def _largest(image: Ball, by_E: Ball, by_C: Ball, offset: Array) -> Array:
-    """A bound of |v - x E v + x^2 C v| for |x| <= offset, of polynomials v, E v and C v, part by part."""
-    middle, room = (np.zeros((*image.middle.shape[:2], 9)) for _ in range(2))
-    for power, sign, v in ((0, 1.0, image), (1, -1.0, by_E), (2, 1.0, by_C)):
-        middle[..., power : power + 7] += sign * v.middle
-        room[..., power : power + 7] += v.radius + 64.0 * EPS * np.abs(v.middle)
-    powers = offset[:, :, None] ** np.arange(9.0)
-    parts = np.abs(np.matmul(middle * powers, _SHIFTS)).reshape(*middle.shape[:2], PARTS, 9)
-    # Rounding of a part is within that of the sizes: |middle of it| + 1 / PARTS is at most 1.
-    return up_by(parts.sum(axis=-1).max(axis=-1) + (room * powers).sum(axis=-1), 64)
+STRETCHES = 32
+"""Into so many parts a slab is cut for the signs of the parameter's derivatives, which are a few numbers a part."""
 
 
 @frozen(eq=False, slots=False)
@@ -154,6 +61,7 @@ class Polynomial:
     E: Single | None = None
     C: Single | None = None
     left: Single | None = None
+    _own: dict[bytes, Array] = field(factory=dict, init=False)
 
     @classmethod
     def of(cls, slabs: Slabs, derivative: Derivative, radius: Array) -> Polynomial:
@@ -188,20 +96,32 @@ class Polynomial:
         return found
 
     @cached_property
-    def _along(self) -> tuple[Array, Array]:
-        """Bounds of |Y H(p)| and of |Y (H(p))'|, H(p(s)) all but zero."""
+    def _images(self) -> tuple[Ball, ...]:
+        """Y_0 H(p), E Y_0 H(p) and C Y_0 H(p), in the units: polynomials of degree 6."""
         image = Ball.of(self.derivative.residual).through(self.Y[:, :, :-1], self.size_Y)
         if self.E is None or self.C is None:
-            return self.d * image.size[..., 0], self.d * image.size[..., 1]
-        by_E, by_C = (image.through(matrix.astype(float)) for matrix in (self.E, self.C))
-        t = self.slabs.offset[:, None]
-        slope = _largest(image.derivative, by_E.derivative, by_C.derivative, t)
-        return self.d * _largest(image, by_E, by_C, t), self.d * slope
+            return (image,)
+        return image, *(image.through(matrix.astype(float)) for matrix in (self.E, self.C))
 
-    @property
+    def _along(self, times: int) -> Array:
+        """A bound of |Y(s)| times a derivative of H(p(s)), which is all but zero."""
+        found = self._images
+        if len(found) == 1:
+            return self.d * found[0].size[..., times] * float(factorial(times))
+        for _ in range(times):
+            found = tuple(one.derivative for one in found)
+        image, by_E, by_C = found
+        return self.d * largest(image, by_E, by_C, self.slabs.offset[:, None])
+
+    @cached_property
+    def _slope(self) -> Array:
+        """|Y(s) (H(p(s)))'|."""
+        return self._along(1)
+
+    @cached_property
     def misfit(self) -> Array:
         """|Y(s) H(p(s))|."""
-        return self._along[0]
+        return self._along(0)
 
     def applied(self, v: Ends) -> Ends:
         """Y(s) = (I - x E + x^2 C) Y_0."""
@@ -232,7 +152,7 @@ class Polynomial:
             e[0] = up_by(times(self.off, x), m) + gamma * (np.abs(self.Y[:, :, -1]) * along + x) + e[0]
             if self.E is None or self.C is None or self.left is None:
                 return x, up_by(e[0], 16)
-            lost = 4.0 * m * m * LOST * x.max(axis=1, keepdims=True)
+            lost = 4.0 * m * m * SINGLE_UNDERFLOW * x.max(axis=1, keepdims=True)
             third, by_F, by_H = np.split(image_of(self.left, x), 3, axis=1)
             by_E, by_C = (image_of(np.abs(matrix), x) for matrix in (self.E, self.C))
             for k, size in ((1, by_E), (2, by_F), (3, by_H)):
@@ -264,6 +184,15 @@ class Polynomial:
         The terms are those of I - (I - x E + x^2 C) Y_0 (G_0 + x G_1 + x^2 G_2 + x^3 G_3) and of Y(s) 2 Q(d, .), where
         C is about E E - F, and E F - C E - H is left of third order.
         """
+        # Of a tube on its own it is asked several times over.
+        if not np.array_equal(x, radius):
+            return self._spread(x, radius)
+        key = x.tobytes()
+        if key not in self._own:
+            self._own[key] = self._spread(x, radius)
+        return self._own[key]
+
+    def _spread(self, x: Array, radius: Array) -> Array:
         with np.errstate(all="ignore"):
             unit, errors = self._errors
             scaled = x / self.d
@@ -289,21 +218,28 @@ class Polynomial:
         share = (r / unit).max(axis=1, keepdims=True)
         return up_by(both + t * by_F + t**2 * (third + 2.0 * by_H) + 3.0 / t * share * errors, 64)
 
-    def _drift(self, radius: Array, tube: Array, terms: int) -> Array:
-        """A bound of |u'(s) - p'(s)|, the curve u(s) being within `radius` of p(s).
+    def _solved(self, v: Array, radius: Array, tube: Array, terms: int) -> Array:
+        """A bound of |G'^{-1} b| within `radius` <= tube of the cubic, where v is one of |Y(s) b|.
 
-        H'(u) u' = 0 and c . (u' - p') = 0, so that u' - p' = -G'^{-1} (H'(u) p', 0), and H'(u) p' is (H(p))' and
-        2 Q(u - p, p'). With E = I - Y G' and E r <= kappa r, (I - E)^{-1} v is at most the sum of the first E^k v and,
-        where the next is at most theta r, theta / (1 - kappa) r.
+        With E = I - Y G' and E r <= kappa r, (I - E)^{-1} v is at most the sum of the first E^k v and, where the next
+        is at most theta r, theta / (1 - kappa) r.
         """
         with np.errstate(all="ignore"):
-            v = self._along[1] + self.d * self._turned(radius)
-            kappa = (self.spread(tube, radius) / tube).max(axis=1, keepdims=True) * (1.0 + 4.0 * EPS)
+            kappa = (self.spread(tube, tube) / tube).max(axis=1, keepdims=True) * (1.0 + 4.0 * EPS)
             total = np.zeros_like(v)
             for _ in range(terms):
                 total, v = total + v, self.spread(v, radius)
             theta = (v / tube).max(axis=1, keepdims=True)
             return up_by(total + np.where(kappa < 1.0, theta / (1.0 - kappa), np.nan) * tube, 4 * terms + 16)
+
+    def _drift(self, radius: Array, tube: Array, terms: int) -> Array:
+        """A bound of |u'(s) - p'(s)|, the curve u(s) being within `radius` of p(s).
+
+        H'(u) u' = 0 and c . (u' - p') = 0, so that u' - p' = -G'^{-1} (H'(u) p', 0), and H'(u) p' is (H(p))' and
+        2 Q(u - p, p').
+        """
+        with np.errstate(all="ignore"):
+            return self._solved(self._slope + self.d * self._turned(radius), radius, tube, terms)
 
     def tangent(self, radius: Array, tube: Array) -> Ends:
         """See `Judged.tangent`: u'(s)."""
@@ -313,6 +249,31 @@ class Polynomial:
             if ((found.lo[:, -1] > 0.0) | (found.hi[:, -1] < 0.0)).all():
                 break
         return found
+
+    def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
+        """See `Judged.pace`.
+
+        With e = u' - p', once more: u'' - p'' = -G'^{-1} (H''(u', u') + H'(u) p'', 0), which is (H(p))'' and
+        4 Q(p', e), 2 Q(e, e), 2 Q(u - p, p'').
+        """
+        t = self.slabs.offset[:, None]
+        middle, half = (2.0 * np.arange(STRETCHES) + 1.0) / STRETCHES - 1.0, (1.0 + 1e-9) / STRETCHES
+        over = Ends(t * (middle - half), t * (middle + half))
+        _, first, second = self.slabs.expansion.last.over(over)
+        with np.errstate(all="ignore"):
+            drift = self._drift(radius, tube, 0)
+            room = Ends(-drift[:, -1:], drift[:, -1:])
+            slope = first + room
+            if ((slope.lo > 0.0).all(axis=1) | (slope.hi < 0.0).all(axis=1)).all():
+                return slope, thin(np.full_like(slope.lo, np.nan))
+            drift = self._drift(radius, tube, TERMS)
+            room = Ends(-drift[:, -1:], drift[:, -1:])
+            two = thin(np.full((1, 1), 2.0))
+            bend = (two * self.slabs.expansion.over(Ends(-t, t))[2]).magnitude()
+            more = self.derivative.products(drift, drift) + self.derivative.products(bend, radius)
+            v = up_by(self._along(2) + self.d * (2.0 * self._turned(drift) + self._pushed(more)), 8)
+            again = self._solved(v, radius, tube, TERMS)[:, -1:]
+            return first + room, two * second + Ends(-again, again)
 
     def closed(self, tube: Array) -> tuple[Array, Ends]:
         """See `Judged.closed`.

@@ -10,17 +10,17 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import Index
 
-RUNS = 4
+COLUMN_RUNS = 4
 """Columns in more runs than that are gathered; each run is a product of its own, on a part of the array."""
 
-FEW = 3
+SPARSE_ROW = 3
 """A row with so many entries is not put into a dense block with longer ones."""
 
 
 def _runs(index: Index) -> list[Any]:
     """Indices as slices, where they are few runs."""
     parts = np.split(index, np.flatnonzero(np.diff(index) != 1) + 1)
-    return [slice(int(part[0]), int(part[-1]) + 1) for part in parts] if len(parts) <= RUNS else [index]
+    return [slice(int(part[0]), int(part[-1]) + 1) for part in parts] if len(parts) <= COLUMN_RUNS else [index]
 
 
 @frozen(eq=False)
@@ -39,7 +39,7 @@ class Blocks:
     @classmethod
     def of(cls, matrix: Array, rows: Index) -> list[Blocks]:
         """Those rows of a matrix: the ones with few entries, and the others."""
-        few = (matrix[rows] != 0.0).sum(axis=1) <= FEW
+        few = (matrix[rows] != 0.0).sum(axis=1) <= SPARSE_ROW
         return [cls._of(matrix, some) for some in (rows[few], rows[~few]) if len(some)]
 
     @classmethod
@@ -65,22 +65,27 @@ class Blocks:
             ):
                 i, j = owners[part], alone[part]
                 kinds.append((_runs(i)[0], _runs(j)[0], matrix[i, j]))
-            if len(kinds) > RUNS:
+            if len(kinds) > COLUMN_RUNS:
                 kinds = [(owners, alone, matrix[owners, alone])]
         return cls(dense, kinds)
 
-    def add(self, out: Array, left: Array, factor: Array | None = None) -> None:
-        """Add left diag(factor) times the rows, slab by slab.
+    def add(self, out: Array, left: Array, scale: Array, factor: Array | None = None) -> None:
+        """Add left diag(factor) times the rows times diag(scale), slab by slab.
 
         Parameters
         ----------
         out : ndarray, shape (slabs, m, columns)
         left : ndarray, shape (slabs, m, rows)
+        scale : ndarray, shape (slabs, columns)
         factor : ndarray, shape (slabs, rows), optional
         """
         for rows, columns, block in self.dense:
-            part = left[:, :, rows] if factor is None else left[:, :, rows] * factor[:, None, rows]
-            out[:, :, columns] += np.matmul(part, block)
+            entries = block * scale[:, None, columns]
+            if factor is not None:
+                entries *= factor[:, rows, None]
+            out[:, :, columns] += np.matmul(left[:, :, rows], entries)
         for rows, columns, values in self.single:
-            scale = values if factor is None else factor[:, None, rows] * values
-            out[:, :, columns] += left[:, :, rows] * scale
+            entries = values * scale[:, columns]
+            if factor is not None:
+                entries *= factor[:, rows]
+            out[:, :, columns] += left[:, :, rows] * entries[:, None]

@@ -14,17 +14,17 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs
-from continuation.certificate.derivative import Derivative, bent
+from continuation.certificate.derivative import Derivative
 from continuation.certificate.engine import Judged
 from continuation.certificate.form import Quadratic
 from continuation.certificate.krawczyk import Several
 from continuation.certificate.polynomial import Polynomial
 from continuation.intervals.ends import Ends
 
-ENTRIES = 200_000
+CACHED_NUMBERS = 200_000
 """Numbers of one array of matrices at a time, 1.6 MB: a few of them are to be in a cache of several."""
 
-ROOM = 4_000_000
+BATCH_NUMBERS = 4_000_000
 """Numbers of an array of 32 MB, the largest that has this effect."""
 
 
@@ -45,18 +45,18 @@ class ByProducts:
 
     def together(self, m: int) -> int:
         """See `Engine`."""
-        return max(1, ENTRIES // (m * m))
+        return max(1, CACHED_NUMBERS // (m * m))
 
-    def bent(self, box: Ends, t: Ends) -> Ends:
-        """See `Engine`; the same everywhere."""
-        return bent(self.form, t)
+    def bent(self, box: Ends, t: Ends) -> None:
+        """See `Engine`; `Judged.pace` tells more."""
+        return
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`; valid for all radii."""
         places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // self.together(radius.shape[1])))
         # glibc keeps what is freed for the next array once it has seen a large one freed; asking the system for pages
         # again each time took a third of a judgement. Nothing is written to this one.
-        np.empty(ROOM)
+        np.empty(BATCH_NUMBERS)
         with np.errstate(all="ignore"):
             if len(places) == 1:
                 return self._judge(slabs, radius)

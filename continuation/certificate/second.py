@@ -20,7 +20,7 @@ from continuation.certificate.cells import OVERHANG, Cells
 BITS = 113
 """Of each ball's middle: twice those of a double, so that its own round-off is no matter."""
 
-PARTS, DEPTH = 4, 7
+RANGE_PARTS, DEPTH = 4, 7
 """Into how many parts a slab is cut where the test fails, and how often: it is a plainer one, its preconditioner stands
 still."""
 
@@ -130,9 +130,10 @@ def _covered(
     with suppress(ValueError):
         if _slab(flint, residual, cell, middle, half * (1.0 + 1e-9)):
             return True
-    part = half / PARTS
+    part = half / RANGE_PARTS
     return depth > 0 and all(
-        _covered(flint, residual, cell, middle + (2 * k + 1 - PARTS) * part, part, depth - 1) for k in range(PARTS)
+        _covered(flint, residual, cell, middle + (2 * k + 1 - RANGE_PARTS) * part, part, depth - 1)
+        for k in range(RANGE_PARTS)
     )
 
 

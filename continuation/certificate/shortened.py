@@ -10,7 +10,7 @@ from continuation.certificate.proof import Proof
 from continuation.step.options import Options
 from continuation.step.tracer import Tracer
 
-ROUNDS = 4
+TRACES = 4
 """Traces at most, each with steps half as long as the one before."""
 
 
@@ -33,7 +33,7 @@ def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
     """
     best: tuple[Options, Proof] | None = None
     tried = options
-    for _ in range(ROUNDS):
+    for _ in range(TRACES):
         tracer = Tracer(homotopy, **tried)
         for _ in tracer:
             pass

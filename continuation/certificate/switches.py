@@ -12,10 +12,10 @@ from continuation.certificate.krawczyk import ByIntervals
 from continuation.intervals.calculus import derivatives, with_gradient
 from continuation.intervals.ends import Ends, bilinear, thin
 
-FEW = 4
+ARC_PARTS = 4
 """Parts of an arc of few slabs: a switch that vanishes at both ends has its sign in between."""
 
-DEPTH = 5
+SLAB_HALVINGS = 5
 """A slab on which neither a switch nor its derivative along the curve has a sign is halved so often at most."""
 
 
@@ -34,11 +34,11 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
         Proved ones.
     """
     slabs = slabs_of(cells)
-    if len(slabs) < FEW:
-        slabs = slabs.halved(FEW)
+    if len(slabs) < ARC_PARTS:
+        slabs = slabs.halved(ARC_PARTS)
     radius = slabs.cells.radius
     found: list[list[Piece]] = []
-    for depth in range(DEPTH + 1):
+    for depth in range(SLAB_HALVINGS + 1):
         x, m = slabs.offset[:, None], radius.shape[1]
         box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
         image = switches.image(with_gradient(box.lo, box.hi))
@@ -47,7 +47,7 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, m)), Ends(t.lo[..., None], t.hi[..., None]))
         bend = np.where(sign == 0, _signs(Ends(slope.lo[..., 0], slope.hi[..., 0])), 0)
-        keep = ((sign != 0) | (bend != 0)).all(axis=1) | (depth == DEPTH)
+        keep = ((sign != 0) | (bend != 0)).all(axis=1) | (depth == SLAB_HALVINGS)
         found = found or [[] for _ in range(sign.shape[1])]
         for k in np.flatnonzero(keep).tolist():
             cell, lo, hi = int(slabs.owner[k]), slabs.middle[k] - slabs.half[k], slabs.middle[k] + slabs.half[k]

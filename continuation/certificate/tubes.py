@@ -8,18 +8,18 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, joined, sizes, slabs_of
 from continuation.certificate.engine import Engine, Judged
-from continuation.certificate.folds import Signs, signs
+from continuation.certificate.folds import Piece, told
 from continuation.certificate.links import Nodes
 from continuation.intervals.ends import EPS, Mask
 
-FLOOR = 1e-6
+LEAST_RADIUS = 1e-6
 """Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's
 curve. The curve itself is found where it is, within the misfit."""
 
-ROUND_OFF = 1024.0
+STILL_ULPS = 1024.0
 """Units in the last place of the nodes: the same for a component that stands still."""
 
-FIRST = 0.1
+FIRST_RADII = 0.1
 """The radii that a test begins with, in half widths of a slab: they widen the derivatives by so much."""
 
 INFLATION = 1.1
@@ -28,7 +28,7 @@ INFLATION = 1.1
 WIDE = 10.0
 """Radii of so many sizes of the cell are given up: they grow from one trial to the next."""
 
-ROUNDS, RADII = 6, 12
+CELL_TESTS, RADII = 6, 12
 """Tests of a cell, and radii that are tried with the bounds of one of them."""
 
 SOON, HOPELESS = 3, 1.3
@@ -69,8 +69,8 @@ class Found:
     proved : ndarray of bool, shape (cells,)
     undefined : ndarray of bool, shape (cells,)
         Whether the residual has no value, or is not decided, somewhere in the last box that was tried.
-    signs : list of Signs or None
-        Of each proved cell, where the engine's bounds are exact and told them too.
+    pieces : list of list of Piece
+        Of each cell; none where it is not proved, or the engine's bounds do not hold for all radii.
     ends : Nodes
         The curve at the end of each cell, where they told that.
     """
@@ -78,7 +78,7 @@ class Found:
     cells: Cells
     proved: Mask
     undefined: Mask
-    signs: list[Signs | None]
+    pieces: list[list[Piece]]
     ends: Nodes
 
 
@@ -96,7 +96,7 @@ def search(engine: Engine, cells: Cells) -> Found:
         joined([one.cells for one in found]),
         np.concatenate([one.proved for one in found]),
         np.concatenate([one.undefined for one in found]),
-        [signs for one in found for signs in one.signs],
+        [some for one in found for some in one.pieces],
         Nodes.joined([one.ends for one in found]),
     )
 
@@ -114,10 +114,10 @@ def _search(engine: Engine, cells: Cells) -> Found:
     radius = np.zeros_like(scale)
     slabs = cells.slabs.copy()
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
-    told: list[Signs | None] = [None] * count
-    radius[:] = FIRST * scale / (2.0 * slabs[:, None])
+    known: list[list[Piece]] = [[] for _ in range(count)]
+    radius[:] = FIRST_RADII * scale / (2.0 * slabs[:, None])
     pending = np.arange(count)
-    for _ in range(ROUNDS):
+    for _ in range(CELL_TESTS):
         if not len(pending):
             break
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
@@ -129,9 +129,9 @@ def _search(engine: Engine, cells: Cells) -> Found:
         good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             tube = wanted[parts.owner]
-            by_cell = signs(engine, judged, parts, tube, tube).split(parts.owner, len(tried))
-            for k in np.flatnonzero(good).tolist():
-                told[pending[k]] = by_cell[k]
+            for piece in told(judged, parts, tube):
+                if good[piece.cell]:
+                    known[pending[piece.cell]].append(piece)
             ends.put(pending[good], _ends(parts, judged, tube).take(good))
         undefined[pending] = ~np.isfinite(off)
         with np.errstate(all="ignore"):
@@ -139,6 +139,9 @@ def _search(engine: Engine, cells: Cells) -> Found:
         proved[pending] = good
         # Bounds that hold for all radii are the same again; the others are not.
         more = ~good & (engine.exact | ~(kappa < CONTRACTING))
+        if engine.exact and more.any():
+            kappa, wide = _without_tube(parts, judged, tried, wanted)
+            slabs[pending[more & (wide | (kappa < CONTRACTING))]] = engine.most + 1
         with np.errstate(all="ignore"):
             least = np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0) ** (1.0 / engine.order))
             factor = np.where(np.isfinite(kappa), least, 4.0)
@@ -146,10 +149,10 @@ def _search(engine: Engine, cells: Cells) -> Found:
         slabs[pending] = np.minimum(grown, engine.most + 1)
         again = more | ~np.asarray(np.isfinite(wanted).all(axis=1))
         radius[pending] = np.where(
-            (again & ~good)[:, None], FIRST * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
+            (again & ~good)[:, None], FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
         )
         pending = pending[~good & (slabs[pending] <= engine.most)]
-    return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, told, ends)
+    return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known, ends)
 
 
 def _ends(slabs: Slabs, judged: Judged, tube: Array) -> Nodes:
@@ -164,7 +167,7 @@ def _fixed_point(
 ) -> tuple[Array, Array, Array]:
     """Radii a little above what the test gives back, the bound of the contraction, and the misfit in sizes; a cell."""
     count, owner = len(cells), slabs.owner
-    least = FLOOR * scale + ROUND_OFF * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
+    least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
     with np.errstate(all="ignore"):
         off = _largest(judged.misfit, owner, count)
         radius = np.minimum(np.maximum(2.0 * off, least), bounded)
@@ -180,6 +183,27 @@ def _fixed_point(
                 break
             radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
         return radius, kappa, (off / scale).max(axis=1)
+
+
+def _without_tube(slabs: Slabs, judged: Judged, cells: Cells, radius: Array) -> tuple[Array, Mask]:
+    """The contraction along the cubics alone, and whether tubes are too wide however short the slabs are; a cell.
+
+    What the width of a tube adds to the derivative is not less over a shorter slab, nor is the misfit: where their
+    equation alone has no fixed point, more slabs are in vain.
+    """
+    count, owner = len(cells), slabs.owner
+    with np.errstate(all="ignore"):
+        kappa = _largest(judged.spread(radius[owner], 0.0 * radius[owner]) / radius[owner], owner, count).max(axis=1)
+        off = _largest(judged.misfit, owner, count)
+        x, narrow = 2.0 * off + np.finfo(float).tiny, np.zeros(count, bool)
+        for _ in range(RADII):
+            own = x[owner]
+            image = off + _largest(judged.spread(own, own) - judged.spread(own, 0.0 * own), owner, count)
+            narrow |= np.asarray((image < x).all(axis=1))
+            if narrow.all():
+                break
+            x = np.where(narrow[:, None], x, INFLATION * image)
+        return kappa, ~narrow
 
 
 def _largest(values: Array, owner: Index, count: int) -> Array:

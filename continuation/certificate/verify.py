@@ -13,7 +13,7 @@ from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, expans
 from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, certificate_of, series_of
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, Turn, pieces, turns
-from continuation.certificate.links import NEAR, Nodes, linked, nodes, reach
+from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
 from continuation.intervals.ends import EPS, Ends, Mask, thin
@@ -24,7 +24,7 @@ from continuation.status import Kind
 NOT_A_NODE = "a point of the path is no node of the proof"
 NO_END = "no tube was found at the end"
 
-CLOSE = 1e-4
+EVENT_DISTANCE = 1e-4
 """How far an event may be from the curve, in sizes of its cell: located ones are off by their tolerance, of 1e-6."""
 
 WIDER = 1.5
@@ -245,9 +245,9 @@ def _on_curve(
     owner = np.clip(np.array([int(places[k] or 0.0) for k in known]), 0, len(cells) - 1)
     own = cells.take(owner)
     at = nodes(engine, evolve(own, begin=np.array([events[k].u for k in known])), np.zeros(len(known)))
-    round_off = 8.0 * NEAR * EPS * np.abs([events[k].u for k in known])
+    round_off = 8.0 * NODE_ULPS * EPS * np.abs([events[k].u for k in known])
     # Of what stands still a cell knows no size but the tube's.
-    allowed = np.where(own.begin == own.end, own.radius, CLOSE * sizes(own)) + round_off
+    allowed = np.where(own.begin == own.end, own.radius, EVENT_DISTANCE * sizes(own)) + round_off
     near = np.asarray((at.radius <= allowed).all(axis=1))
     lost = {k for k, good in zip(known, near) if not good}
     return [None if k in lost else place for k, place in enumerate(places)]

@@ -34,18 +34,7 @@ def catalogue() -> dict[str, EntryPoint]:
 def studies(name: str, size: Size = "moderate", compare: bool = False) -> Sequence[Study]:
     """The studies behind a name.
 
-    Parameters
-    ----------
-    name : str
-        One of `catalogue`.
-    size : {"smoke", "moderate", "full"}
-    compare : bool
-        Ask for outside solvers too.
-
-    Raises
-    ------
-    ValueError
-        If there is no such name.
+    `name`: One of `catalogue`. `compare`: Ask for outside solvers too. Raises `ValueError` if there is no such name.
     """
     known = catalogue()
     if name not in known:

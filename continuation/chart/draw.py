@@ -7,7 +7,7 @@ from math import ceil, floor, inf, log10
 
 from attrs import frozen
 
-from continuation.chart.front import FLOOR, coordinates, on_front
+from continuation.chart.front import ERROR_FLOOR, coordinates, on_front
 from continuation.chart.results import WORK, Results, Row
 from continuation.chart.style import Axes, Figure, few_ticks, label, legend_below, line_style, panels, ring, tidy
 
@@ -30,9 +30,9 @@ def draw(
 ) -> Figure:
     """Draw error against work.
 
-    Runs on the Pareto front have a black ring. Errors that are round-off (at most `FLOOR`), if there are any, are in a
-    grey band on the left; where most of a panel's are, the panel has seconds on x. Failures have no place on x: they
-    are in the strip on the right, at the work that they cost, or on its lower edge where that is less or unknown.
+    Runs on the Pareto front have a black ring. Errors that are round-off (at most `ERROR_FLOOR`), if there are any, are
+    in a grey band on the left; where most of a panel's are, the panel has seconds on x. Failures have no place on x:
+    they are in the strip on the right, at the work that they cost, or on its lower edge where that is less or unknown.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Precision:
 def piled(rows: Sequence[Row], error: str, work: str) -> bool:
     """Whether nearly all errors of a panel are round-off."""
     found = [point[0] for row in rows if (point := coordinates(row, error, work)) is not None]
-    return bool(found) and sum(e <= FLOOR for e in found) >= PILED * len(found)
+    return bool(found) and sum(e <= ERROR_FLOOR for e in found) >= PILED * len(found)
 
 
 def _time_panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, work: str) -> None:
@@ -116,8 +116,8 @@ def _time_panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: st
 
 def _panel(axes: Axes, rows: Sequence[Row], names: Sequence[str], error: str, work: str) -> None:
     points = {id(row): point for row in rows if (point := coordinates(row, error, work)) is not None}
-    found = [e for e, _ in points.values()] or [FLOOR]
-    band = _Band(min(found), max(found), len(names), sum(e <= FLOOR for e in found) / len(found))
+    found = [e for e, _ in points.values()] or [ERROR_FLOOR]
+    band = _Band(min(found), max(found), len(names), sum(e <= ERROR_FLOOR for e in found) / len(found))
     failures = []
     for k, name in enumerate(names):
         own = [row for row in rows if row.method == name]
@@ -152,7 +152,7 @@ class _Band:
     @property
     def _decades(self) -> float:
         """Of errors beyond round-off, two at least."""
-        return max(2.0, log10(self.largest / FLOOR) + 0.5)
+        return max(2.0, log10(self.largest / ERROR_FLOOR) + 0.5)
 
     @property
     def _share(self) -> float:
@@ -161,22 +161,22 @@ class _Band:
 
     @property
     def _left(self) -> float:
-        return float(FLOOR * 10.0 ** (-self._decades * self._share / (1.0 - self._share)))
+        return float(ERROR_FLOOR * 10.0 ** (-self._decades * self._share / (1.0 - self._share)))
 
     def place(self, k: int, error: float, work: float) -> tuple[float, float]:
         """Where to draw a point of method k."""
-        if error > FLOOR:
+        if error > ERROR_FLOOR:
             return error, work
-        return float(self._left * (FLOOR / self._left) ** ((k + 0.6) / (self.count + 0.2))), work
+        return float(self._left * (ERROR_FLOOR / self._left) ** ((k + 0.6) / (self.count + 0.2))), work
 
     def mark(self, axes: Axes) -> None:
         """Set the axis; shade the band and name it, without ticks in it."""
         from matplotlib.ticker import FixedLocator, LogFormatterSciNotation, NullLocator
 
         if self.fraction > 0.0:
-            first, last = round(log10(FLOOR)), floor(log10(FLOOR) + self._decades)
+            first, last = round(log10(ERROR_FLOOR)), floor(log10(ERROR_FLOOR) + self._decades)
             stride = 1 + (last - first) // round(6.0 * (1.0 - self._share))
-            axes.set_xlim(self._left, FLOOR * 10.0**self._decades)
+            axes.set_xlim(self._left, ERROR_FLOOR * 10.0**self._decades)
         else:
             first, last = floor(log10(self.smallest) - 0.1), ceil(log10(self.largest) + 0.1)
             stride = 1 + (last - first) // 6
@@ -186,8 +186,8 @@ class _Band:
         axes.xaxis.set_minor_locator(NullLocator())
         if self.fraction == 0.0:
             return
-        axes.axvspan(self._left, FLOOR, color="0.94", linewidth=0, zorder=0)
-        middle = (self._left * FLOOR) ** 0.5
+        axes.axvspan(self._left, ERROR_FLOOR, color="0.94", linewidth=0, zorder=0)
+        middle = (self._left * ERROR_FLOOR) ** 0.5
         axes.annotate(
             "round-off", (middle, 0.0), (0, -3), ("data", "axes fraction"), "offset points", fontsize="x-small",
             ha="center", va="top",

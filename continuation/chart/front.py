@@ -7,19 +7,19 @@ from collections.abc import Sequence
 
 from continuation.chart.results import Results, Row
 
-FLOOR = 1e-13
+ERROR_FLOOR = 1e-13
 """Errors below this are round-off, and count as equal."""
 
 
 def coordinates(row: Row, error: str, work: str) -> tuple[float, float] | None:
-    """(error, work) of a run that succeeded, the error to three digits and not below `FLOOR`; None for others.
+    """(error, work) of a run that succeeded, the error to three digits and not below `ERROR_FLOOR`; None for others.
 
     Errors that differ in the fourth digit say the same: neither run is better for it.
     """
     value = row.errors[error]
     if row.failed or not math.isfinite(value):
         return None
-    return max(float(f"{value:.2e}"), FLOOR), row.work(work)
+    return max(float(f"{value:.2e}"), ERROR_FLOOR), row.work(work)
 
 
 def on_front(rows: Sequence[Row], error: str, work: str) -> list[Row]:

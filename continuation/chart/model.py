@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from attrs import field, frozen
+from attrs import Factory, field, frozen
 
 from continuation.arrays import Array
 from continuation.chart.ladder import Rung
@@ -52,7 +52,7 @@ class Problem:
     truth: Truth = field(factory=Truth)
     options: Mapping[str, Any] = field(factory=dict)
     n: int = field()
-    family: str = field()
+    family: str = field(default=Factory(lambda problem: problem.name, takes_self=True))
     seed: int = -1
 
     @n.default
@@ -60,10 +60,6 @@ class Problem:
         if hasattr(self.subject, "start"):
             return len(self.subject.start()[0])
         return int(getattr(self.subject, "n", 0))
-
-    @family.default
-    def _own_name(self) -> str:
-        return self.name
 
 
 @frozen(eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol, runtime_checkable
 
-from attrs import field, frozen
+from attrs import Factory, field, frozen
 
 from continuation.chart.errors import Error
 from continuation.chart.ladder import Ladder, tolerances
@@ -115,12 +115,8 @@ class Study:
     errors: Sequence[Error] = field(validator=_distinct)
     work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known_work)
     figures: Sequence[Figure] = ()
-    title: str = field()
+    title: str = field(default=Factory(lambda study: study.name, takes_self=True))
     repeats: int = field(default=2, validator=integer(0))
     patience: float = field(default=0.5, validator=NOT_NEGATIVE)
     give_up: bool = False
     notes: Sequence[str] = ()
-
-    @title.default
-    def _own_name(self) -> str:
-        return self.name

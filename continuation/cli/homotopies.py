@@ -88,7 +88,8 @@ def _list(arguments: argparse.Namespace) -> int:
         described = plugins.describe(factory)
         origin = known[arguments.name].origin if arguments.name in known else arguments.name
         kind = known[arguments.name].kind if arguments.name in known else ""
-        print("\n".join([*_entry(arguments.name, described, origin, kind), *_full(described)]))
+        references = (f"\n{entry}" for entry in described.references)
+        print("\n".join([*_entry(arguments.name, described, origin, kind), *references]))
         return SUCCESS
     broken = []
     for name, plugin in known.items():
@@ -113,11 +114,6 @@ def _entry(name: str, described: plugins.Description, origin: str, kind: str) ->
 
         lines.append(f"    reference: {'; '.join(map(short, described.references))}")
     return [*lines, f"    from: {origin}"]
-
-
-def _full(described: plugins.Description) -> Iterator[str]:
-    for entry in described.references:
-        yield f"\n{entry}"
 
 
 # -- trace ----------------------------------------------------------------------------------------------------

@@ -100,15 +100,15 @@ TINY = 1e-300
 POLISHING = Contraction(iterations=12)
 """From the tolerance to round-off chord steps that halve an increment, or better, need no more."""
 
-ROUND_OFF = 32.0
+RESIDUAL_NOISE = 32.0
 """How much larger than what `Evaluator.round_off` sees a residual at round-off may be: it looks once, at something
 random, and H adds up as many terms as it has."""
 
 
-FAR_FROM_ROUND_OFF = 30.0 * ROUND_OFF
+FAR_FROM_ROUND_OFF = 30.0 * RESIDUAL_NOISE
 """A residual this large after polishing is worth a factorisation of its own."""
 
-ROUNDS = 10
+POLISHING_ROUNDS = 10
 """At most so many, while they help: near a pole Newton's method first creeps."""
 
 
@@ -123,7 +123,7 @@ def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
     return level(r, evaluator.round_off(u, r)) > FAR_FROM_ROUND_OFF
 
 
-AGREES = 0.5
+INCREMENT_LEAVES = 0.5
 """The part of a residual that an increment may leave in the linear equations: one that leaves more solves nothing."""
 
 
@@ -139,7 +139,7 @@ def holds(evaluator: Evaluator, u: Array) -> bool:
         return False
     r = evaluator.residual(u)
     z = evaluator.factor(u, np.append(np.zeros(u.size - 1), 1.0)).solve(-r, 0.0)
-    return largest(apply(z) + r) <= AGREES * largest(r)
+    return largest(apply(z) + r) <= INCREMENT_LEAVES * largest(r)
 
 
 SAME_TERMS = 0.1
@@ -190,9 +190,9 @@ def iterate(
         nonlocal r, left
         r = evaluator.residual(iteration.x)
         left = level(r, terms)
-        if once and left > ROUND_OFF:
+        if once and left > RESIDUAL_NOISE:
             look_again()
-        return left <= ROUND_OFF
+        return left <= RESIDUAL_NOISE
 
     def look_again() -> None:
         nonlocal left, once, terms
@@ -218,14 +218,14 @@ def iterate(
             # after the first have factorisations of their own: the one at hand may be of a point where that component
             # was another.
             before = np.inf
-            for fresh in range(ROUNDS):
+            for fresh in range(POLISHING_ROUNDS):
                 once, looked, there = not fresh, iteration.x, r
                 terms = evaluator.look(looked, there) if once else evaluator.round_off(looked, there)
                 left = level(r, terms)
-                if once and ROUND_OFF < left <= FAR_FROM_ROUND_OFF:
+                if once and RESIDUAL_NOISE < left <= FAR_FROM_ROUND_OFF:
                     # What is far from round-off is polished, what is at round-off needs no second look.
                     look_again()
-                if left <= (FAR_FROM_ROUND_OFF if fresh else ROUND_OFF) or left > before:
+                if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:
                     break
                 before = left if fresh else np.inf
                 k, ratio = (count + 2 * fresh, 1.0) if fresh else (count, worst)

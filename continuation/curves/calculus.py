@@ -22,13 +22,13 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.functions import DifferentiableHomotopy
 from continuation.events.singularity import SECOND, full_derivative, row_sizes
 
-MOST = 128
+JET_COLUMNS = 128
 """Columns up to which second derivatives come from jets, which make all of them; beyond, two Jacobians are cheaper."""
 
-AGREE = 1e-3
+JETS_AGREE = 1e-3
 """Jets are believed where they agree with a difference so well, relative to the largest."""
 
-BESIDE = 1e-2
+TRIAL_DISTANCE = 1e-2
 """How far beside the start, in extents."""
 
 Member = Callable[[Any], Any]
@@ -94,8 +94,7 @@ class Calculus:
         if self.jets:
             from continuation import jets
 
-            row: Array = left @ jets.second_derivatives(self.residual, np.append(u, mu), np.append(v, 0.0))
-            return row
+            return left @ jets.second_derivatives(self.residual, np.append(u, mu), np.append(v, 0.0))
         return self._by_two_jacobians(u, mu, v, left)
 
     def _by_two_jacobians(self, u: Array, mu: float, v: Array, left: Array) -> Array:
@@ -112,10 +111,7 @@ class Calculus:
 
 
 def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
-    """How to differentiate a family, tried at a point.
-
-    `u` of shape (N + 1,). `extent` of shape (N + 1,).
-    """
+    """How to differentiate a family, tried at a point."""
     homotopy = family(mu)
     own = any(hasattr(homotopy, name) for name in ("jacobian", "bordered", "differential"))
     source = "" if own else from_residual(homotopy.residual, (u[:-1], float(u[-1]))).source
@@ -135,14 +131,14 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     first = Calculus(family, source, False, U, extent, reach, reach)
     plain = evolve(first, bend=difference_along(bent, U, along)[1])
     with_jets = evolve(plain, jets=True)
-    if U.size > MOST:
+    if U.size > JET_COLUMNS:
         return plain
     try:
         with np.errstate(all="ignore"):
             # Each equation and each unknown in its own size: the difference of another one's round-off tells nothing.
             left, columns = 1.0 / row_sizes(plain.evaluator(mu), extent, (u,)), np.append(extent, along[-1])
             # Where a derivative vanishes its difference is round-off: a point beside the start decides then.
-            for beside in (u, u + BESIDE * v):
+            for beside in (u, u + TRIAL_DISTANCE * v):
                 both = (with_jets, plain)
                 if _alike(*(left * one.by_parameter(beside, mu) for one in both)) and _alike(
                     *(columns * one.second(beside, mu, v, left) for one in both)
@@ -155,5 +151,5 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
 
 def _alike(found: Array, difference: Array) -> bool:
     return found.shape == difference.shape and bool(
-        (np.abs(found - difference) <= AGREE * float(np.abs(difference).max())).all()
+        (np.abs(found - difference) <= JETS_AGREE * float(np.abs(difference).max())).all()
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -32,11 +32,7 @@ class Singular:
     b: Array
     c: Array
     branches: bool
-
-    @property
-    def beside(self) -> tuple[str, ...]:
-        """No unknown beside."""
-        return ()
+    beside: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def at_start(cls, calculus: Calculus, branches: bool) -> Singular:
@@ -95,11 +91,7 @@ class HopfPoint:
     b: Array
     c: Array
     tangential: Tangential
-
-    @property
-    def beside(self) -> tuple[str, ...]:
-        """The frequency, omega."""
-        return ("frequency",)
+    beside: ClassVar[tuple[str, ...]] = ("frequency",)
 
     @classmethod
     def at_start(cls, calculus: Calculus, frequency: float) -> HopfPoint:

@@ -14,7 +14,7 @@ INCREMENTS = 20
 NOTHING = 1e-14
 """What is smaller, beside how far it goes, is what round-off left of zero: as a size it would mislead."""
 
-FAR = 10.0
+SINGULAR_INCREMENT = 10.0
 """A first increment longer than this, beside the size of the point, is that of a singular system."""
 
 
@@ -23,7 +23,7 @@ def corrected(homotopy: Any, y: Array, lam: float, size: Array) -> Array:
 
     `homotopy`: With `bordered`. `y` of shape (N,). `size`, of shape (N,): What increments are measured by.
     """
-    best, least = y, FAR
+    best, least = y, SINGULAR_INCREMENT
     for _ in range(INCREMENTS):
         try:
             with np.errstate(all="ignore"):

@@ -28,7 +28,7 @@ from continuation.labels import Labels
 from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
-LAST = 6
+POINTS_KEPT = 6
 """Points, and members, that are kept: correctors ask for several things at one, events look at ends of an arc again."""
 
 PERSISTS = 1e-6
@@ -341,7 +341,7 @@ class Curve:
 def _keep(recent: dict[Any, Any], key: Any, value: Any) -> None:
     """Put it beside the last few."""
     recent[key] = value
-    if len(recent) > LAST:
+    if len(recent) > POINTS_KEPT:
         del recent[next(iter(recent))]
 
 

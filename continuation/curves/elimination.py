@@ -31,10 +31,7 @@ class Eliminated:
         return self.base.sign * self.small.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + m,).
-
-        `r` of shape (N + m - 1,).
-        """
+        """The solution z, shape (N + m,)."""
         n = len(self.solved) - 1
         x = self.base.solve(r[:n], 0.0)
         left = np.append(r[n:], rho) - self.rows[:, :n] @ x[:n]

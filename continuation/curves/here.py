@@ -24,13 +24,7 @@ from continuation.linear.entries import extended
 class Here:
     """All that is known of a curve at a point; worked out once.
 
-    Attributes
-    ----------
-    calculus : Calculus
-    u : ndarray, shape (N + 1,)
-    beside : ndarray, shape (0,) or (1,)
-    mu : float
-    local : Local
+    `u` of shape (N + 1,), `beside` of shape (0,) or (1,).
     """
 
     calculus: Calculus

@@ -61,14 +61,7 @@ class Condition(Protocol):
         ...
 
     def at(self, u: Array, beside: float, mu: float) -> Local:
-        """The condition at a point.
-
-        Parameters
-        ----------
-        u : ndarray, shape (N + 1,)
-        beside : float
-        mu : float
-        """
+        """The condition at a point."""
         ...
 
 

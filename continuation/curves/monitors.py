@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, generic_vector
-from continuation.curves.calculus import AGREE, Calculus
+from continuation.curves.calculus import JETS_AGREE, Calculus
 from continuation.curves.local import Local, Scaled, Tangential, last_column
 from continuation.evaluation.derivatives import by_differences, difference_along, sizes
 from continuation.events import Monitor, TargetValue, TurningPoint
@@ -22,22 +22,13 @@ from continuation.linear.nullspace import factor
 class Vanishing:
     """A function of (y, lam), and of mu, vanishes: a target value, a switch, a monitor of the caller's.
 
-    Attributes
-    ----------
-    function : callable
-        Of (y, lam, mu) as one vector, or jet.
-    gradient : callable
-        Of the vector.
+    `function`: Of (y, lam, mu) as one vector, or jet. `gradient`: Of the vector.
     """
 
     tangential: Tangential
     function: Callable[[Any], Any]
     gradient: Callable[[Array], Array]
-
-    @property
-    def beside(self) -> tuple[str, ...]:
-        """No unknown beside."""
-        return ()
+    beside: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def at_start(cls, calculus: Calculus, function: Callable[[Any], Any]) -> Vanishing:
@@ -57,23 +48,14 @@ class AlongTangent:
 
     The tangent's derivative comes from M dt = -H''[t, .], M = [H_y, H_lam] with a border, by one solve with M'.
 
-    Attributes
-    ----------
-    function : callable
-        Of u and v as one vector.
-    gradient : callable
-        Of the vector.
+    `function`: Of u and v as one vector. `gradient`: Of the vector.
     """
 
     scaled: Scaled
     tangential: Tangential
     function: Callable[[Array], float]
     gradient: Callable[[Array], Array]
-
-    @property
-    def beside(self) -> tuple[str, ...]:
-        """No unknown beside."""
-        return ()
+    beside: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def at_start(cls, calculus: Calculus, function: Callable[[Any], Any]) -> AlongTangent:
@@ -106,11 +88,7 @@ class AlongTangent:
 def without_tangent(event: Any, u: Array) -> Callable[[Any], Any] | None:
     """What vanishes at an event, of (y, lam, mu) as one vector or jet; None where it looks at the tangent too.
 
-    Parameters
-    ----------
-    event : Event
-    u : ndarray, shape (N + 1,)
-        A point to try it at.
+    `u`, of shape (N + 1,): A point to try it at.
     """
     if isinstance(event, TargetValue):
         place = event.component % u.size
@@ -139,7 +117,7 @@ def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], 
         from continuation import jets
 
         found, wanted = jets.jacobian(function, x0), difference_along(at, x0, w)[0]
-        if found.shape == x0.shape and abs(found @ w - wanted[0]) <= AGREE * float(np.abs(found) @ np.abs(w)):
+        if found.shape == x0.shape and abs(found @ w - wanted[0]) <= JETS_AGREE * float(np.abs(found) @ np.abs(w)):
             return lambda x: jets.jacobian(function, x)
     except (TypeError, ArithmeticError, ValueError, AttributeError):
         pass

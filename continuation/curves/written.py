@@ -23,7 +23,7 @@ from continuation.curves.conditions import HopfPoint
 from continuation.jets.dual import derivative_along
 from continuation.metric import Weighted
 
-PLACES = 6
+DECIMALS = 6
 """Decimals of c: what a machine makes of the last digits of an eigenvector is not to be seen in the equations."""
 
 
@@ -52,7 +52,7 @@ class WrittenOut:
             c = np.linalg.svd(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))[2][0]
             # Known up to a phase, by which its largest entry becomes real.
             largest = c[np.argmax(np.abs(c))]
-            c = np.round(c * (largest.conj() / abs(largest)), PLACES)
+            c = np.round(c * (largest.conj() / abs(largest)), DECIMALS)
         extent = condition.scaled.calculus.extent
         beside, far = np.abs(points[:, extent.size : -1]).max(axis=0), float(np.ptp(points[:, -1]))
         count = vectors.shape[1] * (1 if c is None else 2)

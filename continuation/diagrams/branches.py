@@ -161,14 +161,8 @@ class Diagram:
 def from_point(event: LocatedEvent, ray: Array, path: Path, weights: Array) -> Path:
     """A path that began beside a branch point, from the branch point on.
 
-    Parameters
-    ----------
-    event : LocatedEvent
-    ray : ndarray, shape (N + 1,)
-        The direction in which it leaves.
-    path : Path
-    weights : ndarray, shape (N + 1,)
-        The metric at the branch point.
+    `ray`, of shape (N + 1,): The direction in which it leaves. `weights`, of shape (N + 1,): The metric at the branch
+    point.
     """
     first = path.steps[0]
     chord = first.u - event.u

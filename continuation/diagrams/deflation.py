@@ -19,13 +19,13 @@ from continuation.linear import BorderedSystem, factor_bordered
 SEARCHING = Contraction(iterations=60, ratio=np.inf)
 """Newton's method far from a solution: its increments may grow, and it may wander for a while."""
 
-FOUND, NEARLY = 1e-13, 1e-6
+FOUND, NEARLY_FOUND = 1e-13, 1e-6
 """The last increment, and that below which increments that no longer halve are round-off."""
 
 CANCELS = float(np.finfo(float).eps) ** -0.5
 """By so much an increment of Newton's method for H alone may be longer than that for M H."""
 
-APART = 1e-6
+SAME_SOLUTION_DISTANCE = 1e-6
 """Solutions that are nearer to each other are one: the root of round-off and more, as a double one is found."""
 
 
@@ -159,33 +159,16 @@ class DeflatedSystem:
         return self.system.sign * (1 if self.pivot > 0.0 else -1)
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The bordered solve.
-
-        Parameters
-        ----------
-        r : ndarray, shape (N,)
-        rho : float
-        """
+        """The bordered solve."""
         z = self.system.solve(r / self.value, rho)
-        changed: Array = z - self.turned * (float(self.slope @ z[:-1]) / self.pivot)
-        return changed
+        return z - self.turned * (float(self.slope @ z[:-1]) / self.pivot)
 
 
 def solved(homotopy: Any, lam: float, guess: Array, scale: Any = None) -> Array:
     """The solution at a value of the parameter that Newton's method finds from a guess.
 
-    Parameters
-    ----------
-    homotopy : Homotopy
-    lam : float
-    guess : ndarray, shape (N,)
-    scale : ndarray, shape (N,), optional
-        What increments are measured by; the size of the guess by default.
-
-    Raises
-    ------
-    ArithmeticError
-        If it does not converge.
+    `scale`, of shape (N,): What increments are measured by; the size of the guess by default.
+    Raises `ArithmeticError` if it does not converge.
     """
     evaluator = Evaluator(homotopy, Counts())
     unit = np.append(np.zeros(guess.size), 1.0)
@@ -199,7 +182,7 @@ def solved(homotopy: Any, lam: float, guess: Array, scale: Any = None) -> Array:
         return float(np.abs(step[:-1] / size).max())
 
     def done(last: float) -> bool:
-        return last <= FOUND or (last < NEARLY and newton.ratio >= HALVING)
+        return last <= FOUND or (last < NEARLY_FOUND and newton.ratio >= HALVING)
 
     with np.errstate(all="ignore"):
         if not newton.run(increment, measure, done) or not holds(evaluator, newton.x):
@@ -211,13 +194,6 @@ def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[
     """Solutions at a value of the parameter beside known ones: Newton's method on the deflated residual.
 
     What is found is divided out too, until no guess leads to anything new.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    lam : float
-    known : sequence of ndarray, shape (N,)
-    guesses : sequence of ndarray, shape (N,)
     """
     every = list(known)
     spread = np.ptp(np.array([*every, *guesses]), axis=0)
@@ -236,12 +212,6 @@ def others(homotopy: Any, lam: float, known: Sequence[Array], guesses: Sequence[
 
 
 def same_solution(y: Array, other: Array, scale: Any = None) -> bool:
-    """Whether two solutions are one, in units of a scale.
-
-    Parameters
-    ----------
-    y, other : ndarray, shape (N,)
-    scale : ndarray, optional
-    """
+    """Whether two solutions are one, in units of a scale."""
     size = 1.0 + np.abs(y) if scale is None else scale
-    return bool((np.abs(y - other) <= APART * size).all())
+    return bool((np.abs(y - other) <= SAME_SOLUTION_DISTANCE * size).all())

@@ -15,7 +15,7 @@ from continuation.status import Kind
 
 MEETING = (Kind.BRANCH_POINT, Kind.SINGULAR_POINT, Kind.KINK)
 
-SAME_RAY = 0.99
+RAY_COSINE = 0.99
 """The cosine between a ray and the tangent of a branch that came along it; rays that are nearer to each other than
 eight degrees are told by the nearest."""
 
@@ -27,24 +27,11 @@ OPPOSITE = -1.0 + 1e-3
 class Junction:
     """A point where branches meet.
 
-    Attributes
-    ----------
-    event : LocatedEvent
-        As it was found first.
-    weights : ndarray, shape (N + 1,)
-        The metric there.
-    rays : ndarray, shape (k, N + 1)
-        Directions away from it; the first two are those of the branch on which it was found.
-    starts : list of (u, v)
-        For each ray but those two.
-    used : set of int
-        The rays that are known to be followed.
-    label : str
-        Empty until it lies on a branch that is finished.
-    number, generation : int
-        In the order of the labels, and of the branch that it was found on.
-    failed : str
-        Why its rays are not known.
+    `event`: As it was found first. `weights`, of shape (N + 1,): The metric there. `rays`, of shape (k, N + 1):
+    Directions away from it; the first two are those of the branch on which it was found. `starts`: For each ray but
+    those two. `used`: The rays that are known to be followed. `label`: Empty until it lies on a branch that is
+    finished. `number`, `generation`: In the order of the labels, and of the branch that it was found on. `failed`: Why
+    its rays are not known.
     """
 
     event: LocatedEvent
@@ -73,11 +60,14 @@ class Junction:
 
     def take(self, direction: Array) -> None:
         """A branch follows the ray of a direction."""
-        lengths = [norm(self.weights, ray) for ray in self.rays]
-        size = norm(self.weights, direction)
-        along = [inner(self.weights, ray, direction) / (a * size) for ray, a in zip(self.rays, lengths)]
-        if max(along) >= SAME_RAY:
+        along = self._cosines(direction)
+        if max(along) >= RAY_COSINE:
             self.used.add(int(np.argmax(along)))
+
+    def _cosines(self, direction: Array) -> list[float]:
+        """Of its angles with the rays."""
+        size = norm(self.weights, direction)
+        return [inner(self.weights, ray, direction) / (norm(self.weights, ray) * size) for ray in self.rays]
 
     def open(self) -> list[int]:
         """The rays that nobody has followed, of those with a start."""
@@ -87,31 +77,19 @@ class Junction:
         """The ray on which a branch that leaves along another one has come; None at a kink, or where there is none."""
         if self.event.kind == Kind.KINK:
             return None
-        lengths = [norm(self.weights, r) for r in self.rays]
-        along = [inner(self.weights, self.rays[ray], r) / (lengths[ray] * a) for r, a in zip(self.rays, lengths)]
+        along = self._cosines(self.rays[ray])
         nearest = int(np.argmin(along))
         return nearest if along[nearest] <= OPPOSITE else None
 
 
 def meetings(path: Path) -> list[LocatedEvent]:
-    """The events of a path at which other branches may leave.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """The events of a path at which other branches may leave."""
     several = (event for event in path.events if event.kind in MEETING)
     return [e for e in several if e.kind != Kind.KINK or (e.rays is not None and len(e.rays) > 2)]
 
 
 def directions_of(event: LocatedEvent, path: Path) -> list[Array]:
-    """Where a path came from at an event, and where it went on, as directions away from it.
-
-    Parameters
-    ----------
-    event : LocatedEvent
-    path : Path
-    """
+    """Where a path came from at an event, and where it went on, as directions away from it."""
     ends = event.ends_step and event.step == path.steps[-1].index
     begins = np.array_equal(event.u, path.steps[0].u)
     at_kink = event.kind == Kind.KINK and event.rays is not None

@@ -11,10 +11,10 @@ from attrs import define, field
 from continuation.arrays import Array, generic_vector
 from continuation.metric import norm
 
-SAME_POINT = 1e-6
+SAME_PLACE = 1e-6
 """How far apart, in extents of the path, one point may be located on two branches: they are polished to 1e-10."""
 
-ROUNDED = 1e-12
+PRODUCT_ROUNDING = 1e-12
 """Of the sum of a product of vectors, far more than its rounding."""
 
 Item = TypeVar("Item")
@@ -39,7 +39,7 @@ class Places(Generic[Item]):
         """Put an item at a point."""
         if self._axis is None:
             self._axis = generic_vector(u.size) * np.sqrt(weights)
-        self._reach = max(self._reach, SAME_POINT * float(np.linalg.norm(self._axis / np.sqrt(weights))))
+        self._reach = max(self._reach, SAME_PLACE * float(np.linalg.norm(self._axis / np.sqrt(weights))))
         number = float(self._axis @ u)
         at = bisect_right(self._numbers, number)
         self._numbers.insert(at, number)
@@ -47,11 +47,11 @@ class Places(Generic[Item]):
         self._items.append((u, weights, item))
 
     def near(self, u: Array) -> list[Item]:
-        """The items within `SAME_POINT` of a point, each in its metric, in the order in which they were added."""
+        """The items within `SAME_PLACE` of a point, each in its metric, in the order in which they were added."""
         if self._axis is None:
             return []
         number = float(self._axis @ u)
-        reach = self._reach + ROUNDED * float(np.abs(self._axis) @ np.abs(u))
+        reach = self._reach + PRODUCT_ROUNDING * float(np.abs(self._axis) @ np.abs(u))
         some = slice(bisect_left(self._numbers, number - reach), bisect_right(self._numbers, number + reach))
         close: list[Any] = [self._items[k] for k in sorted(self._order[some])]
-        return [item for place, weights, item in close if norm(weights, u - place) <= SAME_POINT]
+        return [item for place, weights, item in close if norm(weights, u - place) <= SAME_PLACE]

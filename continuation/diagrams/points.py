@@ -13,13 +13,7 @@ from continuation.path import LocatedEvent
 
 
 def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list[Special]:
-    """Junctions, turning points, Hopf points and kinks, each once, in the order of the branches.
-
-    Parameters
-    ----------
-    branches : sequence of Branch
-    junctions : sequence of Junction
-    """
+    """Junctions, turning points, Hopf points and kinks, each once, in the order of the branches."""
     labels: Counter[str] = Counter()
     found: list[tuple[str, LocatedEvent, list[int]]] = []
     places: Places[tuple[str, list[int]]] = Places()

@@ -34,7 +34,7 @@ WHOLE = (Status.REACHED_TARGET, Status.STOPPED_AT_EVENT, Status.CLOSED, Status.D
 LEAVES = 0.1
 """Guesses for deflation lie beside known solutions, by this part of how far these are apart."""
 
-AHEAD = 64
+PATHS_AHEAD = 64
 """Paths that an executor is given before the first of them is looked at: enough for as many processes, and what has
 come back and waits is bounded."""
 
@@ -188,7 +188,7 @@ class Search:
         following = iter(tasks if self.executor is not None else ())
         try:
             for task in tasks:
-                for other in islice(following, AHEAD - len(ready)):
+                for other in islice(following, PATHS_AHEAD - len(ready)):
                     assert self.executor is not None
                     ready.append(None if other.idle else self.executor.submit(_path, *self._asked(other)))
                 future, path = ready.popleft() if ready else None, None

@@ -13,10 +13,10 @@ SAME_POINT = 1e3
 """How far apart two points of one path may be, in tolerances, that are one: both were corrected to the tolerance, in
 planes and metrics of their own, and a condition of a thousand is ordinary."""
 
-PARALLEL = 1e-3
+SAME_TANGENT = 1e-3
 """How far apart the unit tangents of one branch may be, for points that are as far apart as that."""
 
-NEAR = 0.5
+NEAR_START = 0.5
 """How near an arc must pass to be looked at, in its lengths: half a step is far more than a segment errs."""
 
 
@@ -25,7 +25,7 @@ def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
     if solver.tolerance.measure(point.u - origin.u, point.weights) > SAME_POINT:
         return False
     v = origin.tangent / norm(point.weights, origin.tangent)
-    return norm(point.weights, point.tangent - v) <= PARALLEL
+    return norm(point.weights, point.tangent - v) <= SAME_TANGENT
 
 
 def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
@@ -43,7 +43,7 @@ def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
         return False
     guess = arc.segment.at(behind / (behind - ahead))
     step = norm(weights, arc.b.u - arc.a.u)
-    if norm(weights, guess - origin.u) > NEAR * step:
+    if norm(weights, guess - origin.u) > NEAR_START * step:
         return False
     border = weights * v
     guess = guess - v * inner(weights, v, guess - origin.u)

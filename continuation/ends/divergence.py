@@ -17,7 +17,7 @@ from continuation.predictors import Knot
 DECADE = 10.0
 """The distance from the start grows by this factor between two looks at the parameter."""
 
-STILL, DECADES = 1e-3, 3
+STANDS_STILL_PART, DECADES = 1e-3, 3
 """The parameter stands still when, in so many decades in a row, it moves by less than this part of all its way: a pole
 of order 6 or lower slows down by less than that in three."""
 
@@ -27,13 +27,13 @@ FROZEN = 1e-12
 HORIZON = 1e12
 """The distance, in extents at the start, beyond which a path is at infinity, whatever its parameter does."""
 
-ORDERS = 1.0 / 12.0, 12.0
+POLE_ORDERS = 1.0 / 12.0, 12.0
 """Orders of poles that are told from an asymptote; a logarithm or an exponential looks like one beyond."""
 
 ABOUT = 0.02
 """Three points give an order to two digits: one that is so near to a whole number, or to its inverse, is that."""
 
-DIGITS = 9
+PRINTED_DIGITS = 9
 """Of the parameter's way, in messages."""
 
 
@@ -59,7 +59,7 @@ def divergence(
     if distance < DECADE * mark:
         return (mark, before, stalled, way, *earlier), ""
     moved = abs(lam - before)
-    stalled = stalled + (DECADES if moved <= FROZEN * way else 1.0) if moved <= STILL * way else 0.0
+    stalled = stalled + (DECADES if moved <= FROZEN * way else 1.0) if moved <= STANDS_STILL_PART * way else 0.0
     words = ""
     if stalled >= DECADES:
         words = _limit((earlier[0], mark, distance), (earlier[1], before, lam), way)
@@ -77,10 +77,10 @@ def _limit(distances: tuple[float, float, float], lams: tuple[float, float, floa
 
     def rounded(lam: float) -> str:
         if way == 0.0:
-            return f"{lam:.{DIGITS}g}"
-        return f"{round(lam, DIGITS - math.floor(math.log10(way))) + 0.0:.{DIGITS}g}"
+            return f"{lam:.{PRINTED_DIGITS}g}"
+        return f"{round(lam, PRINTED_DIGITS - math.floor(math.log10(way))) + 0.0:.{PRINTED_DIGITS}g}"
 
-    (first, second, third), (least, most) = lams, ORDERS
+    (first, second, third), (least, most) = lams, POLE_ORDERS
     ratio = (third - second) / (second - first) if second != first else 0.0
     if distances[0] == 0.0 or abs(third - second) <= FROZEN * way or not decay(1.0 / least) < ratio < decay(1.0 / most):
         return f"An asymptote: the parameter tends to {rounded(third)} and stands still while the unknowns grow."

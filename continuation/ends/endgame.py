@@ -44,13 +44,13 @@ MAX_BACKWARD_SAMPLES = 4
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
-PATIENCE = 3
+SAMPLES_WITHOUT_GAIN = 3
 """Samples in a row that make the estimate no better, after which round-off has the word."""
 
 ROUND_OFF_SPREAD = 10.0
 """How much more round-off there may be in H at the limit than at the last sample."""
 
-FINE = 1e-3
+SAMPLE_TOLERANCE = 1e-3
 """Of the tolerance, to which samples are corrected: the extrapolation multiplies their errors."""
 
 AMPLIFICATION = 0.3, 10.0
@@ -128,7 +128,7 @@ class Endgame:
                 best, worse = end, 0
             else:
                 worse += 1
-            if best.length <= RELATIVE_FLOOR or worse >= PATIENCE:
+            if best.length <= RELATIVE_FLOOR or worse >= SAMPLES_WITHOUT_GAIN:
                 break
         if best is None or not self._within(best):
             taken = self._farther(point)
@@ -179,7 +179,7 @@ class Endgame:
             if room < 1.0:
                 guess = here.u + room * (guess - here.u)
                 guess[-1] = lam
-        fine = Tolerance(relative=FINE * tolerance.relative)
+        fine = Tolerance(relative=SAMPLE_TOLERANCE * tolerance.relative)
         correction = AT_PARAMETER.correct(evaluator, here, guess, unit, fine)
         u, anchor, noise = correction.u, correction.anchor, np.zeros_like(guess)
         try:

@@ -28,14 +28,14 @@ from continuation.step.stepper import Stepper
 ENDGAME = 1e-2
 """How near to the target, as a fraction of the whole way, a singular end is looked for."""
 
-RETRY = 0.05
+RETRY_ENDGAME = 0.05
 """What must be left of the way, since the endgame was last tried in vain, for it to be tried again: two samples."""
 
 FOLD = 0.4, 0.8
 """Where lam - value ~ sigma^w, the ratio of lam's way to the tangent's is 1/w: between these it is a simple fold."""
 
 
-KNOWN = 1e-5
+END_KNOWN_TO = 1e-5
 """An end known to less than this, in the metric of the path, is none: an exponential decay looks like a fold, too. The
 cube root of round-off is what is left of an end where three sheets meet."""
 
@@ -127,7 +127,7 @@ class Target:
         gap, whole = point.lam - self.target, float(state.origin.u[-1]) - self.target
         near = abs(gap) <= ENDGAME * abs(whole) and gap * point.tangent[-1] < 0.0
         failed = state.last_failed_landing == point.lam or self.expects_singular_end
-        return near and failed and abs(gap) <= RETRY * abs(state.last_failed_endgame - self.target)
+        return near and failed and abs(gap) <= RETRY_ENDGAME * abs(state.last_failed_endgame - self.target)
 
     def endgame(self, point: Linearization) -> SingularLimit | None:
         """The limit at the target by the endgame."""
@@ -185,6 +185,6 @@ class Target:
                 return fold
         limit = endgame.limit(arc.a)
         found = fold if limit is None or (fold is not None and fold.length <= limit.length) else limit
-        if found is not None and found.length > KNOWN:
+        if found is not None and found.length > END_KNOWN_TO:
             raise EvaluationError("the parameter stands still near the target, and no limit was found there")
         return found

@@ -71,7 +71,7 @@ def by_complex_step(residual: Callable[..., Any]) -> Callable[[Array, float], tu
     return function
 
 
-STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
+DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
 """Steps of central differences beside the size of a component (or 1, where it is 0): eps^(1/3), the best one where that
 is how far the function sees it, and others, since zero may lie anywhere and units may be any."""
 
@@ -96,14 +96,14 @@ def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[
         return np.asarray(change / (2.0 * h), dtype=float)
 
     with np.errstate(all="ignore"):
-        found = [at(float(h)) for h in STEPS]
+        found = [at(float(h)) for h in DIFFERENCE_STEPS]
         changes = []
         for one, other in pairwise(found):
             size = np.abs(one) + np.abs(other)
             change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
             changes.append(float(np.where(np.isfinite(change), change, 1.0).mean()))
     best = int(np.argmin(changes)) + 1
-    return found[best], float(STEPS[best])
+    return found[best], float(DIFFERENCE_STEPS[best])
 
 
 def _rounding(residual: Callable[..., Any], u: Array, w: Array, h: float) -> Array:

@@ -18,14 +18,14 @@ from continuation.checks import instance_with, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
 from continuation.evaluation.pieces import WholeMap
-from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces
+from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces, offers
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
 
-ULPS = 4.0
+POINT_ULPS = 4.0
 """Units in the last place by which round-off moves a point, about."""
 
-KEPT = 4
+DERIVATIVES_KEPT = 4
 """Derivatives that are kept where somebody looks again: at a step's end, and where crossings are looked for ahead."""
 
 LOOK = 64.0
@@ -128,7 +128,7 @@ class Evaluator:
         self.keeping = False
         self._quiet = False
         self.bind(homotopy)
-        if isinstance(homotopy, SupportsPieces):
+        if offers(homotopy, SupportsPieces):
             self.bind(WholeMap(homotopy, self.start()))
 
     def bind(self, homotopy: Any) -> None:
@@ -145,10 +145,10 @@ class Evaluator:
         self.homotopy = homotopy
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
-        self._bordered = homotopy.bordered if isinstance(homotopy, SupportsBordered) else None
-        self._differential = homotopy.differential if isinstance(homotopy, SupportsDifferential) else None
+        self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
+        self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
         self._derivative: Derivative | None = None
-        if isinstance(homotopy, SupportsJacobian):
+        if offers(homotopy, SupportsJacobian):
             self._derivative = Derivative(homotopy.jacobian, source="jacobian")
 
     @contextmanager
@@ -231,7 +231,7 @@ class Evaluator:
         """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
         change = self.residual(u + np.spacing(np.abs(u)) * _moves(u.size)[::order])
         change -= residual
-        change *= ULPS / LOOK
+        change *= POINT_ULPS / LOOK
         return np.abs(change, out=change)
 
     @property
@@ -275,7 +275,7 @@ class Evaluator:
             check_derivative(answer, u.size - 1)
             self._checked = True
         if self.keeping:
-            while len(self._kept) >= KEPT:
+            while len(self._kept) >= DERIVATIVES_KEPT:
                 del self._kept[next(iter(self._kept))]
             # A dense one may be an array that the plug-in fills anew every time.
             self._kept[u.tobytes()] = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]

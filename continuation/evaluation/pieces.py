@@ -16,16 +16,16 @@ Signs = tuple[int, ...]
 REMEMBERED = 64
 """Pieces that are kept: a kink with several switches asks for the same few again."""
 
-STEP = 6e-6
+DIFFERENCE_STEP = 6e-6
 """Of a central difference, relative to the point: the cube root of round-off."""
 
-AGREE = 1e-4
+DERIVATIVES_AGREE = 1e-4
 """Jets are believed where they agree with a difference so well, relative to the largest."""
 
-BESIDE = 1e-9
+BORDER_DISTANCE = 1e-9
 """How near to a border, in lengths of the direction in which it leaves, a start is that was given on it."""
 
-PARALLEL = 1e-9
+SWITCH_STILL = 1e-9
 """The derivative of a switch along a path, relative to the largest, that is round-off or next to it."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
@@ -91,7 +91,9 @@ class Pieces:
                 with np.errstate(all="ignore"):
                     one, other = self._by_jets(u, v), self._by_differences(u, v)
                 known = one.shape == other.shape
-                self._jets.append(known and bool((np.abs(one - other) <= AGREE * np.abs(other).max(initial=0.0)).all()))
+                self._jets.append(
+                    known and bool((np.abs(one - other) <= DERIVATIVES_AGREE * np.abs(other).max(initial=0.0)).all())
+                )
             except (TypeError, ArithmeticError, ValueError, AttributeError):
                 self._jets.append(False)
         return self._by_jets(u, v) if self._jets[0] else self._by_differences(u, v)
@@ -103,8 +105,8 @@ class Pieces:
         or 1 at zero: there is no other length then. Borders beside the point, by the same measure, are not ahead.
         """
         s, slope = np.abs(self.values(u)), np.abs(self.along(u, v))
-        beside = 0.0 if direction is None else BESIDE * np.abs(self.along(u, direction))
-        ahead = (s > beside) & (slope > PARALLEL * slope.max(initial=0.0))
+        beside = 0.0 if direction is None else BORDER_DISTANCE * np.abs(self.along(u, direction))
+        ahead = (s > beside) & (slope > SWITCH_STILL * slope.max(initial=0.0))
         if ahead.any():
             return float(np.sort(s[ahead] / slope[ahead])[(ahead.sum() - 1) // 2])
         size = float(np.abs(u if direction is None else direction).max())
@@ -119,7 +121,7 @@ class Pieces:
 
     def _by_differences(self, u: Array, v: Array) -> Array:
         size = float(np.abs(v).max())
-        h = STEP * (float(np.abs(u).max()) or 1.0) / size if size > 0.0 else 1.0
+        h = DIFFERENCE_STEP * (float(np.abs(u).max()) or 1.0) / size if size > 0.0 else 1.0
         change: Array = (self.values(u + h * v) - self.values(u - h * v)) / (2.0 * h)
         return change
 

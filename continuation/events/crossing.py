@@ -21,10 +21,10 @@ from continuation.point.linearization import Linearization
 PRODUCTS = 40
 """At most so many dimensions of the Krylov space; on a path that nothing crosses two are usual."""
 
-CONVERGED = 0.05
+EIGENVALUE_ACCURACY = 0.05
 """Of an eigenvalue: it tells about where the crossing lies, and Newton's method does the rest."""
 
-UNSEEN = 0.1
+OUTSIDE_SPACE = 0.1
 """Of the eigenvalues asked for: where the last dimension leads out of the space by more, what it shows must be so in
 the next one too. Without that a tenth of the crossings just behind an arc is overlooked (400 crossings)."""
 
@@ -42,7 +42,7 @@ def singular_places(
     border: Array,
     ahead: float,
     behind: float = np.inf,
-    accuracy: float = CONVERGED,
+    accuracy: float = EIGENVALUE_ACCURACY,
     turned: int = 0,
 ) -> list[float]:
     """Where on the way from M_a to another bordered matrix M there are singular ones: t in order, 1 at M itself.
@@ -169,14 +169,14 @@ def _eigenvalues(
             Q[1] = x / left_over
             continue
         if k == 1 and _nothing_told(H, right, left):
-            if whole or left_over <= UNSEEN * right:
+            if whole or left_over <= OUTSIDE_SPACE * right:
                 return np.empty(0), np.empty((a.u.size, 0))
             converged = True
         else:
             values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
             told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
             before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
-            if whole or (converged and (before or left_over <= UNSEEN * right)):
+            if whole or (converged and (before or left_over <= OUTSIDE_SPACE * right)):
                 break
         Q[k + 1] = x / left_over
     wanted = [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from attrs import evolve
@@ -13,27 +13,27 @@ from scipy.optimize import minimize_scalar
 from continuation.arrays import Array, dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events import Event, TargetValue
+from continuation.events import Event, TargetValue, TurningPoint
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
-from continuation.point.segment import CUBIC, Segment, hermite
+from continuation.point.segment import CUBIC, HermiteSegment, Segment, hermite
 from continuation.roots import zero_between
 
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
 
-LOOKS = 17
+MONITOR_PLACES = 17
 """Places where a monitor is looked at before its lowest value is sought: a cubic has two turns at most."""
 
-DESCENTS, INSIDE, AS_EXPECTED = 8, 1e-6, 0.1
+DESCENTS, INSIDE_ARC, AS_EXPECTED = 8, 1e-6, 0.1
 """At most so many points are put on the path to find a monitor's least value, so far inside of an arc; one at which it
 is within a tenth of what was expected settles that there is no zero."""
 
 PASSES = 60
 """A bisection in every other pass narrows a bracket to round-off in these."""
 
-FINE = 1e-6
+NARROW_BRACKET = 1e-6
 """A bracket so narrow, relative to the first, that the difference of its ends is mostly round-off: a poor cubic."""
 
 AT_ROUND_OFF, NEARLY_ZERO = 1e-15, 1e-10
@@ -58,10 +58,27 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    sign, monitor = math.copysign(1.0, ga), event.monitor
-    values = [sign * ga, *[sign * monitor(u, v) for u, v in arc.samples], sign * gb]
-    places = (0.0, *arc.segment.inside, 1.0)
-    return _least(places, values) < 0.5 * min(abs(ga), abs(gb))
+    sign, inside = math.copysign(1.0, ga), arc.segment.inside
+    along = _of_coordinate(event, arc.segment, position(arc, arc.b.u))
+    found = [event.monitor(u, v) for u, v in arc.samples] if along is None else map(along, inside)
+    values = [sign * ga, *[sign * g for g in found], sign * gb]
+    return _least((0.0, *inside, 1.0), values) < 0.5 * min(abs(ga), abs(gb))
+
+
+def _of_coordinate(event: Event, segment: Segment, length: float) -> Callable[[float], float] | None:
+    """The monitor along a cubic of that length, as a function of t, where it looks at one coordinate; else None."""
+    if not (isinstance(segment, HermiteSegment) and isinstance(event, TurningPoint | TargetValue)):
+        return None
+    at, slope = segment.coordinate(event.component)
+    if isinstance(event, TurningPoint):
+        return lambda t: slope(t) / length
+    return lambda t: at(t) - event.value
+
+
+def _along(event: Event, segment: Segment, length: float = 1.0) -> Callable[[float], float]:
+    """The monitor along a segment of that length, as a function of t."""
+    own = _of_coordinate(event, segment, length)
+    return own or (lambda t: event.monitor(segment.at(t), segment.derivative(t) / length))
 
 
 def _least(places: Sequence[float], values: Sequence[float]) -> float:
@@ -82,14 +99,14 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
     """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
-    length = dot(arc.border, arc.b.u - arc.a.u)
+    along = _along(event, arc.segment, position(arc, arc.b.u))
 
     def g(t: float) -> float:
-        return sign * event.monitor(arc.segment.at(t), arc.segment.derivative(t) / length)
+        return sign * along(t)
 
-    places = np.linspace(0.0, 1.0, LOOKS)
+    places = np.linspace(0.0, 1.0, MONITOR_PLACES)
     k = int(np.argmin([g(float(t)) for t in places]))
-    around = float(places[max(k - 1, 0)]), float(places[min(k + 1, LOOKS - 1)])
+    around = float(places[max(k - 1, 0)]), float(places[min(k + 1, MONITOR_PLACES - 1)])
     least = minimize_scalar(g, bounds=around, method="bounded", options={"xatol": 1e-9})
     return float(least.x), float(least.fun)
 
@@ -106,7 +123,7 @@ def _descent(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -
         lowest = [_lowest(event, part, sign) for part in parts]
         k = min(range(len(parts)), key=lambda i: lowest[i][1])
         part, (t, expected) = parts[k], lowest[k]
-        if not INSIDE < t < 1.0 - INSIDE:
+        if not INSIDE_ARC < t < 1.0 - INSIDE_ARC:
             break
         point, g = _knot(solver, event, part, t)
         knots.insert(k + 1, (point, g))
@@ -176,10 +193,7 @@ def _knot(solver: PathSolver, event: Event, arc: Arc, t: float) -> tuple[Lineari
 
 def _guess(event: Event, segment: Segment, low: float = 0.0, high: float = 1.0) -> float | None:
     """The monitor's zero on a part of the segment; None where the values at its ends do not bracket one."""
-
-    def g(t: float) -> float:
-        return event.monitor(segment.at(t), segment.derivative(t))
-
+    g = _along(event, segment)
     if g(low) * g(high) >= 0.0:
         return None
     # A guess: where the monitor is so flat that it takes longer, the last bracket will do.
@@ -198,7 +212,7 @@ def _continued(
     if not 0.0 < abs(way) < room or g == before:
         return None
     segment, until = hermite(old.u, old.tangent, point.u, point.tangent, arc.border), 1.0 + min(room / abs(way), 1.0)
-    narrow = abs(way) <= FINE * position(arc, arc.b.u)
+    narrow = abs(way) <= NARROW_BRACKET * position(arc, arc.b.u)
     t = 1.0 + g / (before - g) if narrow else _guess(event, segment, 1.0, until)
     return None if t is None or not 1.0 < t < until else (segment, t)
 
@@ -219,7 +233,7 @@ def _root(
     width = first = position(arc, arc.b.u)
     bisect, stalled, noise, replaced = False, 0, None, last
     for _ in range(PASSES):
-        fine = width <= FINE * first
+        fine = width <= NARROW_BRACKET * first
         ahead = None if bisect or fine else _continued(event, arc, replaced, last, width)
         near = last[0]
         if ahead is not None:

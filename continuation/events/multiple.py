@@ -22,13 +22,13 @@ from continuation.events.singularity import ScaledDerivative, row_sizes
 from continuation.metric import norm
 from continuation.point.linearization import linearize
 
-MOST = 3
+LOST_RANKS = 3
 """Lost ranks that are resolved: the branches of three are sought on the sphere of a space of four dimensions."""
 
-CHORD, SETTLED = 30, 1e-13
+CHORD, LAST_INCREMENT = 30, 1e-13
 """Iterations that bring a point onto the graph of z, and the last increment, relative to the sphere."""
 
-STARTS, ROUNDS = 100, 6
+STARTS, NEWTON_ROUNDS = 100, 6
 """On the sphere Newton's method begins at so many points, and again until two rounds have shown nothing new."""
 
 NEWTON, ROOT = 30, 1e-9
@@ -37,7 +37,7 @@ NEWTON, ROOT = 30, 1e-9
 DIFFERENCE = 1e-4
 """The step of differences of g, relative to the sphere: half of the digits that g has there are left."""
 
-SAME = 1e-3
+SAME_ZERO = 1e-3
 """Zeros on the sphere that are nearer to each other, relative to it, are one."""
 
 NOISE, ZERO = 1e-11, 1e-14
@@ -90,7 +90,7 @@ class Reduced:
             H = self.evaluator.residual(self.u + self.extent * w) / self.sizes
             step = self.solve(-np.concatenate([H + self.left @ g, np.zeros(self.kernel.shape[1])]), False)
             w, g = w + step[: n + 1], g + step[n + 1 :]
-            if np.abs(step).max() <= SETTLED * size:
+            if np.abs(step).max() <= LAST_INCREMENT * size:
                 break
         return w, g
 
@@ -160,7 +160,7 @@ class Polynomials:
         """Zeros on the unit sphere, by Newton's method from many points."""
         found: list[Array] = []
         idle = 0
-        for k in range(ROUNDS):
+        for k in range(NEWTON_ROUNDS):
             known = len(found)
             a = _spread(STARTS, self.powers.shape[1], k + 2)
             for _ in range(NEWTON):
@@ -185,7 +185,7 @@ def _spread(count: int, m: int, seed: int) -> Array:
 
 
 def _add(found: list[Array], a: Array) -> None:
-    if not any(np.linalg.norm(a - other) < SAME * np.linalg.norm(a) for other in found):
+    if not any(np.linalg.norm(a - other) < SAME_ZERO * np.linalg.norm(a) for other in found):
         found.append(a)
 
 
@@ -215,8 +215,8 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
     try:
         kernel, left = kernels(matrix)
         m = kernel.shape[1]
-        if m - 1 > MOST or left.shape[1] != m - 1:
-            raise Unresolved(f"the kernel of H' has dimension {m} there; up to {MOST + 1} are resolved")
+        if m - 1 > LOST_RANKS or left.shape[1] != m - 1:
+            raise Unresolved(f"the kernel of H' has dimension {m} there; up to {LOST_RANKS + 1} are resolved")
         evaluator.counts.factorizations += 2
         reduced = Reduced(evaluator, u, extent, sizes, kernel, left, Doubled(matrix, left, kernel.T).factors())
         found = _on_sphere(reduced, step)

@@ -8,11 +8,15 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events import Event
+from continuation.events import Event, KinkPoint
+from continuation.events.branch_point import BranchPoint
 from continuation.events.locate import locate, may_vanish
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
+
+SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
+"""Their monitors are constants; the tracer itself looks for what they stand for."""
 
 
 def found_by_events(
@@ -49,6 +53,9 @@ def scan_events(
     for i, event in enumerate(events):
         if hasattr(event, "found_on"):
             values.append(0.0)
+            continue
+        if isinstance(event, SOUGHT_ELSEWHERE):
+            values.append(before[i])
             continue
         g = event.monitor(arc.b.u, arc.b.tangent)
         values.append(g)

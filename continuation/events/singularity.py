@@ -40,7 +40,7 @@ RANK = 1e-6
 WEAK = 1e-8
 """A pivot, relative to the largest, below which the rank is counted: one factorisation more."""
 
-TRANSVERSAL = 1e-9
+DISTINCT_DIRECTIONS = 1e-9
 """The least discriminant, relative to its terms, of directions that are not one: the digits of SECOND."""
 
 HALTED = 1e-9, 100.0
@@ -297,7 +297,7 @@ def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Arra
     rows = [scaled.second(u, here.left[:-2], w[:, i]) for i in range(2)]
     a, b, c = float(rows[0] @ w[:, 0]), float(rows[0] @ w[:, 1]), float(rows[1] @ w[:, 1])
     discriminant = b * b - a * c
-    if not discriminant > TRANSVERSAL * (b * b + abs(a * c)):
+    if not discriminant > DISTINCT_DIRECTIONS * (b * b + abs(a * c)):
         return None
     # The two roots of a alpha^2 + 2 b alpha beta + c beta^2, in homogeneous coordinates, without cancellation.
     root = np.sqrt(discriminant)

@@ -16,7 +16,7 @@ from continuation.intervals.ends import EPS, Ends, Mask, absolute, down, thin, u
 
 ULPS = 8.0
 
-FAR = 1e5
+LARGEST_ANGLE = 1e5
 """Arguments of circular functions beyond this are not reduced: the range is then all of [-1, 1]."""
 
 Function = Callable[[Ends], Ends]
@@ -88,7 +88,7 @@ def _oscillating(f: Callable[[Array], Array], top: float, bottom: float) -> Func
     def rule(u: Ends) -> Ends:
         at_lo, at_hi = f(u.lo), f(u.hi)
         ends = widened(np.minimum(at_lo, at_hi), np.maximum(at_lo, at_hi))
-        far = u.magnitude() > FAR
+        far = u.magnitude() > LARGEST_ANGLE
         lo = np.where(_meets(u, bottom) | far, -1.0, np.maximum(ends.lo, -1.0))
         hi = np.where(_meets(u, top) | far, 1.0, np.minimum(ends.hi, 1.0))
         return Ends(lo, hi).where(np.isfinite(u.lo) & np.isfinite(u.hi))
@@ -101,7 +101,7 @@ sin, cos = _oscillating(np.sin, 0.5, -0.5), _oscillating(np.cos, 0.0, 1.0)
 
 def tan(u: Ends) -> Ends:
     """No value across a pole."""
-    pole = _meets(u, 0.5) | _meets(u, -0.5) | (u.magnitude() > FAR)
+    pole = _meets(u, 0.5) | _meets(u, -0.5) | (u.magnitude() > LARGEST_ANGLE)
     return widened(np.tan(u.lo), np.tan(u.hi)).where(~pole)
 
 

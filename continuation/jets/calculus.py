@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import factorial
 from typing import Any
 
@@ -133,12 +133,8 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
     if x.ndim != 1 or len(x) == 0:
         raise ValueError(f"x has shape {x.shape}; expected (m,) with m >= 1")
     columns = []
-    for begin in range(0, len(x), _BLOCK):
-        count = min(_BLOCK, len(x) - begin)
-        c = np.zeros((1 + count, len(x)))
-        c[0] = x
-        c[np.arange(1, 1 + count), np.arange(begin, begin + count)] = 1.0
-        line = wrap(c, GRADIENT)
+    for directions in _directions(len(x)):
+        line = wrap(np.vstack([x, directions]), GRADIENT)
         columns.append(np.moveaxis(as_jet(f(line), line).c[1:], 0, -1))
     return np.concatenate(columns, axis=-1)
 
@@ -163,14 +159,10 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
     """
     x, v = _numbers(x, "x"), _numbers(v, "v")
     columns = []
-    for begin in range(0, len(x), _BLOCK):
-        count = min(_BLOCK, len(x) - begin)
-        c = np.zeros((2 + 2 * count, len(x)))
-        c[0], c[1 + count] = x, v
-        c[np.arange(1, 1 + count), np.arange(begin, begin + count)] = 1.0
-        line = wrap(c, MIXED)
-        value = series.extended(as_jet(f(line), line).c, len(c))
-        columns.append(np.moveaxis(value[2 + count :], 0, -1))
+    for directions in _directions(len(x)):
+        line = wrap(np.vstack([x, directions, v, np.zeros_like(directions)]), MIXED)
+        value = series.extended(as_jet(f(line), line).c, len(line.c))
+        columns.append(np.moveaxis(value[2 + len(directions) :], 0, -1))
     return np.concatenate(columns, axis=-1)
 
 
@@ -218,6 +210,11 @@ def path_series(
             raise ValueError(f"residual has shape {defect.shape}; expected ({len(u0) - 1},)")
         u[k] = solve(-defect.c[k].reshape(-1), 0.0)
     return u
+
+
+def _directions(m: int) -> Iterator[Array]:
+    """The unit vectors, a block at a time."""
+    return (np.eye(min(_BLOCK, m - begin), m, begin) for begin in range(0, m, _BLOCK))
 
 
 def _numbers(x: Any, name: str) -> Array:

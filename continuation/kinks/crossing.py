@@ -13,7 +13,7 @@ from continuation.metric import inner, norm, share
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 
-AGREES = 1e-6
+PIECES_AGREE = 1e-6
 """How far, in the metric, the next piece may have its path beside the kink: pieces agree there to round-off."""
 
 STILL = 1e-12
@@ -24,20 +24,10 @@ STILL = 1e-12
 class Crossing:
     """A kink, resolved as far as it can be.
 
-    Attributes
-    ----------
-    at : Linearization
-        On the piece on which the path came, with the tangent that it came with.
-    switches : tuple of int
-        Those that vanish there.
-    rays : ndarray, shape (k, N + 1)
-        All that leave: first the one back, then the one on which the path goes on.
-    onward : Linearization or None
-        The point on the next piece, None where the path ends.
-    signs : tuple of int
-        Of that piece.
-    reason : str
-        Why the path ends, if it is not for want of a ray.
+    `at`: On the piece on which the path came, with the tangent that it came with. `switches`: Those that vanish there.
+    `rays`, of shape (k, N + 1): All that leave: first the one back, then the one on which the path goes on. `onward`:
+    The point on the next piece, None where the path ends. `signs`: Of that piece. `reason`: Why the path ends, if it is
+    not for want of a ray.
     """
 
     at: Linearization
@@ -68,19 +58,8 @@ def cross(
     Where several branches leave, the path goes on along one with the determinant's sign of the path, as it would if
     the map were moved a little (Allgower and Georg, Section 2.1): the straightest of them.
 
-    Parameters
-    ----------
-    solver : PathSolver
-        Of the piece on which the path came.
-    pieces : Pieces
-    signs : tuple of int
-        Of that piece.
-    point : Linearization
-        The kink, with the tangent of the path that comes.
-    orientation : int
-        The determinant's sign along the path.
-    beta : tuple of int
-        The switches that vanish there.
+    `solver`: Of the piece on which the path came. `signs`: Of that piece. `point`: The kink, with the tangent of the
+    path that comes. `orientation`: The determinant's sign along the path. `beta`: The switches that vanish there.
     """
     back = -point.tangent[None]
     try:
@@ -110,7 +89,7 @@ def _linearized(corner: Corner, ray: Ray) -> Linearization:
     point, evaluator = corner.point, corner.on(ray.signs)
     there = linearize(evaluator, point.u, point.weights, point.weights * ray.v)
     off = norm(point.weights, there.solve(-evaluator.residual(point.u)))
-    if off > AGREES:
+    if off > PIECES_AGREE:
         raise UnresolvedError(f"The pieces do not agree there: the next one is off by {off:.1g}.")
     if norm(point.weights, there.tangent - ray.v) > np.sqrt(SAME_RAY):
         raise UnresolvedError("A ray of the pieces' low-rank changes is not one of the piece itself.")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, generic_vector
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
-from continuation.events.locate import AT_ROUND_OFF, LOOKS, NEARLY_ZERO, _descent, _root
+from continuation.events.locate import AT_ROUND_OFF, MONITOR_PLACES, NEARLY_ZERO, _descent, _root
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver
@@ -30,7 +30,7 @@ TIED = 16.0
 """Two looks at round-off from two places differ by less than this: what is zero at the beginning of an arc was so
 at the end of the one before, and switches so near to zero in one place vanish together."""
 
-NEAR = 1e-6
+NEAR_ZERO = 1e-6
 """Of a switch's largest value on an arc: an end nearer to zero is looked at more closely."""
 
 HALVINGS = 40
@@ -40,10 +40,10 @@ TOUCHING = 1e-9
 """Of a switch's largest value on the way to a limit of the path: so far beyond zero it may be at that limit, which is
 known to a root of round-off."""
 
-NEWTON = 8
+ZERO_ITERATIONS = 8
 """Iterations that bring a zero from four digits to round-off, and two that see that no more is to be had."""
 
-ROUNDS = 50
+ZEROS_ON_ARC = 50
 """Zeros located on one arc, each before the one found last; more than that are not between two points of a path."""
 
 
@@ -84,8 +84,7 @@ class _Watched:
 
     def crossed(self, point: Linearization) -> list[int]:
         """Those that have the wrong sign at a point."""
-        found: list[int] = np.flatnonzero(self.signs * self.pieces.values(point.u) < -self.noise).tolist()
-        return found
+        return np.flatnonzero(self.signs * self.pieces.values(point.u) < -self.noise).tolist()
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
@@ -100,8 +99,7 @@ def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Ar
     noise += solver.noise_by_component(point)
     here = pieces.values(point.u)
     looks = [np.abs(pieces.values(point.u + noise * move) - here) for move in (signs, signs[::-1])]
-    noisy: Array = SEEN * np.maximum(*looks) + np.spacing(np.abs(here))
-    return noisy
+    return SEEN * np.maximum(*looks) + np.spacing(np.abs(here))
 
 
 def first_zero(
@@ -111,25 +109,15 @@ def first_zero(
 
     A switch that vanishes at the beginning was found there, and is asked again once it has left zero.
 
-    Parameters
-    ----------
-    solver : PathSolver
-    pieces : Pieces
-    signs : tuple of int
-        Of the piece on which the arc lies.
-    arc : Arc
-
-    Raises
-    ------
-    EvaluationError
-        Where the path cannot be evaluated, or is not settled by so many zeros.
+    `signs`: Of the piece on which the arc lies. Raises `EvaluationError` where the path cannot be evaluated, or is not
+    settled by so many zeros.
     """
     s = np.array(signs)
     try:
-        places = np.linspace(0.0, 1.0, LOOKS)
+        places = np.linspace(0.0, 1.0, MONITOR_PLACES)
         inner = [pieces.values(arc.segment.at(float(t))) for t in places[1:-1]]
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
-        near = np.abs(grid[[0, -1]]) <= NEAR * np.abs(grid).max(axis=0)
+        near = np.abs(grid[[0, -1]]) <= NEAR_ZERO * np.abs(grid).max(axis=0)
         if not (_suspects(grid) | near[1]).any():
             return None
         # Points of a path are as good as the tolerance. On which side of a switch they are that vanishes next to them
@@ -159,7 +147,7 @@ def first_zero(
 def same_piece(pieces: Pieces, signs: Signs, point: Linearization, u: Array) -> bool:
     """Whether the way from a point of the path straight to another place stays on the point's piece."""
     try:
-        way = np.linspace(0.0, 1.0, LOOKS)
+        way = np.linspace(0.0, 1.0, MONITOR_PLACES)
         values = np.array([np.array(signs) * pieces.values(point.u + t * (u - point.u)) for t in way])
     except SwitchError:
         return False
@@ -186,12 +174,12 @@ def _first(
     whole, end = position(arc, arc.b.u), np.inf
     for j in sorted(suspects.tolist(), key=lambda j: _estimate(grid[:, j])):
         # A switch that has changed its sign before is seen at the zero found; one that only dips is not.
-        if _estimate(grid[:, j]) > end + (0.0 if _change(grid[:, j]) else 1.0 / (LOOKS - 1)):
+        if _estimate(grid[:, j]) > end + (0.0 if _change(grid[:, j]) else 1.0 / (MONITOR_PLACES - 1)):
             continue
         point = _zero(solver, watched.switch(j), arc, grid[:, j])
         if point is not None and (found is None or position(arc, point.u) < position(arc, found[0].u)):
             found, end = (point, j), position(arc, point.u) / whole
-    for _ in range(ROUNDS):
+    for _ in range(ZEROS_ON_ARC):
         if found is None:
             return None
         point = found[0]
@@ -199,7 +187,7 @@ def _first(
         if not crossed:
             return found
         part, first = part_between(arc, arc.a, point), watched.switch(crossed[0])
-        places = np.linspace(0.0, 1.0, LOOKS)[1:-1]
+        places = np.linspace(0.0, 1.0, MONITOR_PLACES)[1:-1]
         inner = [first.monitor(part.segment.at(float(t)), point.tangent) for t in places]
         values = np.array([grid[0, first.index], *inner, first.seen(point)])
         earlier = _zero(solver, first, part, np.where(np.abs(values) <= first.noise, 0.0, values))
@@ -302,7 +290,7 @@ def _by_newton(solver: PathSolver, switch: _Switch, arc: Arc, low: float, high: 
     near = linearize(evaluator, u, arc.a.weights, arc.border)
     value = switch.monitor(u, near.tangent)
     whole, wide = position(arc, arc.b.u), high - low
-    for _ in range(NEWTON):
+    for _ in range(ZERO_ITERATIONS):
         slope = switch.sign * float(switch.pieces.along(u, near.tangent)[switch.index])
         if abs(value) <= AT_ROUND_OFF * scale or slope >= 0.0:
             break

@@ -11,13 +11,13 @@ from attrs import frozen
 
 from continuation.arrays import Array
 
-FEW = 1e-9
+ZERO_COMPONENT = 1e-9
 """Relative to the largest: what of a ray's components, and of the pieces' singular values, counts as zero."""
 
 IRRATIONAL = 0.5 * (5.0**0.5 - 1.0)
 """Multiples of it, modulo one, are in no position that is special: by these the corner's switches are set apart."""
 
-AT_ORDER = 50
+PIVOTS_PER_SWITCH = 50
 """Pivots at most, times the number of switches."""
 
 
@@ -25,12 +25,7 @@ AT_ORDER = 50
 class Ray:
     """A ray of the small LCP.
 
-    Attributes
-    ----------
-    grown : Array of shape (m,)
-        v', not negative.
-    driven : float
-        e', of any sign.
+    `grown`, of shape (m,): v', not negative. `driven`: e', of any sign.
     """
 
     grown: Array
@@ -46,14 +41,8 @@ class Ray:
 class Way:
     """The basis behind a corner.
 
-    Attributes
-    ----------
-    switched : tuple of int
-        Of the m switches, those whose piece is another one.
-    driver : int
-        The switch whose pair drives from here on.
-    ray : Ray
-        Where it leads.
+    `switched`: Of the m switches, those whose piece is another one. `driver`: The switch whose pair drives from here
+    on. `ray`: Where it leads.
     """
 
     switched: tuple[int, ...]
@@ -64,15 +53,7 @@ class Way:
 def way(S: Array, r: Array) -> Way | None:
     """The way on, by pivots from where the path has come, with the switches set apart: then no two vanish at once.
 
-    Parameters
-    ----------
-    S : ndarray, shape (m, m)
-    r : ndarray, shape (m,)
-
-    Returns
-    -------
-    Way or None
-        None where rounding leads nowhere.
+    None where rounding leads nowhere.
 
     References
     ----------
@@ -85,16 +66,16 @@ def way(S: Array, r: Array) -> Way | None:
     table = np.column_stack([S, r, apart])
     basic, other = np.arange(m), np.arange(m, 2 * m + 1)
     column = m
-    for _ in range(AT_ORDER * m):
+    for _ in range(PIVOTS_PER_SWITCH * m):
         slopes = -table[:, column]
-        falling = np.flatnonzero((slopes > FEW * np.abs(slopes).max(initial=0.0)) & (basic != 2 * m))
+        falling = np.flatnonzero((slopes > ZERO_COMPONENT * np.abs(slopes).max(initial=0.0)) & (basic != 2 * m))
         if falling.size == 0:
             entering = int(other[column])
             if entering == 2 * m:
                 return None
             rates = np.zeros(2 * m + 1)
             rates[basic], rates[entering] = table[:, column], 1.0
-            rates[np.abs(rates) <= FEW * np.abs(rates).max()] = 0.0
+            rates[np.abs(rates) <= ZERO_COMPONENT * np.abs(rates).max()] = 0.0
             switched = [*basic[(basic >= m) & (basic < 2 * m)].tolist(), *([entering] if entering >= m else [])]
             return Way(tuple(i - m for i in switched), entering % m, Ray(rates[m : 2 * m], float(rates[2 * m])))
         row = int(falling[np.argmin(table[falling, -1] / slopes[falling])])

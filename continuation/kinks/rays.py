@@ -28,7 +28,7 @@ from continuation.kinks.pivots import way
 from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization, linearize
 
-MOST = 10
+SWITCHES_ENUMERATED = 10
 """Switches whose 2^10 pieces are gone through; twice as many for each one more, so that beyond pivots find one ray."""
 
 RANK_ONE = 1e-5
@@ -89,20 +89,18 @@ def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
 
     Of too many switches it is the one to which pivots lead, if a path has `come` there along the corner's tangent.
 
-    Raises
-    ------
-    UnresolvedError
-        If too many switches vanish, the pieces do not agree on their borders, or one has a kernel of more dimensions.
-    EvaluationError
-        If a derivative cannot be evaluated.
+    Raises `UnresolvedError` if too many switches vanish, the pieces do not agree on their borders, or one has a kernel
+    of more dimensions. Raises `EvaluationError` if a derivative cannot be evaluated.
     """
-    if len(corner.beta) > MOST and not come:
-        raise UnresolvedError(f"Their number is {len(corner.beta)}; pieces of up to {MOST} switches are gone through.")
+    if len(corner.beta) > SWITCHES_ENUMERATED and not come:
+        raise UnresolvedError(
+            f"Their number is {len(corner.beta)}; pieces of up to {SWITCHES_ENUMERATED} switches are gone through."
+        )
     found: list[Ray] = []
     for ray in _candidates(corner):
         if not any(norm(corner.point.weights, ray.v - other.v) <= SAME_RAY for other in found):
             found.append(ray)
-    if len(corner.beta) > MOST and not found:
+    if len(corner.beta) > SWITCHES_ENUMERATED and not found:
         raise UnresolvedError(f"Their number is {len(corner.beta)}, and where pivots lead no ray is found.")
     return found
 
@@ -110,7 +108,7 @@ def rays_at(corner: Corner, come: bool = False) -> list[Ray]:
 def _candidates(corner: Corner) -> Iterator[Ray]:
     family = _Family.of(corner)
     weights = corner.point.weights
-    few = len(corner.beta) <= MOST
+    few = len(corner.beta) <= SWITCHES_ENUMERATED
     for taus in product((1, -1), repeat=len(corner.beta)) if few else [family.by_pivots()]:
         signs = corner.signs_with(taus)
         if not corner.pieces.exists(signs):
@@ -204,7 +202,7 @@ class _Family:
     def by_pivots(self) -> tuple[int, ...]:
         """The signs on the ray to which pivots lead from the one come on."""
         corner = self.corner
-        many = f"Their number is {len(corner.beta)}; pieces of up to {MOST} switches are gone through"
+        many = f"Their number is {len(corner.beta)}; pieces of up to {SWITCHES_ENUMERATED} switches are gone through"
         if self.GZ is None:
             raise UnresolvedError(f"{many}, and pivots need pieces that differ in one switch each.")
         came = np.array(corner.signs)[list(corner.beta)]
@@ -253,10 +251,10 @@ class _Family:
         raise UnresolvedError(f"The kernel of the piece with the signs {list(taus)} there has more than one dimension.")
 
 
-AHEAD = 1e-3, 1e-4, 1e-5
+RAY_LENGTHS = 1e-3, 1e-4, 1e-5
 """How far ahead, in the metric, a ray is followed where first order does not tell whether it stays in its piece."""
 
-SETTLED, OFF = 1e-3, 1e-9
+LAST_CORRECTION, OFF = 1e-3, 1e-9
 """The last correction there, relative to the square of the length, by which a curved branch leaves a border; and the
 part of a switch's first order over that length which is round-off, far below that square."""
 
@@ -267,14 +265,14 @@ def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes:
     which = [corner.beta[k] for k in unsure]
     try:
         near = linearize(evaluator, point.u, point.weights, point.weights * v)
-        for length in AHEAD:
+        for length in RAY_LENGTHS:
             u = point.u + length * v
             moves = []
             for _ in range(4):
                 move = near.solve(-evaluator.residual(u), 0.0, near.weights * v)
                 u = u + move
                 moves.append(norm(near.weights, move))
-            if not moves[-1] <= SETTLED * length**2:
+            if not moves[-1] <= LAST_CORRECTION * length**2:
                 continue
             s = np.array(signs)[which] * corner.pieces.values(u)[which]
             return bool((s >= -OFF * length * sizes).all())

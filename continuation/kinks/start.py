@@ -10,7 +10,7 @@ from continuation.arrays import Array
 from continuation.checks import complain, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.evaluation.pieces import BESIDE, Pieces, Signs, SwitchError
+from continuation.evaluation.pieces import BORDER_DISTANCE, Pieces, Signs, SwitchError
 from continuation.homotopy import SupportsPieces
 from continuation.kinks.first import switch_noise
 from continuation.kinks.rays import Corner, UnresolvedError, rays_at
@@ -35,21 +35,8 @@ def begin(
 ) -> tuple[Linearization, float, Signs]:
     """The first point on its piece, a first step length, and the signs of the piece; the solver's evaluator is on it.
 
-    Parameters
-    ----------
-    solver : PathSolver
-    pieces : Pieces
-    u : ndarray, shape (N + 1,)
-        The homotopy's start.
-    start : tuple of ndarray, or None
-        That of the call, with its direction.
-    metric, direction, target
-        Of the trace.
-
-    Raises
-    ------
-    StartError
-        If there is no point of a path, or no branch in the direction asked for.
+    `u`, of shape (N + 1,): The homotopy's start. `start`: That of the call, with its direction. `metric`, `direction`,
+    `target`: Of the trace. Raises `StartError` if there is no point of a path, or no branch in the direction asked for.
     """
     try:
         if start is not None and start[0].size == u.size:
@@ -100,8 +87,8 @@ def _out_of_kink(
 
 
 def _signs_beside(pieces: Pieces, u: Array, v: Array) -> Signs:
-    """A kink is known to a thousandth of BESIDE or better: so far ahead, a direction tells the side of a switch."""
-    return pieces.signs(u + v * (BESIDE * max(1.0, float(np.abs(u).max()) / float(np.abs(v).max()))))
+    """A kink is known to a thousandth of BORDER_DISTANCE: so far ahead, a direction tells the side of a switch."""
+    return pieces.signs(u + v * (BORDER_DISTANCE * max(1.0, float(np.abs(u).max()) / float(np.abs(v).max()))))
 
 
 def kink_rays(homotopy: Any, u: Array) -> Array:

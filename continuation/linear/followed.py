@@ -14,7 +14,7 @@ from continuation.linear.nullspace import NearlySingular, null_vectors
 
 CHORD = Contraction(iterations=15)
 
-SETTLED, NEARLY = 1e-15, 1e-10
+SETTLED, NEARLY_SETTLED = 1e-15, 1e-10
 """The last change of the eigenvalue, relative to it, and the one that will do where round-off ends the contraction."""
 
 
@@ -57,6 +57,6 @@ class Followed:
         def measure(step: Array) -> float:
             return float(abs(step[-1]) / abs(pair.x[-1]))
 
-        if not (pair.run(increment, measure, lambda size: size <= SETTLED) or pair.size <= NEARLY):
+        if not (pair.run(increment, measure, lambda size: size <= SETTLED) or pair.size <= NEARLY_SETTLED):
             raise ArithmeticError("an eigenvalue is not followed from one matrix to the other")
         return complex(pair.x[-1]), pair.count

@@ -24,7 +24,7 @@ it: then they take its place. A digit is lost up to there."""
 REFRESHED = 4
 """At most so often: each time the angle falls to that of round-off, or the matrix loses two ranks."""
 
-LAST = 1e-8
+BORDER_SIZE = 1e-8
 """The largest entry of a sparse matrix' last row, a border, beside the others': not eliminated early, it does not fill
 the factors (2000 unknowns, the Laplacian of two species: 17 thousand entries, 673 thousand at 1e-4). What is lost to
 so weak a pivot, half of the digits, one correction brings back."""
@@ -89,7 +89,7 @@ def factor(matrix: Matrix) -> Factors:
     if sp.issparse(matrix):
         rows = sp.csr_array(matrix)
         end = rows.indptr[-2]
-        last = LAST * float(np.abs(rows.data[:end]).max()) / float(np.abs(rows.data[end:]).max())
+        last = BORDER_SIZE * float(np.abs(rows.data[:end]).max()) / float(np.abs(rows.data[end:]).max())
         rows.data[end:] *= last
         columns = sp.csc_array(rows)
         try:

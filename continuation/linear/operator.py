@@ -16,7 +16,7 @@ from continuation.linear.system import SingularError
 INNER_TOLERANCE = 1e-9
 """Relative residual of one GMRES solve; with two refinements the result is at round-off."""
 
-SOLVED = 1e-4
+LARGEST_RESIDUAL = 1e-4
 """Largest residual, relative to the right-hand side, of a solution; that of a condition number of 1e12."""
 
 RESTART = 100
@@ -90,7 +90,7 @@ class Krylov:
         with np.errstate(all="ignore"):
             left = self._size(self.bordered.residual(z, rhs)) / (self._size(rhs) or 1.0)
         # A z of size 1 / eps makes any residual round-off: that is how a singular operator answers.
-        if not (accurate and left <= SOLVED):
+        if not (accurate and left <= LARGEST_RESIDUAL):
             raise SingularError(
                 f"GMRES on the bordered operator of order {len(rhs)} did not converge: relative residual {left:.1e} "
                 f"after {CYCLES} cycles of {min(RESTART, len(rhs))} steps. Give H_y a (better) preconditioner."

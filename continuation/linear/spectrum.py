@@ -16,7 +16,7 @@ from continuation.linear.banded import Banded
 from continuation.linear.sparse import factor_square
 from continuation.linear.symmetric import Symmetric
 
-ALL = 100
+ALL_OF_DENSE = 100
 """Up to this order all eigenvalues of a dense matrix are computed: 8 ms there, and 80 ms at twice the order."""
 
 WANTED = 6
@@ -29,19 +29,19 @@ are located to that."""
 SHIFT = 0.517
 """Of the bound on real parts: in the middle of where unstable eigenvalues may be, and not on a round number."""
 
-NEAR = 1e-6
+LEAST_SHIFT = 1e-6
 """At least so far is the shift from zero, relative to the diagonal: a singular matrix has eigenvalues all the same."""
 
-SURE, DIGITS, CONVERGED = 0.1, 1e-4, 1e-12
+SURE, DIGITS, LAST_DIGITS = 0.1, 1e-4, 1e-12
 """Eigenvalues are computed until the error of their real parts, relative to these, is the first, so that it is known on
 which side they are; for the rightmost and the one nearest to the axis, the second. Near the axis that is as good as an
 event needs that is located to 1e-10: down to the last, relative to the eigenvalue."""
 
-DIMENSIONS, LOOK = 40, 6
+DIMENSIONS, LOOK_EVERY = 40, 6
 """At most so many dimensions of the Krylov space for each eigenvalue and one more; 30 in all are usual for six.
 After so many more it is looked whether they are enough: the small eigenvalue problem costs as much as ten solves."""
 
-ROUND_OFF = 1e-14
+LOST_DIRECTION = 1e-14
 """A vector that loses all but this to the ones before it has no direction of its own."""
 
 
@@ -113,7 +113,7 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     matrix = plain(matrix)
     if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
         raise TypeError(f"stability: expected H_y as a matrix, found {type(matrix).__name__}")
-    if matrix.shape[0] <= ALL and k is None:
+    if matrix.shape[0] <= ALL_OF_DENSE and k is None:
         whole = matrix.toarray() if issparse(matrix) else matrix
         return _counted(eigvals(side * np.asarray(whole, dtype=float)))
     return _nearest(side * matrix, WANTED if k is None else k)
@@ -160,7 +160,7 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
     # Where all are stable the shift is not much farther away than what oscillates, and no eigenvalue itself.
-    shift = SHIFT * max(real, 0.1 * imaginary, NEAR * float(np.abs(matrix.diagonal()).max()))
+    shift = SHIFT * max(real, 0.1 * imaginary, LEAST_SHIFT * float(np.abs(matrix.diagonal()).max()))
     inverse, corner = _solver(matrix, shift), float(np.hypot(max(shift, real - shift), imaginary))
     wanted, solves = min(k, n), 0
 
@@ -171,7 +171,7 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
         kept = [int(np.argmax(real_parts)), int(np.argmin(np.abs(real_parts)))]
         wanted = np.full(theta.size, SURE)
         wanted[kept] = DIGITS
-        return bool(((off <= wanted) | (error <= CONVERGED * np.abs(theta))).all())
+        return bool(((off <= wanted) | (error <= LAST_DIGITS * np.abs(theta))).all())
 
     while True:
         theta, more = dominant(inverse, generic_vector(n), wanted, known)
@@ -205,8 +205,8 @@ def dominant(
             H[:j, j - 1] += part
             x = x - part @ Q[:j]
         H[j, j - 1] = float(np.linalg.norm(x))
-        exhausted = j == n or H[j, j - 1] <= ROUND_OFF * size
-        if exhausted or j == most or (j >= 3 * k and (j - 3 * k) % LOOK == 0):
+        exhausted = j == n or H[j, j - 1] <= LOST_DIRECTION * size
+        if exhausted or j == most or (j >= 3 * k and (j - 3 * k) % LOOK_EVERY == 0):
             theta, vectors = np.linalg.eig(H[:j, :j])
             largest = np.argsort(-np.abs(theta))[:k]
             error = H[j, j - 1] * np.abs(vectors[-1, largest])

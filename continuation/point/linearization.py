@@ -20,7 +20,7 @@ REFINED = 1e-14
 ROUND_OFF_LEFT = 1e3
 """Where round-off ends the contraction earlier, a last increment within this factor of the one wanted will do."""
 
-UNSEEN = 1e-6
+TANGENT_LEAVES = 1e-6
 """What an exact solve may find left of a tangent that was refined by another: six digits, as a step's tangent has."""
 
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
@@ -189,7 +189,7 @@ def _refined(
     if anchor.system.approximates:
         # Increments of a solver that is not exact may be small because it does not see what is left.
         left = anchor.system.solve(-apply(v), 1.0 - dot(anchor.border, v))
-        if length(left) > UNSEEN * length(v):
+        if length(left) > TANGENT_LEAVES * length(v):
             return None
     return v
 

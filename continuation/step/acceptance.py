@@ -33,7 +33,7 @@ from continuation.step.stepper import Arrival
 MULTIPLE = {"kind": Kind.SINGULAR_POINT, "name": "multiple branch point"}
 """What is said of a point where several branches cross at once."""
 
-PATIENCE = 2.0**-8
+LEAST_STEP_SHARE = 2.0**-8
 """Of the step that the controller asked for: down to that an arc is made shorter on which a census of eigenvalues finds
 more than the events do. What then crosses has another reason, as a pole of H_y, or a symmetry."""
 
@@ -130,7 +130,7 @@ class Examiner:
             ended = ending.arc if last is None else cut(ending.arc, found[last][1])
             more, all_found = found_by_events(self.solver, events, ended, found if last is None else found[: last + 1])
             several = ending.limit is not None or (branch is not None and branch.rays is None)
-            if not (all_found or several) and attempt.h > PATIENCE * state.h:
+            if not (all_found or several) and attempt.h > LEAST_STEP_SHARE * state.h:
                 return _rejected(attempt, Rejection.UNACCOUNTED)
             if more:
                 found = sorted((*found, *more), key=lambda pair: position(arc, pair[1].u))

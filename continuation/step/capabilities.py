@@ -10,8 +10,8 @@ import numpy as np
 
 from continuation.arrays import Array, finite
 from continuation.checks import complain, real_vector
-from continuation.evaluation.evaluator import ULPS, EvaluationError, Evaluator
-from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve
+from continuation.evaluation.evaluator import POINT_ULPS, EvaluationError, Evaluator
+from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve, offers
 from continuation.point.projection import MaxStep
 from continuation.predictors import Predictor
 from continuation.step.stepper import LOW_ORDER_FRACTION
@@ -23,7 +23,7 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
     The function returned raises TypeError or ValueError if the homotopy's gives anything but a number for a finite
     direction: with NaN every comparison fails, and a step is shortened for ever.
     """
-    if not isinstance(homotopy, SupportsMaxStep):
+    if not offers(homotopy, SupportsMaxStep):
         return None
     max_step = homotopy.max_step
 
@@ -48,7 +48,7 @@ def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] |
 
     The function returned raises TypeError unless that one gives a mapping of names to real numbers.
     """
-    if not isinstance(homotopy, SupportsObserve):
+    if not offers(homotopy, SupportsObserve):
         return None
     observe = homotopy.observe
 
@@ -72,7 +72,7 @@ def finish_of(
     The function returned raises ValueError if that one gives neither None nor as many finite numbers as there
     are unknowns. Whether H vanishes there is `checked_end`'s to say.
     """
-    own = homotopy.finish if isinstance(homotopy, SupportsFinish) else None
+    own = homotopy.finish if offers(homotopy, SupportsFinish) else None
     finish = own if given is None else given
     if finish is None:
         return None
@@ -117,7 +117,7 @@ def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | Non
         residual = evaluator.residual(end)
         worse = np.abs(residual) > np.abs(evaluator.residual(np.append(here[:-1], end[-1])))
         if worse.any():
-            terms = evaluator.round_off(end, residual) / (ULPS * np.finfo(float).eps)
+            terms = evaluator.round_off(end, residual) / (POINT_ULPS * np.finfo(float).eps)
             worse &= np.abs(residual) > FALSE_END * terms
     except EvaluationError as error:
         raise ValueError(f"finish: expected None or an end of the path, found a point where {error}") from error

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, generic_vector, median
-from continuation.evaluation.evaluator import ULPS, EvaluationError, Evaluator
+from continuation.evaluation.evaluator import POINT_ULPS, EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
 
 Mask = NDArray[np.bool_]
@@ -28,25 +28,25 @@ With 1.05 shifts changed the extent by a hundredth, and factorisations on Bratu'
 POWERS = 0.5, 4.0
 """Between these that power is looked for: one is usual, two where the path is symmetric about its start."""
 
-FIRST = 0.3
+FIRST_STEP = 0.3
 """The first step, in extents: it turns by about a third of TURN, where the controllers aim at 0.4 radians."""
 
-NEAR = 1e-3
+SEARCH_START = 1e-3
 """Where the search begins, in ways to the target: far enough inside that the first turn is not jumped over."""
 
-TRIALS = 40
+LENGTHS_TRIED = 40
 """At most so many lengths are tried; five are usual."""
 
 GROWTH = 30.0
 """The next length is at most so many times the one before: the nonlinearity of a straight beginning says nothing."""
 
-FARTHEST = 1e30
+STRAIGHT_LENGTH = 1e30
 """A path without a target that is straight to this length, relative to its start, has no scale."""
 
 STANDSTILL = 1e-60
 """A component that moves by no more than this part of the one that moves most, whatever their units, stands still."""
 
-ROUND_OFF = 1e-13
+STILL_PIECEWISE = 1e-13
 """The same on a piece of a piecewise smooth map, where components do stand still but for the last digits of others;
 units thirteen orders apart are no longer told from that."""
 
@@ -61,7 +61,7 @@ beside the way; they are told from round-off by so many times what that makes: i
 OTHER_UNITS = 1e4
 """The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
 
-NOISE = 1e-6
+CORRECTION_NOISE = 1e-6
 """A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
 
 
@@ -104,16 +104,16 @@ def initial_extent(
         v = v * np.sign(gap / v[-1])
     whole = whole if np.isfinite(whole) else farthest
     exactly = sizes is None and np.isinf(farthest)
-    standstill, unit = STANDSTILL if exactly else ROUND_OFF, np.ones_like(v) if sizes is None else sizes
+    standstill, unit = STANDSTILL if exactly else STILL_PIECEWISE, np.ones_like(v) if sizes is None else sizes
     if not exactly:
         v = np.where(np.abs(v) > standstill * unit * float(np.abs(v / unit).max()), v, 0.0)
     v = _without_round_off(evaluator, point, v)
     size = np.abs(v)
     moving = size > 0.0
-    h = NEAR * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
+    h = SEARCH_START * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
     begin, low, high, power = h, 0.0, np.inf, 1.0
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)
-    for _ in range(TRIALS):
+    for _ in range(LENGTHS_TRIED):
         try:
             d, turned = _nonlinearity(evaluator, point, v, moving, h, residual)
         except Exception:
@@ -134,9 +134,9 @@ def initial_extent(
         else:
             low = found = h
             off = d
-            if h > FARTHEST:
+            if h > STRAIGHT_LENGTH:
                 # Nothing but the start's own size is left to measure by.
-                found, off = begin / NEAR, off * (begin / NEAR / h) ** 2
+                found, off = begin / SEARCH_START, off * (begin / SEARCH_START / h) ** 2
                 break
         h *= min(max(rest, 0.1), GROWTH)
         if not low < h < high:
@@ -162,7 +162,7 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
     measured by ever so much too much, what is round-off of others is a branch's whole length.
     """
     h, moved = 1.0, z > 0.0
-    for _ in range(TRIALS):
+    for _ in range(LENGTHS_TRIED):
         try:
             d = point.solve(residual - evaluator.residual(point.u + h * z))
             turned = float((np.abs(d + h * z)[moved] / (h * z[moved])).max())
@@ -185,7 +185,7 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
         return v
-    beside = point.u + ULPS * np.spacing(np.abs(point.u)) * generic_vector(v.size)
+    beside = point.u + POINT_ULPS * np.spacing(np.abs(point.u)) * generic_vector(v.size)
     try:
         apply = evaluator.differential(beside)
     except EvaluationError:
@@ -217,8 +217,10 @@ def _nonlinearity(
 
     there = point.u + h * v
     d = corrected(there)
-    # A component that stands still along the tangent would be measured by its correction.
-    loose = (d != 0.0) & ~moving & (np.abs(d) < DOUBTED * h * float(np.abs(v).max()))
+    # A component that stands still along the tangent would be measured by its correction, and one that rounding takes
+    # back would be corrected by as much again.
+    doubted = np.maximum(DOUBTED * h * float(np.abs(v).max()), UNCERTAIN * np.spacing(np.abs(there)))
+    loose = (d != 0.0) & ~moving & (np.abs(d) < doubted)
     d = _beyond_round_off(evaluator, point, there, d, loose)
     e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
@@ -229,4 +231,4 @@ def _nonlinearity(
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0
     first, second = float(np.linalg.norm(d / scale)), float(np.linalg.norm(e / scale))
-    return d, max(turned, min(second / first, 1.0)) if first > NOISE else turned
+    return d, max(turned, min(second / first, 1.0)) if first > CORRECTION_NOISE else turned

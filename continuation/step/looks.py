@@ -11,7 +11,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.contraction import RELIABLE
 from continuation.evaluation.evaluator import EvaluationError
-from continuation.events.crossing import CONVERGED, SAME, peak_between, singular_places
+from continuation.events.crossing import EIGENVALUE_ACCURACY, SAME, peak_between, singular_places
 from continuation.point.arc import Arc
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
@@ -47,23 +47,23 @@ DOUBTFUL = 0.1
 BEYOND = 1.15
 """So far the places are believed, in arcs."""
 
-APART = 1e-3
+END_MARGIN = 1e-3
 """Extrapolated, a crossing that is nearer to the arc's end than this is in it."""
 
-BESIDE = 0.1
+NEAR_CROSSING = 0.1
 """From so near to a crossing, in steps, the next one begins badly: past it the factorisation at hand has a part of the
 wrong sign, and ten times too small."""
 
 NEXT = 2.0
 """A look that was added is believed so many times as far as it is, where another one was."""
 
-REFINEMENTS, CLOSE = 4, 0.03
+BETTER_PLACES, CLOSE = 4, 0.03
 """At most so many better places of one crossing are sought, until they change by less than the other."""
 
 ONWARD = 0.1
 """So far behind the arc's end, in arcs, H' is compared with that there, to look back."""
 
-TINY = 1e-3
+END_ROUNDING = 1e-3
 """Of what lies ahead of the arc's end nothing is asked."""
 
 
@@ -96,7 +96,7 @@ class Looks:
             first = k < len(planned)
             ahead = max(BEYOND / at, 1.0 / least) if first else NEXT
             halved = closely and at <= (1.0 if series else 2.0) * min(looks) and math.frexp(at)[0] == LOOKS[0]
-            behind, accuracy = GROWN if halved else np.inf, CONVERGED if first else SAME
+            behind, accuracy = GROWN if halved else np.inf, EIGENVALUE_ACCURACY if first else SAME
             there = singular_places(arc.a, apply, arc.a.border, ahead, behind, accuracy, state.index + k)
             places = [at * t for t in there]
             found[at] = [t for t in places if t > 0.0]
@@ -105,7 +105,7 @@ class Looks:
             if halved and len(found[at]) < len(places) and 0.25 * at not in looks and len(looks) < MOST_LOOKS:
                 looks.append(0.25 * at)
             if series and len(planned) <= len(found) == len(looks) < MOST_LOOKS:
-                peak = peak_between(found, APART)
+                peak = peak_between(found, END_MARGIN)
                 looks += [] if peak is None else [peak]
         return found
 
@@ -128,7 +128,7 @@ class Looks:
         expected = 4.0 * first[0.75] - 6.0 * first[0.5] + 4.0 * first[0.25]
         there = singular_places(arc.a, apply, arc.b.border, 1.0 / CHANGED)
         found = 1.0 / there[0] if there else 0.0
-        return abs(found - expected) <= 0.5 * abs(1.0 - found) and abs(1.0 - found) > BESIDE
+        return abs(found - expected) <= 0.5 * abs(1.0 - found) and abs(1.0 - found) > NEAR_CROSSING
 
     def behind(self, arc: Arc) -> float | None:
         """Where on the arc the bordered matrix seems to have been singular, seen from its end and a little farther on.
@@ -139,12 +139,12 @@ class Looks:
         b = arc.b
         if (apply := self.derivative(arc.segment.at(1.0 + ONWARD))) is None:
             return None
-        places = [1.0 + ONWARD * t for t in singular_places(b, apply, b.border, TINY, 1.0 / ONWARD)]
+        places = [1.0 + ONWARD * t for t in singular_places(b, apply, b.border, END_ROUNDING, 1.0 / ONWARD)]
         return max((t for t in places if t < 1.0), default=None)
 
     def refined(self, arc: Arc, attempt: Arrival, prediction: Prediction, t: float) -> float:
         """A place nearer to the crossing: looked at from the beginning again, where it seems to be."""
-        for _ in range(REFINEMENTS):
+        for _ in range(BETTER_PLACES):
             apply = self.derivative(prediction(t * attempt.h))
             if apply is None or not (places := singular_places(arc.a, apply, arc.a.border, 2.0)):
                 break

@@ -18,7 +18,7 @@ from continuation.events import Event, KinkPoint, TargetValue, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
 from continuation.guard import Guard
-from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces
+from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces, offers
 from continuation.labels import Labels
 from continuation.metric import Automatic, Metric
 from continuation.predictors import Predictor
@@ -108,7 +108,7 @@ def complete_settings(
     watched for. Raises `TypeError, ValueError` where the homotopy's own metric, events or target are none.
     """
     preset, target = asked["preset"], asked["target"]
-    own = homotopy.metric if isinstance(homotopy, SupportsMetric) else None
+    own = homotopy.metric if offers(homotopy, SupportsMetric) else None
     if own is not None:
         instance_with("metric", own, *PARTS["metric"])
     return Settings(
@@ -152,11 +152,11 @@ def _first(*candidates: Any) -> Any:
 
 
 def _events(homotopy: Any, asked: Options, observers: Sequence[Any]) -> tuple[Event, ...]:
-    own = homotopy.events if isinstance(homotopy, SupportsEvents) else ()
+    own = homotopy.events if offers(homotopy, SupportsEvents) else ()
     each("events", own, EVENT)
     watched: tuple[Event, ...] = (*own, *asked["events"])
     watched += tuple(e for part in observers for e in getattr(part, "events", ()) if e not in watched)
-    if isinstance(homotopy, SupportsPieces) and not any(isinstance(event, KinkPoint) for event in watched):
+    if offers(homotopy, SupportsPieces) and not any(isinstance(event, KinkPoint) for event in watched):
         watched = (*watched, KinkPoint(terminal=0))
     if not asked["examine"]:
         return watched

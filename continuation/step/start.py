@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 from attrs import evolve
 
-from continuation.arrays import Array
+from continuation.arrays import Array, generic_vector
 from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.correctors.base import holds
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.homotopy import SupportsExtents
+from continuation.homotopy import SupportsExtents, offers
 from continuation.metric import Automatic, Metric, SupportsExtent, norm
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
-from continuation.step.extent import FIRST, initial_extent
+from continuation.step.extent import FIRST_STEP, initial_extent
 
 
 class StartError(ArithmeticError):
@@ -34,7 +34,7 @@ CORRECTING = BorderedNewton(max_iterations=20)
 STEEP = 1e-8
 """The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
 
-RESOLVED = 4.0
+RESOLVED_ULPS = 4.0
 """Units in the last place that a correction at the tolerance is to be: fewer, and round-off keeps it from being met."""
 
 PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)
@@ -76,7 +76,7 @@ def first_point(
         wanted = 1 if target is None or target >= u[-1] else -1
     if point.tangent[-1] * wanted < 0:
         point = evolve(point, tangent=-point.tangent, orientation=-point.orientation)
-    return point, FIRST * norm(point.weights, extent)
+    return point, FIRST_STEP * norm(point.weights, extent)
 
 
 def at_parameter(solver: PathSolver, u: Array) -> Array:
@@ -107,11 +107,11 @@ def measured(
 
     What goes less far than the tolerance can see in numbers of its size is measured by that.
     """
-    seen = RESOLVED * np.spacing(np.abs(point.u)) / solver.tolerance.relative
+    seen = RESOLVED_ULPS * np.spacing(np.abs(point.u)) / solver.tolerance.relative
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
     homotopy = solver.evaluator.homotopy
-    sizes = homotopy.extents if isinstance(homotopy, SupportsExtents) else None
+    sizes = homotopy.extents if offers(homotopy, SupportsExtents) else None
     extent = np.maximum(initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes), seen)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent
@@ -165,9 +165,8 @@ def _regular(evaluator: Evaluator, u: Array, unit: Array) -> Linearization:
 
 
 def _well_conditioned(point: Linearization) -> bool:
-    """Whether a solve with a random right-hand side stays moderate: a near-singular matrix gives itself away."""
-    generator = np.random.default_rng(1)
-    r = generator.standard_normal(point.u.size - 1)
+    """Whether a solve in general position stays moderate: a near-singular matrix gives itself away."""
+    r = generic_vector(point.u.size - 1)
     z = point.solve(r)
     image = norm(np.ones_like(r), r)
     return norm(np.ones_like(z), z) < NEAR_SINGULAR * image and abs(point.tangent[-1]) > STEEP
@@ -216,4 +215,4 @@ def point_from_tangent(
         point, extent = measured(solver, point, metric, target, evaluator.residual(u))
     except EvaluationError as error:
         raise SingularStartError(f"({error}.)") from error
-    return point, FIRST * norm(point.weights, extent)
+    return point, FIRST_STEP * norm(point.weights, extent)

@@ -18,7 +18,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
-from continuation.homotopy import SupportsPieces
+from continuation.homotopy import SupportsPieces, offers
 from continuation.interrupted import Interrupted
 from continuation.kinks.start import begin
 from continuation.labels import Labels
@@ -133,7 +133,7 @@ class Tracer:
         self._bound = self.settings.bound(self._evaluator)
         self.observers = tuple(observers)
         self._finish = finish_of(homotopy, asked["finish"])
-        self._pieces = Pieces(homotopy) if isinstance(homotopy, SupportsPieces) else None
+        self._pieces = Pieces(homotopy) if offers(homotopy, SupportsPieces) else None
         leaving = None if self._start is None else np.asarray(self._start[1], dtype=float)
         straight = None if self._pieces is None else partial(self._pieces.distance, direction=leaving)
         room, farthest = self.settings.room, max_step_of(homotopy)

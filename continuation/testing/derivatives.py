@@ -23,10 +23,10 @@ SOLVE_ERROR = 1e-8
 SERIES_ERROR = 1e-6
 """Largest error of a Taylor coefficient, relative to the coefficient's size."""
 
-SMALL = 1e-6
+DERIVATIVE_ERROR = 1e-6
 """Relative error of a derivative that passes: a difference quotient is as good, a wrong formula is not."""
 
-ROUND_OFF = 1e-10
+CANCELLED_ENTRY = 1e-10
 """The same for an entry that cancels, relative to the largest entry."""
 
 SURELY_REGULAR = 1e12
@@ -62,7 +62,9 @@ def differential(subject: Subject) -> None:
             expected = reference @ v
             if found.shape != expected.shape:
                 fail(f"differential: {place.where} expected shape {expected.shape}, found {found.shape}")
-            allowed = SMALL * (np.abs(reference) @ np.abs(v)) + ROUND_OFF * float(np.abs(reference).max())
+            allowed = DERIVATIVE_ERROR * (np.abs(reference) @ np.abs(v)) + CANCELLED_ENTRY * float(
+                np.abs(reference).max()
+            )
             _compare("differential", place, "component", found, expected, allowed)
 
 
@@ -119,7 +121,7 @@ def taylor(subject: Subject) -> None:
             shape = (COMPARED_ORDER + 1, n)
             fail(f"taylor: {place.where} expected shape {shape} at order {COMPARED_ORDER}, found {c.shape}")
         for k, expected in ((0, point.u), (1, point.tangent)):
-            allowed = np.full(n, ROUND_OFF * float(np.abs(expected).max()))
+            allowed = np.full(n, CANCELLED_ENTRY * float(np.abs(expected).max()))
             _compare("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
         by_jets = _series(subject, point)
         if by_jets is not None:
@@ -142,7 +144,7 @@ def _series(subject: Subject, point: Linearization) -> Array | None:
 def _noise(c: Array, k: int) -> float:
     """Size below which coefficient k does not matter on the scale of the ones before it."""
     largest = max(float(np.abs(c[1]).max()), *(float(np.abs(row).max()) ** (1.0 / j) for j, row in enumerate(c) if j))
-    return float(SMALL * largest**k)
+    return float(DERIVATIVE_ERROR * largest**k)
 
 
 def _check_order(subject: Subject, place: Place, point: Linearization, c: Array) -> None:

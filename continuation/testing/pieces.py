@@ -14,7 +14,7 @@ from continuation.testing import derivatives
 from continuation.testing.protocol import difference
 from continuation.testing.subject import Place, Subject, called, directions, fail
 
-SAME = 1e4
+SAME_VALUE = 1e4
 """Values of one map from two formulas, in units of their round-off: a mistake is larger."""
 
 LOOK = 64.0
@@ -50,8 +50,7 @@ def _smooth(subject: Subject, place: Place) -> None:
     values = Pieces(subject.homotopy).values
 
     def kink(h: float) -> Array:
-        bend: Array = np.abs(values(place.u + h * v) - 2.0 * values(place.u) + values(place.u - h * v)) / h
-        return bend
+        return np.abs(values(place.u + h * v) - 2.0 * values(place.u) + values(place.u - h * v)) / h
 
     with called("switches", f"beside the point {place.where}"):
         far, near = kink(1e-4), kink(1e-5)
@@ -74,7 +73,7 @@ def pieces(subject: Subject) -> None:
             round_off = _round_off(subject, place, wanted)
         if found.shape != wanted.shape:
             fail(f"piece: {place.where} expected a residual of shape {wanted.shape}, found {found.shape}")
-        if not (np.abs(found - wanted) <= SAME * round_off + np.finfo(float).tiny).all():
+        if not (np.abs(found - wanted) <= SAME_VALUE * round_off + np.finfo(float).tiny).all():
             signed = _shown(signs)
             fail(f"piece: {place.where} the piece {signed} differs from the map by {difference(found, wanted):.3g}")
 

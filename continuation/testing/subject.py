@@ -29,7 +29,7 @@ from continuation.step.tracer import Tracer
 from continuation.step.verdict import refused_start
 from continuation.tolerance import Tolerance
 
-STEPS = 60
+LONGEST_PATH = 60
 """Longest path that the checks of whole paths trace."""
 
 FEWEST = 6
@@ -162,7 +162,7 @@ class Subject:
         """What a traced path may cost."""
         if self.steps is not None:
             return Budget(steps=self.steps)
-        return Budget(steps=STEPS if getattr(self.homotopy, "target", 0.0) is not None else STEPS_WITHOUT_TARGET)
+        return Budget(steps=LONGEST_PATH if getattr(self.homotopy, "target", 0.0) is not None else STEPS_WITHOUT_TARGET)
 
     @cached_property
     def path(self) -> Path:

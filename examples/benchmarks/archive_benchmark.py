@@ -4,8 +4,6 @@ python examples/benchmarks/archive_benchmark.py [cost] [checksums] [memory] [sma
     [--kills N] [--damage N] [--seed S]
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import statistics

@@ -3,8 +3,6 @@
 python examples/benchmarks/archive_benchmark.py --damage 1000
 """
 
-from __future__ import annotations
-
 import gc
 import os
 import pickle

@@ -1,9 +1,7 @@
 """Kills by the thousand: whatever is written, what was committed stays, and a final name means a whole file.
 
-    python examples/benchmarks/archive_benchmark.py --kills 500
+python examples/benchmarks/archive_benchmark.py --kills 500
 """
-
-from __future__ import annotations
 
 import os
 import random
@@ -143,17 +141,12 @@ class Campaign:
         return found.u.tobytes() == path.u[: len(found)].tobytes() and (not whole or found.counts == path.counts)
 
     def _swept(self, file: Path) -> str:
-        if file.exists():
-            with open_archive(file) as archive:
-                for member, path in zip(archive.paths["member"], archive):
-                    if path.u.tobytes() != self.sweep[member].u[: len(path)].tobytes():
-                        return "WRONG ROWS"
-            file.unlink()
-        for part in file.parent.glob("run.sweep-*.h5"):
+        for part in (*file.parent.glob(file.name), *file.parent.glob("run.sweep-*.h5")):
             with open_archive(part) as archive:
                 for member, path in zip(archive.paths["member"], archive):
                     if path.u.tobytes() != self.sweep[member].u[: len(path)].tobytes():
                         return "WRONG ROWS"
+        file.unlink(missing_ok=True)
         with trace_many(SWEEP, archive=file, **SHORT) as archive:
             same = all(a.u.tobytes() == b.u.tobytes() for a, b in zip(archive, self.sweep))
             return "ran again" if same and len(archive) == len(SWEEP) else "RAN AGAIN OTHERWISE"

@@ -50,8 +50,7 @@ class Chandrasekhar:
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """H, shape (n,)."""
-        equations: Array = y - 1.0 - lam * (y * (self.kernel @ y))
-        return equations
+        return y - 1.0 - lam * (y * (self.kernel @ y))
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:

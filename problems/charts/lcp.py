@@ -105,20 +105,17 @@ def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
     size = 1.0 + float(np.abs(problem.q).max())
     residual = problem.natural_residual(x) / size if np.isfinite(x).all() else np.inf
     solved = np.isfinite(residual) and lcp.certify(problem, x).solves(SOLVED_TO)
-    message = more.pop("message", "")
+    message, traced = more.pop("message", ""), more.get("path")
+    # Where the path did not arrive, its status says so already.
+    unfinished = traced is not None and traced.status is not continuation.Status.REACHED_TARGET
     return Answer(
         counts,
         end=x,
         observed={"natural_residual": residual},
-        failure=Failure.NONE if solved or _unfinished(more.get("path")) else Failure.WRONG_END,
+        failure=Failure.NONE if solved or unfinished else Failure.WRONG_END,
         message=message if solved else f"natural residual {residual:.1e}; {message}",
         **more,
     )
-
-
-def _unfinished(path: continuation.Path | None) -> bool:
-    """Whether the status of the path is already a failure."""
-    return path is not None and path.status is not continuation.Status.REACHED_TARGET
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:

@@ -23,7 +23,7 @@ Solved = tuple[Array | None, Counts, str]
 Solver = Callable[[LCP], Solved]
 """A solver of the LCP that traces no path."""
 
-LONGEST = 1000
+LOOP_STEPS = 1000
 """Steps of the plain loop."""
 
 
@@ -63,7 +63,7 @@ def _loop(problem: Problem, rung: Rung) -> Answer:
     v, h = math.copysign(1.0, target - lam0) * unit, 0.1
     v = solve(u, v, np.zeros(len(y0)), 1.0)
     v /= np.linalg.norm(v)
-    while counts.accepted < LONGEST and h > 1e-9:
+    while counts.accepted < LOOP_STEPS and h > 1e-9:
         trial = u + h * v
         if (trial[-1] - target) * (u[-1] - target) <= 0.0 and v[-1] != 0.0:
             landed = u + (target - u[-1]) / v[-1] * v

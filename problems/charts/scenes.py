@@ -92,7 +92,8 @@ def _methods(problems: Sequence[Problem], mesh: bool, compare: bool) -> list[Met
     for problem in problems:
         rivals.update({rival.name: rival for rival in problem.subject.rivals})
     taken = [rival for rival in rivals.values() if not rival.module or (compare and rival.installed)]
-    return [_method(OURS, mesh, _ours), *(_rival(rival.name, mesh) for rival in taken)]
+    ours = _method(OURS, mesh, lambda scene: scene.answer(solve(scene)))
+    return [ours, *(_rival(rival.name, mesh) for rival in taken)]
 
 
 def _notes(problems: Sequence[Problem], compare: bool) -> list[str]:
@@ -141,10 +142,6 @@ def _method(
         return Answer(Counts(), observed={"answer": off, "factor": factor}, failure=failure, message=message)
 
     return Method(name, run, mesh, applies)
-
-
-def _ours(scene: Any) -> Any:
-    return scene.answer(solve(scene))
 
 
 def _rival(name: str, mesh: bool) -> Method:

@@ -17,11 +17,8 @@ PROBLEM_FORMATS = ".npz, .json, .mat or .h5 with A and q, or A alone as .mtx, .n
 def named(arguments: Mapping[str, str]) -> Iterator[None]:
     """Turn a ValueError about a parameter of the library into a UsageError about the argument behind it.
 
-    Parameters
-    ----------
-    arguments : mapping of str to str
-        Parameter name, with which the library's message begins, to the argument as the user types it. An error about
-        anything else is a defect and passes.
+    `arguments`: Parameter name, with which the library's message begins, to the argument as the user types it. An error
+    about anything else is a defect and passes.
     """
     try:
         yield

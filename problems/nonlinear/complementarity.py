@@ -18,6 +18,7 @@ from continuation.path import Path
 from continuation.status import Status
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.homotopies.in_full import pairs_in_full
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, longest_step
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.references import WANG
@@ -204,14 +205,7 @@ class InteriorHomotopy:
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
-        s, n, sides = self._system(y, lam), self.problem.n, self.sides
-        whole = np.zeros((y.size, y.size))
-        A = s.structure.problem.A
-        whole[:n, :n] = s.alpha * (A.toarray() if sp.issparse(A) else A) + np.diag(np.broadcast_to(s.beta, n))
-        pull = sides.pull(np.eye(n)).T
-        whole[:n, n:] = -s.gamma * pull.T
-        whole[n:, :n], whole[n:, n:] = s.y[:, None] * pull, np.diag(s.gap)
-        return whole, np.concatenate([s.column, -s.c])
+        return pairs_in_full(self._system(y, lam))
 
     def max_step(self, u: Array, v: Array) -> float:
         """How far along v until a bound or a zero of y is reached."""

@@ -39,13 +39,7 @@ def _start(x: Any) -> Array:
 
 @frozen(eq=False)
 class AffineForce:
-    """F(x, lam) = A x + q + lam d.
-
-    Parameters
-    ----------
-    A : ndarray, scipy sparse array or Banded, shape (n, n)
-    q, d : ndarray, shape (n,)
-    """
+    """F(x, lam) = A x + q + lam d."""
 
     A: Matrix
     q: Array
@@ -185,8 +179,7 @@ class NormalMap:
         lam : float
             Of no account where the bounds stand still.
         """
-        projected: Array = np.clip(z, *self.bounds(lam))
-        return projected
+        return np.clip(z, *self.bounds(lam))
 
     def start(self) -> tuple[Array, float]:
         """The z of the start: x - F(x, lam), which is x where that is between its bounds."""

@@ -30,7 +30,7 @@ class NormalSystem:
     def of(cls, F_x: Matrix, F_lam: Array, free: Any, border: Array) -> NormalSystem:
         """Factor; SingularError where that cannot be done."""
         on_bounds = np.where(free, 0.0, border[:-1])
-        row = border[:-1] - _transposed(F_x, on_bounds)
+        row = border[:-1] - (F_x.tosparse() if isinstance(F_x, Banded) else F_x).T @ on_bounds
         corner = float(border[-1] - on_bounds @ F_lam)
         if not np.isfinite(F_lam).all():
             raise SingularError("the derivative is not finite")
@@ -59,12 +59,6 @@ class NormalSystem:
         others = r - self.F_x @ z[:-1] - self.F_lam * z[-1]
         z[:-1][~self.free] = others[~self.free]
         return z
-
-
-def _transposed(F_x: Matrix, c: Array) -> Array:
-    """F_x' c."""
-    row: Array = (F_x.tosparse() if isinstance(F_x, Banded) else F_x).T @ c
-    return row
 
 
 def _principal(F_x: Matrix, alpha: Any) -> Matrix:

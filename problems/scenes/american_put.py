@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import exp, log, sqrt
 from typing import Any, ClassVar
 
@@ -15,7 +15,7 @@ from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.solver import solve
-from problems.scenes.scene import Point, Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Point, Quantities, Rival, Units, Unknown, positive
 
 KNOWN = {
     (100.0, 100.0, 0.05, 0.2, 1.0): 6.09037,
@@ -76,7 +76,7 @@ class AmericanPut:
     n: int = field(default=400, validator=integer(10))
     steps: int = field(default=100, validator=integer(2))
     width: float = positive(5.0)
-    units: ClassVar[Mapping[str, str]] = {"price": "money", "delta": "", "exercise below": "money"}
+    units: ClassVar[Units] = {"price": "money", "delta": "", "exercise below": "money"}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -86,7 +86,7 @@ class AmericanPut:
     @property
     def rivals(self) -> tuple[Rival, ...]:
         """The elimination of the field."""
-        return (Rival("Brennan-Schwartz", "", _brennan_schwartz),)
+        return (Rival("Brennan-Schwartz", "", lambda scene: scene.answer(scene._march(_eliminated))),)
 
     @property
     def _reach(self) -> float:
@@ -212,7 +212,3 @@ def _eliminated(problem: LCP) -> Point:
     for i in range(1, len(main)):
         x.append(max((right[i] - lower[i - 1] * x[-1]) / main[i], 0.0))
     return Point(np.array(x))
-
-
-def _brennan_schwartz(scene: AmericanPut) -> Quantities:
-    return scene.answer(scene._march(_eliminated))

@@ -17,10 +17,10 @@ from problems.scenes.scene import Quantities, Rival
 STEP = 0.2
 """Of the arc: the turns of the scenes are several times as far apart."""
 
-STEPS = 500
+LOAD_STEPS = 500
 """At most until the load is reached: some ten times what the scenes take on their default meshes."""
 
-NEWTON = 20
+NEWTON_ITERATIONS = 20
 """Steps of Newton's method at most: three or four are usual."""
 
 
@@ -64,7 +64,7 @@ def follow(problem: NormalMap, load: float) -> Turns:
 
     u, fold, kink = np.append(z, lam), np.nan, np.nan
     along = _tangent(problem.piece(signs), u, np.eye(n + 1)[-1])
-    for _ in range(STEPS):
+    for _ in range(LOAD_STEPS):
         arc = Arc(problem.piece(signs), u, along)
         far, change = STEP, -1
         new = arc.at(far)
@@ -86,7 +86,7 @@ def follow(problem: NormalMap, load: float) -> Turns:
             tangent = _tangent(problem.piece(signs), new, outward)
             kink = float(new[-1]) if np.isnan(kink) and not np.isnan(fold) else kink
         u, along = new, tangent
-    raise ArithmeticError(f"the path did not turn, come to a bound, and reach {load:g} in {STEPS} steps")
+    raise ArithmeticError(f"the path did not turn, come to a bound, and reach {load:g} in {LOAD_STEPS} steps")
 
 
 @frozen(eq=False)
@@ -100,7 +100,7 @@ class Arc:
     def at(self, radius: float) -> Array:
         """The point at a distance, in the load and the mean square of the unknowns."""
         u, weight = self.start + radius * self.along, _weight(self.start.size)
-        for _ in range(NEWTON):
+        for _ in range(NEWTON_ITERATIONS):
             away = u - self.start
             off = np.append(self.piece.residual(u[:-1], u[-1]), weight @ away**2 - radius**2)
             change = np.linalg.solve(_bordered(self.piece, u, 2.0 * weight * away), -off) if radius else 0.0 * u
@@ -108,7 +108,8 @@ class Arc:
             # Quadratic convergence: what follows a step of 1e-10 is below round-off.
             if np.abs(change).max() <= 1e-10 * np.abs(u).max():
                 return u
-        raise ArithmeticError(f"Newton's method did not converge in {NEWTON} steps from a load of {self.start[-1]:g}")
+        load = f"{self.start[-1]:g}"
+        raise ArithmeticError(f"Newton's method did not converge in {NEWTON_ITERATIONS} steps from a load of {load}")
 
 
 def _weight(size: int) -> Array:
@@ -118,8 +119,7 @@ def _weight(size: int) -> Array:
 def _bordered(piece: NormalPiece, u: Array, row: Array) -> Array:
     H, H_lam = piece.jacobian(u[:-1], u[-1])
     dense = H.toarray() if sp.issparse(H) else H
-    found: Array = np.vstack([np.column_stack([dense, H_lam]), row])
-    return found
+    return np.vstack([np.column_stack([dense, H_lam]), row])
 
 
 def _tangent(piece: NormalPiece, u: Array, forward: Array) -> Array:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from continuation.arrays import Array
 from continuation.checks import integer
 from problems.lcp.data.program import Program, from_lp
 from problems.scenes.rivals import CLARABEL, HIGHS, PIQP
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -44,7 +43,7 @@ class Arch:
     thickness: float = positive(0.15)
     stones: int = field(default=20, validator=integer(2))
     weight: float = positive(2e4)
-    units: ClassVar[Mapping[str, str]] = {"thrust": "N/m", "spare moment": "N", "stands": ""}
+    units: ClassVar[Units] = {"thrust": "N/m", "spare moment": "N", "stands": ""}
     rivals: ClassVar[tuple[Rival, ...]] = (HIGHS, PIQP, CLARABEL)
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import acos, degrees, pi
 from typing import Any, ClassVar
 
@@ -16,7 +15,7 @@ from continuation.arrays import Array
 from continuation.checks import integer, number
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -52,7 +51,7 @@ class Bearing:
     viscosity: float = positive(0.02)
     speed: float = positive(100.0)
     n: int = field(default=199, validator=integer(4))
-    units: ClassVar[Mapping[str, str]] = {"film breaks at": "degrees", "largest pressure": "Pa", "load": "N/m"}
+    units: ClassVar[Units] = {"film breaks at": "degrees", "largest pressure": "Pa", "load": "N/m"}
     rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, LEMKE, *QUADRATIC)
 
     @property

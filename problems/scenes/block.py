@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import arrow
 from problems.scenes.planar import contact_unknowns, free_motion, impulses, time_step
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -48,7 +47,7 @@ class Block:
     push: float = field(default=0.0, validator=FINITE)
     gravity: float = positive(9.81)
     step: float = positive(0.01)
-    units: ClassVar[Mapping[str, str]] = {"normal impulse": "N s", "friction impulse": "N s", "speed": "m/s"}
+    units: ClassVar[Units] = {"normal impulse": "N s", "friction impulse": "N s", "speed": "m/s"}
     rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)
 
     @property

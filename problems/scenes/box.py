@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,7 +13,7 @@ from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import arrow, rectangle
 from problems.scenes.planar import contact_unknowns, free_motion, impulses, time_step
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -45,7 +44,7 @@ class Box:
     push: float = field(default=2.0, validator=FINITE)
     gravity: float = positive(9.81)
     step: float = positive(0.01)
-    units: ClassVar[Mapping[str, str]] = {
+    units: ClassVar[Units] = {
         "left force": "N", "right force": "N", "friction force": "N", "speed": "m/s", "rotation": "rad/s",
     }  # fmt: skip
     rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)

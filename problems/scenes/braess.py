@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,7 +10,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -32,7 +31,7 @@ class Braess:
 
     cars: float = positive(6.0)
     bridge: bool = True
-    units: ClassVar[Mapping[str, str]] = {"flows": "cars", "time": "minutes"}
+    units: ClassVar[Units] = {"flows": "cars", "time": "minutes"}
     rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)
 
     @property

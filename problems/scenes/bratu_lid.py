@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import acosh, exp, sqrt
 from typing import Any, ClassVar
 
@@ -18,7 +17,7 @@ from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap
 from problems.nonlinear.obstacle import BratuForce
 from problems.scenes.arc_length import arc_length_method
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -68,7 +67,7 @@ class BratuLid:
     lid: float = positive(2.0)
     load: float = positive(6.0)
     n: int = field(default=50, validator=integer(4))
-    units: ClassVar[Mapping[str, str]] = {"fold": "", "turning kink": "", "contact from": ""}
+    units: ClassVar[Units] = {"fold": "", "turning kink": "", "contact from": ""}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from continuation.arrays import Array
 from continuation.checks import integer, number
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -52,7 +51,7 @@ class Converter:
     capacity: float = positive(1e-4)
     load: float = positive(20.0)
     n: int = field(default=100, validator=integer(4))
-    units: ClassVar[Mapping[str, str]] = {
+    units: ClassVar[Units] = {
         "output": "V", "largest current": "A", "part without current": "", "mean input current": "A",
     }  # fmt: skip
     rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import inf
 from typing import Any, ClassVar
 
@@ -12,7 +11,7 @@ from attrs import field, frozen
 from continuation.checks import POSITIVE
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Unknown, numbers, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, numbers, positive
 
 
 @frozen
@@ -41,7 +40,7 @@ class Cournot:
     intercept: float = positive(100.0)
     slope: float = positive(1.0)
     capacity: float = field(default=inf, validator=POSITIVE)
-    units: ClassVar[Mapping[str, str]] = {"quantities": "units", "price": "money a unit", "profits": "money"}
+    units: ClassVar[Units] = {"quantities": "units", "price": "money a unit", "profits": "money"}
     rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, *QUADRATIC)
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ from continuation.arrays import Array
 from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -40,7 +39,7 @@ class Denoising:
     weight: float = positive(2.0)
     noise: float = field(default=0.3, validator=NOT_NEGATIVE)
     seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Mapping[str, str]] = {"signal": "", "jumps": ""}
+    units: ClassVar[Units] = {"signal": "", "jumps": ""}
     rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, *QUADRATIC)
 
     @property

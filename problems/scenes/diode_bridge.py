@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import pi
 from typing import Any, ClassVar
 
@@ -15,7 +14,7 @@ from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -44,7 +43,7 @@ class DiodeBridge:
     amplitude: float = positive(10.0)
     load: float = positive(100.0)
     source_resistance: float = positive(1.0)
-    units: ClassVar[Mapping[str, str]] = {"load voltage": "V", "diode currents": "A", "mean load voltage": "V"}
+    units: ClassVar[Units] = {"load voltage": "V", "diode currents": "A", "mean load voltage": "V"}
     rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)
 
     def __attrs_post_init__(self) -> None:

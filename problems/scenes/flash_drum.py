@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from scipy.optimize import brentq
 from continuation.arrays import Array
 from continuation.tracing import solve_at
 from problems.nonlinear.normal_map import NormalMap
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 ANTOINE = ((6.90565, 1211.033, 220.790), (6.95464, 1344.800, 219.482))
 """Of benzene and toluene, for mm Hg and degrees Celsius: log10 p = A - B / (T + C) (Perry's handbook)."""
@@ -67,7 +66,7 @@ class FlashDrum:
     benzene: float = positive(0.5)
     pressure: float = positive(101.325)
     temperature: float = positive(95.0)
-    units: ClassVar[Mapping[str, str]] = {
+    units: ClassVar[Units] = {
         "bubble point": "degrees C", "dew point": "degrees C", "vapour": "", "benzene in vapour": "",
         "benzene in liquid": "",
     }  # fmt: skip

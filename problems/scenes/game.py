@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from importlib import import_module
 from typing import Any, ClassVar
 
@@ -13,7 +12,7 @@ from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.solutions import Solutions, solutions
 from problems.options import real_array
-from problems.scenes.scene import Point, Quantities, Rival, Unknown
+from problems.scenes.scene import Point, Quantities, Rival, Units, Unknown
 
 Payoffs = tuple[tuple[float, ...], ...]
 
@@ -61,7 +60,7 @@ class Game:
 
     rows: Payoffs = field(default=((3.0, 3.0), (2.0, 5.0), (0.0, 6.0)), converter=_rows)
     columns: Payoffs = field(default=((3.0, 2.0), (2.0, 6.0), (3.0, 1.0)), converter=_columns)
-    units: ClassVar[Mapping[str, str]] = {"equilibria": "", "gains": ""}
+    units: ClassVar[Units] = {"equilibria": "", "gains": ""}
 
     def __attrs_post_init__(self) -> None:
         rows, columns = np.shape(self.rows), np.shape(self.columns)

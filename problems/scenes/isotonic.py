@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ from continuation.arrays import Array
 from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Unknown
+from problems.scenes.scene import Quantities, Rival, Units, Unknown
 
 
 @frozen
@@ -35,7 +34,7 @@ class Isotonic:
     samples: int = field(default=100, validator=integer(2))
     noise: float = field(default=0.3, validator=NOT_NEGATIVE)
     seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Mapping[str, str]] = {"fit": "", "steps": ""}
+    units: ClassVar[Units] = {"fit": "", "steps": ""}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:

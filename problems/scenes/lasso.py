@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import inf, nan
 from typing import Any, ClassVar
 
@@ -14,13 +13,11 @@ from continuation.checks import NOT_NEGATIVE, integer
 from continuation.path import Path
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along
-from problems.scenes.scene import Quantities, Rival, Unknown
+from problems.scenes.scene import Quantities, Rival, Units, Unknown
 
 
 def penalised(G: Array, c: Array) -> Path:
     """The path of min b'Gb/2 - c'b + t |b|_1, from the least t with b = 0 on, to 0.
-
-    `G` of shape (p, p). `c` of shape (p,).
 
     References
     ----------
@@ -59,7 +56,7 @@ class Lasso:
     noise: float = field(default=0.5, validator=NOT_NEGATIVE)
     penalty: float = field(default=5.0, validator=NOT_NEGATIVE)
     seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Mapping[str, str]] = {"coefficients": "", "first enters at": "", "kinks": ""}
+    units: ClassVar[Units] = {"coefficients": "", "first enters at": "", "kinks": ""}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import log, pi, sqrt
 from typing import Any, ClassVar
 
@@ -15,7 +14,7 @@ from continuation.arrays import Array
 from continuation.checks import integer, number
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import BFGS, CLARABEL, GAUSS_SEIDEL, PIQP
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 def radial(n: int, width: float) -> tuple[Array, Any]:
@@ -49,7 +48,7 @@ class Membrane:
     radius: float = field(default=2.0, validator=number("a number above 1", lambda R: 1.0 < R < 1e6))
     tension: float = positive(1.0)
     n: int = field(default=100, validator=integer(4))
-    units: ClassVar[Mapping[str, str]] = {"contact radius": "", "force": "N"}
+    units: ClassVar[Units] = {"contact radius": "", "force": "N"}
     rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, PIQP, CLARABEL, BFGS)
 
     @property

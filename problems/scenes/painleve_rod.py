@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import cos, inf, pi, sin, sqrt
 from typing import Any, ClassVar
 
@@ -14,7 +13,7 @@ from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -49,7 +48,7 @@ class PainleveRod:
     friction: float = field(default=2.0, validator=NOT_NEGATIVE)
     spin: float = field(default=4.0, validator=FINITE)
     gravity: float = positive(9.81)
-    units: ClassVar[Mapping[str, str]] = {
+    units: ClassVar[Units] = {
         "a": "", "acceleration without force": "m/s^2", "critical spin": "rad/s", "forces": "N",
     }  # fmt: skip
     # At the spin of the scene they find one of two forces, or none and do not say why.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,7 +15,7 @@ from problems.lcp.search.solver import solve
 from problems.scenes.pictures import rectangle
 from problems.scenes.planar import Contact, contact_unknowns, free_motion, impulses, time_step
 from problems.scenes.rivals import LEMKE, TABLES, by_quantecon, by_tables
-from problems.scenes.scene import Point, Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Point, Quantities, Rival, Units, Unknown, positive
 
 TIGHT = 1e-14
 """Relative residual of a step: with the default, 1e-10, boxes overlap by up to 1e-12 m, with this by 2e-16 m at most,
@@ -72,7 +72,7 @@ class Pile:
     gravity: float = positive(9.81)
     step: float = positive(0.01)
     steps: int = field(default=60, validator=integer(1))
-    units: ClassVar[Mapping[str, str]] = {
+    units: ClassVar[Units] = {
         "energy gained": "J", "deepest penetration": "m", "heights": "m", "slid": "m",
     }  # fmt: skip
 

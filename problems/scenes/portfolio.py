@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,7 +14,7 @@ from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program, from_qp
 from problems.lcp.parametric.along import along
 from problems.scenes.rivals import CLARABEL, PIQP
-from problems.scenes.scene import Quantities, Rival, Unknown, numbers
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, numbers
 
 
 def critical_line(mean: Array, covariance: Array) -> Path:
@@ -69,7 +68,7 @@ class Portfolio:
     correlation: float = field(default=0.0, validator=number("a number from 0 to below 1", lambda c: 0.0 <= c < 1.0))
     tolerance: float = field(default=0.5, validator=NOT_NEGATIVE)
     cap: float = field(default=1.0, validator=number("a number above 0, at most 1", lambda c: 0.0 < c <= 1.0))
-    units: ClassVar[Mapping[str, str]] = {"weights": "", "mean": "", "deviation": ""}
+    units: ClassVar[Units] = {"weights": "", "mean": "", "deviation": ""}
     rivals: ClassVar[tuple[Rival, ...]] = (PIQP, CLARABEL)
 
     def __attrs_post_init__(self) -> None:

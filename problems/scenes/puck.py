@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ from continuation.checks import FINITE, integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import arrow
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -51,7 +50,7 @@ class Puck:
     edges: int = field(default=8, validator=integer(3))
     gravity: float = positive(9.81)
     step: float = positive(0.01)
-    units: ClassVar[Mapping[str, str]] = {"speed": "m/s", "heading": "degrees", "friction against motion": "N s"}
+    units: ClassVar[Units] = {"speed": "m/s", "heading": "degrees", "friction against motion": "N s"}
     rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,7 +14,7 @@ from continuation.path import Path
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -51,7 +50,7 @@ class Regulator:
     step: float = positive(0.5)
     weight: float = positive(0.1)
     horizon: int = field(default=12, validator=integer(1))
-    units: ClassVar[Mapping[str, str]] = {"force": "N", "value": "", "free up to": "m", "kinks at": "m"}
+    units: ClassVar[Units] = {"force": "N", "value": "", "free up to": "m", "kinks at": "m"}
     rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, *QUADRATIC)
 
     @property

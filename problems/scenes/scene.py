@@ -21,6 +21,9 @@ from problems.options import finite_vector
 Quantities = Mapping[str, Any]
 """Named numbers, or arrays of them."""
 
+Units = Mapping[str, str]
+"""Of the answer, by the names of its quantities."""
+
 
 @frozen
 class Unknown:
@@ -80,7 +83,7 @@ class Scene(Protocol):
     path, all equilibria.
     """
 
-    units: ClassVar[Mapping[str, str]]
+    units: ClassVar[Units]
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:

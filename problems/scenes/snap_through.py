@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import sqrt
 from typing import Any, ClassVar
 
@@ -13,7 +12,7 @@ from continuation.arrays import Array
 from continuation.checks import number
 from problems.nonlinear.normal_map import NormalMap
 from problems.scenes.arc_length import arc_length_method
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -58,7 +57,7 @@ class SnapThrough:
     stiffness: float = positive(1e6)
     stop: float = field(default=-0.3, validator=number("a number between -1 and 0", lambda s: -1.0 < s < 0.0))
     load: float = positive(1.5)
-    units: ClassVar[Mapping[str, str]] = {"snap load": "N", "load at touch": "N", "force on stop": "N"}
+    units: ClassVar[Units] = {"snap load": "N", "load at touch": "N", "force on stop": "N"}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -76,15 +75,11 @@ class SnapThrough:
         """Of loads, N."""
         return self.stiffness * (self.rise / self.span) ** 3
 
-    @property
-    def _last(self) -> float:
-        return max(self.load, 1.0) * 2.0 / (3.0 * sqrt(3.0))
-
     def problem(self) -> NormalMap:
         """The path of the height over the rise, from no load."""
-        truss = ShallowTruss()
+        truss, last = ShallowTruss(), max(self.load, 1.0) * 2.0 / (3.0 * sqrt(3.0))
         return NormalMap(truss, truss.slope, x0=np.ones(1), lam0=0.0, lower=self.stop, upper=np.inf,
-                         target=1.1 * self._last)  # fmt: skip
+                         target=1.1 * last)  # fmt: skip
 
     def answer(self, solution: Any) -> Quantities:
         """The loads at which the path turns; beyond the second the stop bears what exceeds it."""

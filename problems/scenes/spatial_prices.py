@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from continuation.arrays import Array
 from continuation.checks import NOT_NEGATIVE
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import LEMKE, QUADRATIC, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, numbers, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, numbers, positive
 
 
 def trade(supply: tuple[Array, Array], demand: tuple[Array, Array], freight: Array) -> LCP:
@@ -53,7 +52,7 @@ class SpatialPrices:
     bids: tuple[float, ...] = numbers("bids", (14.0, 30.0, 22.0))
     fall: float = positive(1.0)
     freight: float = field(default=2.0, validator=NOT_NEGATIVE)
-    units: ClassVar[Mapping[str, str]] = {
+    units: ClassVar[Units] = {
         "flows": "units",
         "offers": "money a unit",
         "bids": "money a unit",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import sqrt
 from typing import Any, ClassVar
 
@@ -13,7 +12,7 @@ from attrs import field, frozen
 from continuation.checks import integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import BFGS, CLARABEL, GAUSS_SEIDEL, LEMKE, PIQP
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -41,7 +40,7 @@ class String:
     tension: float = positive(1.0)
     length: float = positive(1.0)
     n: int = field(default=50, validator=integer(2))
-    units: ClassVar[Mapping[str, str]] = {"contact from": "m", "support force": "N", "floor force": "N"}
+    units: ClassVar[Units] = {"contact from": "m", "support force": "N", "floor force": "N"}
     rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, LEMKE, PIQP, CLARABEL, BFGS)
 
     @property

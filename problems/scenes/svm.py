@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,7 +11,7 @@ from continuation.arrays import Array
 from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.rivals import CLARABEL, PIQP
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -41,7 +40,7 @@ class SVM:
     cost: float = positive(1.0)
     width: float = field(default=0.0, validator=NOT_NEGATIVE)
     seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Mapping[str, str]] = {"weights": "", "offset": "", "support vectors": "", "objective": ""}
+    units: ClassVar[Units] = {"weights": "", "offset": "", "support vectors": "", "objective": ""}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,7 +13,7 @@ from continuation.arrays import Array
 from continuation.checks import integer
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 Indices = NDArray[np.int_]
 
@@ -50,7 +49,7 @@ class Torsion:
     yield_stress: float = positive(1.0)
     twist: float = positive(2.5)
     n: int = field(default=24, validator=integer(2))
-    units: ClassVar[Mapping[str, str]] = {"torque": "N m", "plastic part": ""}
+    units: ClassVar[Units] = {"torque": "N m", "plastic part": ""}
     rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, *QUADRATIC)
 
     @property

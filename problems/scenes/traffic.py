@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,7 +13,7 @@ from continuation.arrays import Array
 from continuation.checks import integer
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.rivals import CLARABEL, PIQP
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -41,7 +40,7 @@ class Traffic:
     side: int = field(default=5, validator=integer(2))
     cars: float = positive(10.0)
     seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Mapping[str, str]] = {"time": "minutes", "quickest way": "minutes", "loads": "hundred cars an hour"}
+    units: ClassVar[Units] = {"time": "minutes", "quickest way": "minutes", "loads": "hundred cars an hour"}
     rivals: ClassVar[tuple[Rival, ...]] = (PIQP, CLARABEL)
 
     @property

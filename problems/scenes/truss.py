@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import inf
 from typing import Any, ClassVar
 
@@ -15,7 +14,7 @@ from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Unknown, numbers, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, numbers, positive
 
 
 @frozen
@@ -44,7 +43,7 @@ class Truss:
     stiffness: float = positive(1.0)
     hardening: float = field(default=0.0, validator=NOT_NEGATIVE)
     load: float = positive(1.9)
-    units: ClassVar[Mapping[str, str]] = {
+    units: ClassVar[Units] = {
         "plastic elongations": "length", "forces": "force", "collapse load": "force", "yield loads": "force",
     }  # fmt: skip
     rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,7 @@ from continuation.arrays import Array
 from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Unknown, positive
+from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
 
 
 @frozen
@@ -43,7 +42,7 @@ class Unmixing:
     width: float = positive(0.8)
     noise: float = field(default=0.0, validator=NOT_NEGATIVE)
     seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Mapping[str, str]] = {"amounts": "", "misfit": ""}
+    units: ClassVar[Units] = {"amounts": "", "misfit": ""}
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:

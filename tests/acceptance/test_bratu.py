@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from continuation import Status, TargetValue, trace
+from continuation import FAST, Status, TargetValue, trace
 from continuation.auditing import audit
 from problems.bifurcation import Bratu1D, Bratu2D
 from problems.bifurcation.truth import bratu
@@ -26,6 +26,12 @@ def test_the_fold_in_one_dimension(n, preset):
     lam, height = bratu.FOLD_1D[n]
     assert fold.lam == pytest.approx(lam, abs=1e-12)
     assert fold.y.max() == pytest.approx(height, abs=3e-12)
+
+
+@pytest.mark.parametrize("n", range(60, 140, 25))
+def test_large_steps_pass_the_fold_on_every_mesh(n):
+    """A factorisation from too far away tells nothing of the next crossing: FAST once stuck on two meshes of 16."""
+    upper_branch(Bratu1D(n), 1.0, preset=FAST)
 
 
 def test_the_upper_branch_within_forty_factorisations():

@@ -19,7 +19,7 @@ from continuation import (
     from_functions,
     trace,
 )
-from problems.bifurcation import Bratu1D, ExponentialCosine
+from problems.bifurcation import Bratu1D, Circle, ExponentialCosine
 
 from ..util import benchmark
 
@@ -48,6 +48,15 @@ def test_a_point_where_two_ranks_are_lost_is_passed_in_any_units(preset):
     wrong, ratios, work = run.compare("Bratu 2D", preset, 3, seed=0)
     assert wrong == []
     assert all(ratio * work <= 1.3 * work for ratio in ratios)
+
+
+@pytest.mark.parametrize("at", [1.7e5, 2.6e6])
+def test_a_correction_below_the_last_digit_says_nothing_of_scales(at):
+    """At its turning point a circle's first correction was lost in y's rounding: a first step of 4e-7 of its radius."""
+    circle, D, a = run.PROBLEMS["circle"], 2.4e5, 2.1e4
+    units = run.Rescaled(Circle(), np.array([D]), np.array([D * at]), np.ones(1), a, 1e-3 * a)
+    path, plain = circle.trace(units, SERIES), circle.trace(run.plain(Circle()), SERIES)
+    assert len(path.steps) == len(plain.steps)
 
 
 def first_weights(homotopy):
@@ -128,6 +137,13 @@ def test_an_s_bend_where_a_landing_is_looked_at(width, seed):
     That goes along the path, too, and was compared with what goes across it.
     """
     homotopy, turns = bends.bend("tanh", width, seed)
+    path = trace(homotopy)
+    assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, turns)
+
+
+def test_an_s_bend_that_a_smooth_error_hides_at_both_places():
+    """What the cubic misses of the curve makes up for most of the S at 0.31 and 0.77."""
+    homotopy, turns = bends.bend("curved", 0.001, 6344)
     path = trace(homotopy)
     assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, turns)
 

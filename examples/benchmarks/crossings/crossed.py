@@ -4,8 +4,6 @@ In x and s, one unknown obeys p(x_0, s) = 0 with crossings in closed form, the o
 tracer sees is mixed and in random units: y = D T x + c, lam = a s + b, H = E (...).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
@@ -211,30 +209,26 @@ def _two(
     )
 
 
+def _forked(at: float, k: float) -> Scalar:
+    return lambda x, s: (x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x)
+
+
 def pitchfork(rng: np.random.Generator, n: int, units: float) -> Crossed:
     """x_0 (s - s_0 - k x_0^2) = 0 along the trunk."""
     at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0)) * rng.choice([-1.0, 1.0])
-
-    def p(x: float, s: float) -> tuple[float, float, float]:
-        return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
-
     return _dressed(
-        rng, n, units, scalar=p, curve=lambda s: (0.0, s), crossings=[(0.0, at)], begin=float(-rng.uniform(1.0, 2.0)),
-        end=float(rng.uniform(1.0, 2.0)),
-    )
+        rng, n, units, scalar=_forked(at, k), curve=lambda s: (0.0, s), crossings=[(0.0, at)],
+        begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)),
+    )  # fmt: skip
 
 
 def arm(rng: np.random.Generator, n: int, units: float) -> Crossed:
     """The same along the arms, over the crossing: to x_0 = 0.3; `begin` and `end` are values of x_0."""
     at, k = float(rng.uniform(-0.9, 0.9)), float(rng.uniform(0.3, 3.0))
-
-    def p(x: float, s: float) -> tuple[float, float, float]:
-        return x * (s - at - k * x * x), s - at - 3.0 * k * x * x, x
-
     return _dressed(
-        rng, n, units, scalar=p, curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],
+        rng, n, units, scalar=_forked(at, k), curve=lambda x: (x, at + k * x * x), crossings=[(0.0, at)],
         begin=float(-rng.uniform(0.3, 3.0)), end=0.3,
-    )
+    )  # fmt: skip
 
 
 def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
@@ -248,4 +242,4 @@ def transcritical(rng: np.random.Generator, n: int, units: float) -> Crossed:
     return _dressed(
         rng, n, units, scalar=p, curve=lambda s: (0.0 if straight else k * (s - at), s), crossings=[(0.0, at)],
         begin=float(-rng.uniform(1.0, 2.0)), end=float(rng.uniform(1.0, 2.0)), angle=min(abs(k), 1.0),
-    )
+    )  # fmt: skip

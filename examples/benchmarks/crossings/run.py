@@ -1,9 +1,7 @@
 """Branch points on random paths: missed, invented, branches switched in silence, paths that stick; each preset.
 
-    python examples/benchmarks/crossings/run.py [how many of each] [seed]
+python examples/benchmarks/crossings/run.py [how many of each] [seed]
 """
-
-from __future__ import annotations
 
 import sys
 from collections import Counter

@@ -3,8 +3,6 @@
 Needs no rival.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import combinations, pairwise

@@ -1,7 +1,5 @@
 """LCPs of applications: contact, prices, production, traffic, regression, classification."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Projected Gauss-Seidel, for time stepping: compiled where numba is installed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """Problems whose piecewise linear paths are known."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from continuation.arrays import Array

@@ -5,14 +5,14 @@
 Rivals (scikit-learn, cvxcla, quantecon) are compared with where they are installed. Times are processor seconds.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
@@ -26,6 +26,8 @@ from known_paths import frontier, integer_design, integer_problem, lasso, mairal
 from continuation.arrays import Array
 from problems import lcp
 from problems.lcp import LCP, along
+from problems.lcp.pivoting import almost
+from problems.scenes.game import bimatrix
 from problems.scenes.lasso import penalised
 from problems.scenes.planar import free_motion, impulses, time_step
 from problems.scenes.portfolio import critical_line
@@ -47,6 +49,10 @@ def rival(name: str) -> Any:
         return __import__(name, fromlist=["_"])
     except ImportError:
         return None
+
+
+in_numpy = partial(patch.object, almost, "available", lambda: False)
+"""Pivots are not compiled, though quantecon, or Gauss-Seidel, has imported numba."""
 
 
 def say(*parts: Any) -> None:
@@ -166,14 +172,14 @@ def assets(seeds: int) -> None:
 
 
 def contact(seeds: int) -> None:
-    """Applied problems: `lcp.solve` beside quantecon's Lemke, solved and median ratio of times."""
+    """Applied problems: `lcp.solve`, and with pivots in numpy, beside quantecon's Lemke, solved and median ratio."""
     optimize = rival("quantecon.optimize")
     lcp.solve(LCP(np.eye(2), -np.ones(2)))
     if optimize is not None:
         optimize.lcp_lemke(np.eye(2), -np.ones(2))
     for family in applied.FAMILIES:
         solved = theirs = number = 0
-        ratios, own = [], []
+        ratios, own, slower = [], [], []
         for seed in range(max(1, seeds // 10)):
             for A, q in family(seed):
                 number += 1
@@ -181,12 +187,15 @@ def contact(seeds: int) -> None:
                 found, ours = timed(lcp.solve, LCP(A, q), repeats=2)
                 own.append(ours)
                 solved += found.solved
+                with in_numpy():
+                    slower.append(timed(lcp.solve, LCP(A, q), repeats=2)[1])
                 if optimize is not None:
                     other, other_time = timed(optimize.lcp_lemke, A, q, max_iter=20 * len(q), repeats=2)
                     right = other.success and problem.relative_residual(np.maximum(other.z, 0.0)) <= 1e-8
                     theirs += right
                     ratios += [ours / max(other_time, 1e-7)] if right else []
         line = f"{family.__name__}: solved {solved} of {number}, median {1e3 * np.median(own):.2f} ms"
+        line += f" (in numpy {1e3 * np.median(slower):.2f})"
         if optimize is not None:
             line += f"; quantecon's Lemke {theirs}, ratio of times {np.median(ratios):.1f} (to {max(ratios):.1f})"
         say(line)
@@ -204,26 +213,28 @@ def games(seeds: int) -> None:
         if n > 10 * seeds + 40:
             continue
         found, ours = timed(lcp.solve, LCP(A, q))
+        with in_numpy():
+            slower = timed(lcp.solve, LCP(A, q))[1]
         row = table.setdefault((KINDS[k % 7], n), [])
-        entry = [found.solved, ours, False, np.nan]
+        entry = [found.solved, ours, False, np.nan, slower]
         if theory is not None:
             game = theory.NormalFormGame([theory.Player(-A[:m, m:]), theory.Player(-A[m:, :m])])
             theory.lemke_howson(game, max_iter=2)
             (_, status), theirs = timed(theory.lemke_howson, game, max_iter=100_000, full_output=True)
-            entry[2:] = status.converged, theirs
+            entry[2:4] = status.converged, theirs
         row.append(entry)
     for (name, n), row in sorted(table.items(), key=lambda item: item[0][1]):
-        solved, ours, theirs, times = zip(*row)
-        say(f"{name}, n = {n}: solved {sum(solved)} of {len(row)}, median {1e3 * np.median(ours):.1f} ms; quantecon "
-            f"{sum(theirs)}, {1e3 * np.median(times):.1f} ms")  # fmt: skip
+        solved, ours, theirs, times, slower = zip(*row)
+        own, alone, rivals = (f"{1e3 * np.median(one):.1f} ms" for one in (ours, slower, times))
+        say(f"{name}, n = {n}: solved {sum(solved)} of {len(row)}, median {own} (in numpy {alone}); quantecon "
+            f"{sum(theirs)}, {rivals}")  # fmt: skip
 
 
 def several(seeds: int) -> None:
     """All equilibria of coordination games from one, and what is found of the solutions of random problems."""
     for m in range(3, 9 if seeds >= 100 else 5):
         C = 2.0 - np.eye(m) + 1e-3 * np.random.default_rng(m).random((m, m))
-        zero = np.zeros((m, m))
-        problem = LCP(np.block([[zero, C], [C, zero]]), -np.ones(2 * m))
+        problem = bimatrix(C, C.T)
         found, seconds = timed(lcp.solutions, problem, enumerate_faces=False)
         say(f"coordination m = {m}: {len(found)} of {2**m - 1} on {found.paths} paths, {seconds:.1f} s")
     for n in (8, 10):

@@ -1,12 +1,11 @@
 """The problems of the benchmark; each function takes an order and a seed where it is random, and returns an LCP."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 
 from problems.lcp import LCP
 from problems.scenes.american_put import AmericanPut
+from problems.scenes.game import bimatrix as game
 
 
 def positive_definite(n: int, seed: int) -> LCP:
@@ -20,10 +19,7 @@ def semidefinite(n: int, seed: int) -> LCP:
     """A = MM'/n of rank n/2, symmetric, with a planted solution so that it is solvable."""
     r = np.random.default_rng(seed)
     M = r.standard_normal((n, n // 2))
-    A = M @ M.T / n
-    x = np.maximum(r.standard_normal(n), 0.0)
-    w = np.where(x == 0.0, np.abs(r.standard_normal(n)), 0.0)
-    return LCP(A, w - A @ x)
+    return _planted(M @ M.T / n, r)
 
 
 def murty(n: int) -> LCP:
@@ -40,9 +36,12 @@ def fathi(n: int) -> LCP:
 def random_planted(n: int, seed: int) -> LCP:
     """A = randn / sqrt(n), neither monotone nor P, with a planted strictly complementary solution."""
     r = np.random.default_rng(seed)
-    A = r.standard_normal((n, n)) / np.sqrt(n)
-    x = np.maximum(r.standard_normal(n), 0.0)
-    w = np.where(x == 0.0, np.abs(r.standard_normal(n)), 0.0)
+    return _planted(r.standard_normal((n, n)) / np.sqrt(n), r)
+
+
+def _planted(A: np.ndarray, r: np.random.Generator) -> LCP:
+    x = np.maximum(r.standard_normal(len(A)), 0.0)
+    w = np.where(x == 0.0, np.abs(r.standard_normal(len(A))), 0.0)
     return LCP(A, w - A @ x)
 
 
@@ -78,12 +77,7 @@ def frictional_contact(n: int, seed: int) -> LCP:
 
 def bimatrix(n: int, seed: int) -> LCP:
     """The equilibria of a bimatrix game with n/2 strategies a player, costs uniform in [0.1, 1]."""
-    r = np.random.default_rng(seed)
-    m = n // 2
-    A = np.zeros((n, n))
-    A[:m, m:] = r.uniform(0.1, 1.0, (m, m))
-    A[m:, :m] = r.uniform(0.1, 1.0, (m, m)).T
-    return LCP(A, -np.ones(n))
+    return game(*np.random.default_rng(seed).uniform(0.1, 1.0, (2, n // 2, n // 2)))
 
 
 def american_option(n: int) -> LCP:

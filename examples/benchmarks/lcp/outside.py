@@ -6,8 +6,6 @@ Prints how many are decided, the median and the largest time, of another checkou
 place of the one there. The steps of a stack are solved by `lcp.Solver` where there is one.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

@@ -3,8 +3,6 @@
 Each takes (problem, seconds) and returns x, or None where it gave up; the benchmark certifies x itself.
 """
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

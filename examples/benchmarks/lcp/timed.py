@@ -3,8 +3,6 @@
 python examples/benchmarks/lcp/timed.py FILE LIMIT
 """
 
-from __future__ import annotations
-
 import json
 import math
 import pickle

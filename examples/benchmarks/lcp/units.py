@@ -9,8 +9,6 @@ two round the entries, and so can spoil an exact proof or an exact solution, or 
 1e16: such answers are counted by themselves ("decided by rounding"), and powers of two are held to the same outcome.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 import time

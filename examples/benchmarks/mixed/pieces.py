@@ -1,6 +1,6 @@
 """Small problems with bounds, against all 3^n pieces in exact arithmetic: no outcome may be false.
 
-    python examples/benchmarks/mixed/pieces.py [number] [seed]
+python examples/benchmarks/mixed/pieces.py [number] [seed]
 """
 
 import sys

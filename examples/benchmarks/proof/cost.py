@@ -5,8 +5,6 @@
 The ten examples of the paper, random LCPs, and problems with known bifurcations; large ones on their own.
 """
 
-from __future__ import annotations
-
 import sys
 from time import process_time
 

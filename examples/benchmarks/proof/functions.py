@@ -3,8 +3,6 @@
 python examples/benchmarks/proof/functions.py 1000000
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from fractions import Fraction

@@ -1,14 +1,12 @@
 """Proofs in random units: has a path that is complete all its turning points, and is a jump ever proved?
 
-    python examples/benchmarks/proof/units.py [NUMBER] [NAME ...]
+    python examples/benchmarks/proof/units.py [NUMBER] [SEED] [NAME ...]
 
 NUMBER changes of units (default 40) of each acceptance problem. In each the path is traced and proved; and so is one by
 a careless tracer, which measures steps as the first continuation codes did, by |du| / (1 + |u|), and is content with
 whatever point its corrector finds: in these units it jumps and steps over folds. Which of its steps did so is told by
 the path in the problem's own units, traced carefully. A complete proof of such a path is a fault.
 """
-
-from __future__ import annotations
 
 import sys
 from collections import Counter
@@ -116,23 +114,26 @@ def carried(points: Any, tangents: Any, lengths: Any, events: list[LocatedEvent]
 def faults(path: Path, units: Rescaled, reference: Path) -> tuple[bool, int]:
     """Whether a path in these units jumped, or left the careful one; and how many turns up to there it missed.
 
-    Steps beyond the end of the careful path are not judged.
+    Steps beyond the end of the careful path are not judged; where it closes they go round it again.
     """
     fine = np.unique(np.concatenate([np.linspace(a, b, FINE) for a, b in pairwise(reference.arclength.tolist())]))
     extent = extent_of(reference)
     dense = reference(fine) / extent
+    closed, round_ = reference.status is Status.CLOSED, float(fine[-1])
     before, jumped = 0.0, False
     for step in path.steps[1:]:
         far = np.linalg.norm(dense - units.original(step.u) / extent, axis=1)
         place = int(np.argmin(far))
         # The next point of the way, not the nearest one: ways may close, or come by again.
-        later = np.flatnonzero((fine >= before) & (far <= max(2.0 * far[place], 0.1 * ASTRAY)))
+        ahead = (fine - before) % round_ if closed else fine - before
+        near = far <= max(2.0 * far[place], 0.1 * ASTRAY)
+        later = ahead[near & (ahead >= -1e-12 * round_) & (ahead < (0.5 * round_ if closed else np.inf))]
         if far[place] > ASTRAY and place == len(fine) - 1:
             break
         if far[place] > ASTRAY or not len(later):
             jumped = True
             break
-        before = float(fine[later[0]])
+        before += max(float(later.min()), 0.0)
     turns = [e.u / extent for e in reference.turning_points if e.arclength < before - ASTRAY * fine[-1]]
     found = [units.original(e.u) / extent for e in path.turning_points]
     missed = sum(all(np.linalg.norm(a - b) > ASTRAY for b in found) for a in turns)
@@ -159,8 +160,9 @@ def campaign(name: str, number: int, seed: int = 0) -> Counter:
 
 
 if __name__ == "__main__":
-    asked = int(sys.argv[1]) if len(sys.argv) > 1 else 40
-    for which in sys.argv[2:] or PROBLEMS:
+    numbers = [int(text) for text in sys.argv[1:] if text.isdigit()]
+    asked, first = numbers + [40, 0][len(numbers) :]
+    for which in [text for text in sys.argv[1:] if not text.isdigit()] or PROBLEMS:
         for part in range(-(-asked // 5)):
-            told = campaign(which, min(5, asked - 5 * part), part)
-            print(which, part, {" / ".join(key): value for key, value in sorted(told.items())}, flush=True)
+            told = campaign(which, min(5, asked - 5 * part), first + part)
+            print(which, first + part, {" / ".join(key): value for key, value in sorted(told.items())}, flush=True)

@@ -1,12 +1,10 @@
-"""Large games, traffic, and random problems that are neither monotone nor P, beside quantecon where it has a method.
+"""Large games, traffic, random problems that are neither monotone nor P, indefinite programs in boxes; and quantecon.
 
     OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/hard.py [TABLE ...] [--seeds K] [--size F] [--patience P]
 
 Times are processor seconds, and so are the limits: a search has P times as many of the clock, for a machine that has
 other work too.
 """
-
-from __future__ import annotations
 
 import argparse
 import sys
@@ -80,7 +78,8 @@ def games(seeds: int, size: float, patience: float) -> None:
                     theory.lemke_howson(one, max_iter=2)
                     (_, said), taken = seconds(theory.lemke_howson, one, max_iter=200_000, full_output=True)
                     theirs += [taken] if said.converged else []
-            print(f"{kind}, n = {2 * m}: {told(ours, seeds)}; quantecon {told(theirs, seeds)}", flush=True)
+            beside = f"; quantecon {told(theirs, seeds)}" if theory is not None else ""
+            print(f"{kind}, n = {2 * m}: {told(ours, seeds)}{beside}", flush=True)
 
 
 def told(times: list[float], seeds: int) -> str:
@@ -153,7 +152,24 @@ def nonmonotone(seeds: int, size: float, patience: float) -> None:
         print(f"{name}: {told(times, seeds)} (limit {limit:.0f} s)", flush=True)
 
 
-TABLES = {"games": games, "traffic": streets, "nonmonotone": nonmonotone}
+def boxes(seeds: int, size: float, patience: float) -> None:
+    """Min x'Qx/2 + c'x over 0 <= x <= 1, half of Q zero, integers up to 50: with bounds, and as LCPs."""
+    for order in (20, 50, 100):
+        n = max(int(size * order), 2)
+        times: dict[str, list[float]] = {"with bounds": [], "as an LCP": []}
+        for seed in range(seeds):
+            r = np.random.default_rng([981, order, seed])
+            Q = np.triu(r.integers(-50, 51, (n, n)) * (r.random((n, n)) < 0.5)).astype(float)
+            Q, c, one = Q + np.triu(Q, 1).T, r.integers(-50, 51, n).astype(float), np.eye(n)
+            plain = LCP(np.block([[Q, one], [-one, 0.0 * one]]), np.append(c, np.ones(n)))
+            for kind, problem in zip(times, (lcp.from_qp(Q, c, lower=0.0, upper=1.0), plain)):
+                found, taken = seconds(lcp.solve, problem, budget=Budget(seconds=5.0 * patience))
+                times[kind] += [taken] if found.solved and taken <= 5.0 else []
+        for kind, solved in times.items():
+            print(f"box, n = {n}, {kind}: {told(solved, seeds)} (limit 5 s)", flush=True)
+
+
+TABLES = {"games": games, "traffic": streets, "nonmonotone": nonmonotone, "boxes": boxes}
 
 
 def main() -> None:

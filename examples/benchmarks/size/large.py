@@ -6,8 +6,6 @@ Each solve has a process of its own, and they take turns; the least processor ti
 process held, with Python, numpy and the problem itself.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os
@@ -22,19 +20,13 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
+sys.path.insert(0, str(File(__file__).parents[1] / "lcp"))
+from generators import obstacle_2d
+
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
 
 HERE = str(File(__file__).resolve().parents[3])
-
-
-def obstacle(m: int) -> LCP:
-    """A membrane over a bump, m x m points."""
-    T = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(m, m), dtype=float)
-    eye, t = sp.eye_array(m, dtype=float), np.arange(1, m + 1) / (m + 1)
-    A = sp.csr_array((sp.kron(T, eye) + sp.kron(eye, T)) * (m + 1.0) ** 2)
-    X, Y = np.meshgrid(t, t)
-    return LCP(A, A @ (0.3 - 3.0 * ((X - 0.5) ** 2 + (Y - 0.5) ** 2)).ravel() + 5.0)
 
 
 def torsion(m: int) -> MixedLCP:
@@ -71,7 +63,7 @@ def put(m: int) -> LCP:
     return LCP(A[inner][:, inner], (A @ payoff - weight.ravel() / step * payoff)[inner])
 
 
-ROWS = {"obstacle": obstacle, "torsion": torsion, "put": put}
+ROWS = {"obstacle": obstacle_2d, "torsion": torsion, "put": put}
 
 
 def by_cvxopt(problem: MixedLCP) -> np.ndarray:

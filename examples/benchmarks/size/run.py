@@ -5,8 +5,6 @@
 quantecon (numba) is compared with where it is installed. Times are processor seconds.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Callable

@@ -6,8 +6,6 @@ The versions take turns in processes of their own, so that a machine with other 
 counts. Calls of functions, Python's and numpy's, are counted exactly, whatever else runs.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

@@ -81,8 +81,10 @@ def main(points=1000, repetitions=3):
     found = [event for event in path.events if event.kind == continuation.Kind.HOPF]
     for mode, event in enumerate(found, start=1):
         B, frequency = uniform.hopf(mode)
-        print(f"uniform state, mode {mode}: B = {event.lam:.12f}, off by {abs(event.lam - B):.0e}, "
-              f"frequency off by {abs(event.observed['frequency'] - frequency):.0e}")
+        print(
+            f"uniform state, mode {mode}: B = {event.lam:.12f}, off by {abs(event.lam - B):.0e}, "
+            f"frequency off by {abs(event.observed['frequency'] - frequency):.0e}"
+        )
 
 
 def compare(brusselator, repetitions, max_step):
@@ -94,9 +96,11 @@ def compare(brusselator, repetitions, max_step):
         path, seconds = traced(brusselator, max_step=max_step, observers=[continuation.Stability()])
         watched.append(seconds)
     hopf = sum(event.kind == continuation.Kind.HOPF for event in path.events)
-    print(f"N = {2 * brusselator.points}: {len(path)} points, {hopf} Hopf points, {min(alone):.2f} s, with stability "
-          f"{min(watched):.2f} s, {min(watched) / min(alone):.2f} times as much; {plain.counts.factorizations} and "
-          f"{path.counts.factorizations} factorisations, {plain.counts.solves} and {path.counts.solves} solves")
+    print(
+        f"N = {2 * brusselator.points}: {len(path)} points, {hopf} Hopf points, {min(alone):.2f} s, with stability "
+        f"{min(watched):.2f} s, {min(watched) / min(alone):.2f} times as much; {plain.counts.factorizations} and "
+        f"{path.counts.factorizations} factorisations, {plain.counts.solves} and {path.counts.solves} solves"
+    )
 
 
 if __name__ == "__main__":

@@ -5,8 +5,6 @@
 lam = g(y) - a s((y - y0) / w) for y from 0 to 1, with a smooth step s of width w, on a straight and on a curved path.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import Counter
 from collections.abc import Callable

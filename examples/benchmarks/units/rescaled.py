@@ -1,7 +1,5 @@
 """A homotopy in other units: E H((y - c) / D, (lam - b) / a), with positive D, E and a."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -6,8 +6,6 @@ NUMBER changes of units (default 200) y -> D y + c, lam -> a lam + b, H -> E H f
 agrees if it lies within 1e-8 of the path's extent, by component, from that of the path in its own units.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from pathlib import Path as File

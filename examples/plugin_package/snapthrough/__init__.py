@@ -1,7 +1,5 @@
 """Snap-through of von Mises' truss, as a homotopy for `continuation`."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import numpy as np

@@ -33,8 +33,7 @@ CONTINUUM_FOLD_2D = 6.8081244226
 
 def parameter_1d(theta: Array) -> Array:
     """The lam of the continuum's solution `theta`, from th = sqrt(2 lam) cosh(th/4)."""
-    lam: Array = 0.5 * (theta / np.cosh(0.25 * theta)) ** 2
-    return lam
+    return 0.5 * (theta / np.cosh(0.25 * theta)) ** 2
 
 
 def solution_1d(x: Array, theta: float) -> Array:

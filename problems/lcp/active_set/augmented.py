@@ -44,10 +44,10 @@ WEIGHT, MOST_WEIGHT = 10.0, 1e7
 BELOW = 1.1
 """The proximal term of a function that is not convex, over what makes it so."""
 
-NEWTON_STEPS = 100
+STEPS_PER_CHANGE = 100
 """For one change of the multipliers, of which"""
 
-ROUNDS = 100
+MULTIPLIER_CHANGES = 100
 """so many are made."""
 
 
@@ -178,7 +178,7 @@ def guesses(
     sigma = np.clip(sigma, LEAST_PENALTY, MOST_PENALTY)
     weight = WEIGHT if below <= 0.0 else 1.0 / (BELOW * below)
     accurate, centre, before = 1.0, x, np.full(m + n, np.inf)
-    for _ in range(ROUNDS):
+    for _ in range(MULTIPLIER_CHANGES):
         one = Penalised(saddle, low, high, sigma, weight)
         found = _minimised(one, x, y, centre, accurate, counts, factoring)
         if found is None:
@@ -205,7 +205,7 @@ def _minimised(
     """The minimum by Newton's method, and the shifted values there; None where a factorisation fails."""
     saddle, pieces = one.saddle, b""
     factor = None
-    for _ in range(NEWTON_STEPS):
+    for _ in range(STEPS_PER_CHANGE):
         t = one.values(x) + y / one.sigma
         force = one.sigma * (t - np.clip(t, one.low, one.high))
         smooth = saddle.P @ x + saddle.c

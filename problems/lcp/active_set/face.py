@@ -38,7 +38,7 @@ SINGULAR_SHIFT = 1e-8
 The root of the machine precision: a smaller shift loses more digits to rounding, a larger one needs more corrections.
 """
 
-KEPT = 8
+FACES_KEPT = 8
 """Faces whose factors are kept for the next q: what moves to and fro goes through a few."""
 
 SHIFTED_CORRECTIONS = 4
@@ -122,7 +122,7 @@ class Faces:
     current : MixedLCP, optional
         The problem, where it has another q than that of the structure.
     kept : dict, optional
-        Where the last `KEPT` faces stay, by their active sets, for other q.
+        Where the last `FACES_KEPT` faces stay, by their active sets, for other q.
     factoring : Factoring
         Of sparse equations.
     """
@@ -157,7 +157,7 @@ class Faces:
         if face is None:
             return None
         self.kept[key] = face
-        if len(self.kept) > KEPT:
+        if len(self.kept) > FACES_KEPT:
             self.kept.pop(next(iter(self.kept)))
         same = face.problem is self.problem
         return face if same else evolve(face, problem=self.problem, q=self.problem.q)
@@ -197,9 +197,10 @@ class Faces:
         definite = symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
-        if regular:
+        # A shift of a block of zeros would have to have units.
+        if regular or not (norm := _norm(block)):
             return None, False
-        block[np.diag_indices(len(block))] += SINGULAR_SHIFT * max(_norm(block), 1e-300)
+        block[np.diag_indices(len(block))] += SINGULAR_SHIFT * norm
         return (_cholesky if definite else _lu)(block), False
 
     def _sparse(self, block: Matrix, shift: float) -> tuple[Factored | None, bool]:
@@ -210,7 +211,8 @@ class Faces:
         factor = self.factoring.factor(block) if full else None
         if factor is not None:
             return factor, True
-        return self.factoring.factor(sp.csc_array(block + SINGULAR_SHIFT * max(_norm(block), 1e-300) * eye)), False
+        norm = _norm(block)
+        return self.factoring.factor(sp.csc_array(block + SINGULAR_SHIFT * norm * eye)) if norm else None, False
 
     def _banded(self, active: Mask, shift: float) -> Callable[[Array], Array] | None:
         """In the band of the whole matrix, with unit rows off the face: no index is moved."""

@@ -24,7 +24,7 @@ Each gains the digits that the condition of the face leaves (Higham, section 12.
 WORTH_MORE = 0.1
 """A correction that gains less than a digit is not followed by another: what it leaves is no rounding."""
 
-PATIENCE = 3
+CORRECTIONS_WITHOUT_GAIN = 3
 """So many corrections in a row that do not bring the number of changed indices to a new low are cycling.
 
 On 80 planted problems of five kinds (n = 20, 40) 2, 5, 10, infinity: 5,210, 5,338, 5,529, 5,989 factorisations where

@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, Matrix
 from continuation.counts import Counts
 from continuation.linear.factoring import Factoring
-from continuation.linear.look import ROUNDING
+from continuation.linear.look import SYMMETRY_ROUNDING
 from problems.lcp.active_set.face import Faces, Mask
 from problems.lcp.active_set.iteration import Policy, iterate
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
-SMALL = 200
+COARSEST_ORDER = 200
 """A problem of this order is not made coarser: its faces cost less than the interpolation."""
 
-COARSEST = Policy(steps=SMALL - 1)
+COARSEST = Policy(steps=COARSEST_ORDER - 1)
 """There: for an M-matrix each step from x = 0 enlarges the active set until it is right, so this is enough."""
 
-SLOW = 0.8
+LEAST_COARSENING = 0.8
 """Coarsening that keeps more than this share of the unknowns, where a grid keeps half of them, is given up."""
 
 ELSEWHERE = Policy(steps=1)
@@ -37,7 +37,7 @@ two of the finest, of which one of each leaves three."""
 UNGUESSED = Policy(steps=11)
 """Where coarsening was given up, and nothing is known."""
 
-SWEEPS, DAMPING = 3, 0.8
+JACOBI_SWEEPS, DAMPING = 3, 0.8
 """Of the damped Jacobi method, projected, on what was interpolated: it is wrong by a few lines about the boundary of
 the contact set, and so they mend. Each level solved, 316 x 316 points need 3 faces without sweeps, 2 with 2 or 5."""
 
@@ -54,7 +54,7 @@ def suitable(structure: Structure) -> bool:
     `structure`: Of the problem.
     """
     problem = structure.problem
-    if not problem.sparse or problem.n <= SMALL or (problem.A.diagonal() <= 0.0).any():
+    if not problem.sparse or problem.n <= COARSEST_ORDER or (problem.A.diagonal() <= 0.0).any():
         return False
     few = int(np.count_nonzero(problem.A.data > 0.0)) <= 1.5 * problem.n
     return few and (problem.standard or structure.ranges is None)
@@ -81,15 +81,15 @@ def guess(problem: MixedLCP, factoring: Factoring, counts: Counts) -> State:
 
 def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -> tuple[State, Policy]:
     """The pieces that the next coarser problem says, and how long they are corrected."""
-    P, kept = (None, None) if problem.n <= SMALL else _interpolation(problem.A, d)
-    if P is None or P.shape[1] > SLOW * problem.n:
+    P, kept = (None, None) if problem.n <= COARSEST_ORDER else _interpolation(problem.A, d)
+    if P is None or P.shape[1] > LEAST_COARSENING * problem.n:
         return _states(problem, problem.near_zero), COARSEST if P is None else UNGUESSED
     A, q = sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q
     coarse = LCP(A, q) if problem.standard else MixedLCP(A, q, problem.lower[kept], problem.upper[kept])
     state, policy = _interpolated(coarse, d[kept], factoring, counts)
     found = iterate(Faces(Structure(coarse), factoring=factoring), state, policy, counts=counts)
     x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
-    for _ in range(SWEEPS):
+    for _ in range(JACOBI_SWEEPS):
         x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
     return _states(problem, x), ELSEWHERE
 
@@ -105,7 +105,7 @@ def _smooth(A: Matrix) -> Array:
     d, diagonal = np.ones(A.shape[0]), A.diagonal()
     for _ in range(SMOOTHINGS):
         off = (A @ d) / diagonal
-        if (off >= -ROUNDING * d).all():
+        if (off >= -SYMMETRY_ROUNDING * d).all():
             break
         d = np.maximum(d - DAMPING * off, 0.1 * d)
     return d

@@ -6,7 +6,7 @@ import numpy as np
 
 from problems.lcp.data.problem import MixedLCP, State
 
-STEPS = 12
+PROJECTED_STEPS = 12
 """Each costs one product with A, a tenth of a correction of the active set at n = 300.
 
 Of random programs in a box (rank n/2, definite, condition 1e6) those corrections are 10, 6 and 12 from x = 0, 5, 5 and
@@ -32,7 +32,7 @@ def projected_state(problem: MixedLCP) -> State:
     down = inverse * w
     length = _ratio(float(down @ w), float(down @ (problem.A @ down)))
     state = problem.states(x, length * down)
-    for _ in range(STEPS):
+    for _ in range(PROJECTED_STEPS):
         following = problem.clipped(x - length * down)
         moved, before = following - x, w
         x, w = following, problem.w(following)

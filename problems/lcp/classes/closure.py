@@ -23,7 +23,7 @@ N_BAR_EXACT = "by analogy with Neogy and Das 2005: the limit of N-matrices of ex
 
 Signature = tuple[int, ...]
 
-TRIALS = 400
+PERTURBATIONS = 400
 """Perturbations tried, from a fixed seed, before the answer is `not decided`."""
 
 
@@ -68,7 +68,8 @@ def _limit(matrix: ExactMatrix, name: str, last: int, cited: str) -> Membership:
     found = _perturbation(matrix, last, signature)
     if found is None:
         sentence = (
-            f"the minors have the weak signs that a limit needs, but none of {TRIALS} perturbations shows a sequence"
+            "the minors have the weak signs that a limit needs, "
+            f"but none of {PERTURBATIONS} perturbations shows a sequence"
         )
         return Membership(name, None, Evidence(sentence), cited)
     first, second = found
@@ -104,7 +105,7 @@ def _perturbation(matrix: ExactMatrix, last: int, signature: Signature | None) -
     def direction() -> Rows:
         return tuple(tuple(entry(i, j) for j in range(n)) for i in range(n))
 
-    pairs = ((direction(), direction()) for _ in range(TRIALS))
+    pairs = ((direction(), direction()) for _ in range(PERTURBATIONS))
     return next((pair for pair in pairs if _strict_nearby(matrix, *pair, last)), None)
 
 

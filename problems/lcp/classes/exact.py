@@ -137,28 +137,6 @@ def index_sets(n: int) -> Iterator[int]:
     return iter(sorted(range(1, 1 << n), key=lambda mask: (mask.bit_count(), mask)))
 
 
-def determinant(rows: Sequence[IntRow]) -> int:
-    """The determinant of an integer matrix, by fraction-free elimination.
-
-    References
-    ----------
-    Bareiss, Mathematics of Computation 22 (1968) 565-578.
-    """
-    work = [list(row) for row in rows]
-    n, sign, previous = len(work), 1, 1
-    for k in range(n - 1):
-        pivot = next((i for i in range(k, n) if work[i][k]), None)
-        if pivot is None:
-            return 0
-        if pivot != k:
-            work[k], work[pivot], sign = work[pivot], work[k], -sign
-        for i in range(k + 1, n):
-            head, row, top = work[i][k], work[i], work[k]
-            work[i] = [(top[k] * row[j] - head * top[j]) // previous for j in range(n)]
-        previous = work[k][k]
-    return sign * work[-1][-1] if n else 1
-
-
 def principal_minors(rows: Sequence[IntRow]) -> list[int]:
     """All 2^n principal minors of an integer matrix, by Schur complements that the index sets share.
 

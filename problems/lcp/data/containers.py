@@ -24,7 +24,7 @@ from problems.lcp.data.matlab import read_level5
 ALONE = ""
 """The name of the array in a file that holds one array without a name."""
 
-LIMIT = 1 << 32
+FILE_BYTES = 1 << 32
 """Bytes that a compressed file may unfold to; one that is not compressed is as large as it is."""
 
 BOUNDS = ("lower", "upper")
@@ -41,8 +41,8 @@ def _claims(size: int, file: str) -> None:
 
     Raises `ValueError` if they are more.
     """
-    if size > max(LIMIT, Path(file).stat().st_size):
-        raise ValueError(f"it claims {size} bytes, expected at most {LIMIT} where a file is compressed")
+    if size > max(FILE_BYTES, Path(file).stat().st_size):
+        raise ValueError(f"it claims {size} bytes, expected at most {FILE_BYTES} where a file is compressed")
 
 
 def _npz(file: str) -> Mapping[str, Any]:
@@ -84,7 +84,7 @@ def _named_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 def _mat(file: str) -> Mapping[str, Any]:
     raw = Path(file).read_bytes()
     if 0 not in raw[:4]:
-        return read_level5(raw, LIMIT)
+        return read_level5(raw, FILE_BYTES)
     # Level 4, which begins with small numbers.
     try:
         with warnings.catch_warnings(action="error"):
@@ -141,8 +141,8 @@ def _from_hdf5(group: Any, name: str) -> Matrix:
     """A dataset, or the parts of a compressed sparse matrix in a group."""
     node = member(group, name)
     if isinstance(node, h5py.Dataset):
-        return dataset(group, name, None, None, LIMIT)[()]
-    parts = [dataset(node, part, None, (None,), LIMIT)[()] for part in ("data", "indices", "indptr")]
+        return dataset(group, name, None, None, FILE_BYTES)[()]
+    parts = [dataset(node, part, None, (None,), FILE_BYTES)[()] for part in ("data", "indices", "indptr")]
     shape = tuple(int(n) for n in (dataset(node, "shape", None, (2,))[()] if "shape" in node else node.attrs["shape"]))
     return sp.csr_array((parts[0], parts[1], parts[2]), shape=shape)
 

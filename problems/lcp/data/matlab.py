@@ -31,17 +31,8 @@ Elements = Iterator[tuple[int, memoryview]]
 def read_level5(raw: bytes, limit: int) -> Mapping[str, Any]:
     """The variables of a file by name; of what is no real matrix a word for what it is.
 
-    Parameters
-    ----------
-    raw : bytes
-        The file.
-    limit : int
-        Bytes that all its compressed variables may unfold to.
-
-    Raises
-    ------
-    ValueError
-        If it is of another level, or damaged.
+    `raw`: The file. `limit`: Bytes that all its compressed variables may unfold to. Raises `ValueError` if it is of
+    another level, or damaged.
     """
     order = {b"IM": "<", b"MI": ">"}.get(raw[126:_HEAD])
     if order is None or struct.unpack(order + "H", raw[124:126])[0] != 0x100:

@@ -54,11 +54,7 @@ def entry_facts(structure: Structure) -> MatrixFacts:
 def matrix_facts(structure: Structure, entries: MatrixFacts | None = None) -> MatrixFacts:
     """The same, and one Cholesky factorisation if A is dense with a nonnegative diagonal.
 
-    Parameters
-    ----------
-    structure : Structure
-    entries : MatrixFacts, optional
-        What `entry_facts` said, where it was asked before.
+    `entries`: What `entry_facts` said, where it was asked before.
     """
     known = entry_facts(structure) if entries is None else entries
     return evolve(known, semidefinite=structure.semidefinite)

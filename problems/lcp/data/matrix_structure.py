@@ -39,10 +39,7 @@ LARGEST_SYMMETRIC_PART = 1000
 
 
 def semidefinite(symmetric: Array) -> bool:
-    """Whether a symmetric matrix is positive semidefinite, to working precision: one Cholesky factorisation.
-
-    `symmetric` of shape (n, n).
-    """
+    """Whether a symmetric matrix is positive semidefinite, to working precision: one Cholesky factorisation."""
     diagonal, n = symmetric.diagonal(), len(symmetric)
     if (diagonal < 0.0).any():
         return False
@@ -177,14 +174,12 @@ class Structure:
         diagonal = self.symmetrized.diagonal()
         if (diagonal < 0.0).any():
             return False
-        if self.problem.sparse and not self.problem.standard and self._few_in_symmetric_part():
-            return self.definite_where_it_has_entries()
         if self.problem.sparse:
+            few = int((np.diff(self.symmetrized.indptr) > 0).sum()) <= LARGEST_SYMMETRIC_PART
+            if few and not self.problem.standard:
+                return self.definite_where_it_has_entries()
             return bool((2.0 * diagonal >= np.asarray(abs(self.symmetrized).sum(axis=1))).all())
         return semidefinite(self.symmetrized)
-
-    def _few_in_symmetric_part(self) -> bool:
-        return int((np.diff(self.symmetrized.indptr) > 0).sum()) <= LARGEST_SYMMETRIC_PART
 
     def definite_where_it_has_entries(self) -> bool:
         """Whether the symmetric part of a sparse A is semidefinite, by a dense factorisation of its rows with entries.

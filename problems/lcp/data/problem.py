@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import struct
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -269,8 +269,12 @@ def active_state(active: NDArray[np.bool_]) -> State:
 
 
 def _stated(low: NDArray[np.bool_], high: NDArray[np.bool_]) -> State:
-    state: State = np.where(low, LOWER, np.where(high, UPPER, BETWEEN))
-    return state
+    return np.where(low, LOWER, np.where(high, UPPER, BETWEEN))
+
+
+@lru_cache(maxsize=64)
+def _all(value: bytes, n: int) -> Array:
+    return np.ndarray(n, buffer=value, strides=(0,))
 
 
 _ZERO, _INFINITY = struct.pack("d", 0.0), struct.pack("d", math.inf)
@@ -298,8 +302,8 @@ class LCP(MixedLCP):
     """
 
     # Views of one number each: an LCP carries no bounds.
-    lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_ZERO, self.q), takes_self=True))
-    upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_INFINITY, self.q), takes_self=True))
+    lower: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_ZERO, self.n), takes_self=True))
+    upper: Array = field(init=False, repr=False, default=Factory(lambda self: _all(_INFINITY, self.n), takes_self=True))
 
     def __attrs_post_init__(self) -> None:
         """Nothing to check."""
@@ -322,10 +326,6 @@ class LCP(MixedLCP):
         if "units" in self.known:
             other.known["units"] = self.known["units"]
         return other
-
-
-def _all(value: bytes, q: Array) -> Array:
-    return np.ndarray(q.shape, buffer=value, strides=(0,))
 
 
 def require_lcp(problem: Any) -> None:

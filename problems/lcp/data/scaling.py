@@ -25,14 +25,14 @@ Exponents = NDArray[np.int64]
 RUIZ = 8
 """Sweeps of Ruiz's iteration: each takes the root of what the largest entries of rows and columns are off."""
 
-SWEEPS = 30
+GRADIENT_STEPS = 30
 """Of conjugate gradients. A full matrix needs one, sparse random ones about ten; on long chains what is then still
 missing is smooth, a common unit of neighbours, and changes no entry of the scaled matrix."""
 
-ACCURACY = 1e-6
+LOGARITHM_TOLERANCE = 1e-6
 """Of the logarithms: far below the 1/2 at which rounding decides."""
 
-SMALLEST = -1021
+LEAST_EXPONENT = -1021
 """Base-2 logarithm below which a float has fewer digits, so that scaling may round it."""
 
 HALVES = 1e-3
@@ -104,7 +104,7 @@ def balanced(problem: MixedLCP) -> Scaled | None:
         scaled = MixedLCP(A, q, *bounds, primal=problem.primal)
     # Whatever the units, the same problem comes out: of the balanced one it is the problem itself.
     scaled.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
-    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > SMALLEST)
+    return Scaled(scaled, rows, columns, exact=_smallest(problem, rows, columns) > LEAST_EXPONENT)
 
 
 def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
@@ -112,8 +112,7 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
 
     They can where the largest entries of rows and columns are alike, but for that factor, and it rounds nothing. Within
     the range of products a factor that is a power of two changes nothing of what active sets and pivots do.
-
-    `problem`: Without bounds. Returns Scaled or None: None where s = 1.
+    The problem has no bounds; None stands for s = 1.
     """
     if not alike(problem):
         return None, False
@@ -122,7 +121,7 @@ def without_far_factor(problem: MixedLCP) -> tuple[Scaled | None, bool]:
         return None, True
     rows, columns = np.full(problem.n, 1 - int(np.frexp(most)[1])), np.zeros(problem.n, dtype=np.int64)
     q = _times(problem.q, rows)
-    if not np.isfinite(q).all() or not _smallest(problem, rows, columns) > SMALLEST:
+    if not np.isfinite(q).all() or not _smallest(problem, rows, columns) > LEAST_EXPONENT:
         return None, False
     scaled = LCP(_scaled(problem.A, rows, columns), q, primal=problem.primal)
     return Scaled(scaled, rows, columns, exact=True), True
@@ -200,9 +199,9 @@ def _least_squares(logs: Any, weights: Any) -> tuple[Array, Array]:
     c = np.zeros(ones.size)
     residual = weights.T @ (row_sums / in_row) - column_sums
     direction, last = c, 1.0
-    for _ in range(SWEEPS):
+    for _ in range(GRADIENT_STEPS):
         preconditioned = residual / in_column
-        if np.abs(preconditioned).max() <= ACCURACY:
+        if np.abs(preconditioned).max() <= LOGARITHM_TOLERANCE:
             break
         product = float(residual @ preconditioned)
         direction = preconditioned + (product / last) * direction
@@ -256,8 +255,7 @@ def _parts(pattern: Any) -> tuple[NDArray[Any], NDArray[Any]]:
 
 def _rounded(values: Array) -> Array:
     """To the nearest integers; halves, which small integers in A make common, always upwards whatever their noise."""
-    rounded: Array = np.floor(values + (0.5 + HALVES))
-    return rounded
+    return np.floor(values + (0.5 + HALVES))
 
 
 def _fractions(values: Array, parts: NDArray[Any], number: int) -> Array:

@@ -15,13 +15,13 @@ LEVELLED = 16.0
 """Where the largest entries of all rows and columns are within this factor of another, and of 1, a problem with bounds
 stays as it is. Finding units and changing to them takes longer than solving it then (n = 1000: 0.25 of 0.45 s)."""
 
-ALIKE = 256.0
+UNIT_SPREAD = 256.0
 """Where they are within this factor of another, active sets and pivots are tried on an LCP as it is. Finding units
 takes longer than that (monotone LCPs, n = 60: 0.5 of 1.3 ms), and two digits more or fewer decide nothing there; arches
 of five stones have 50."""
 
 
-SMALL = 100
+ARRAY_ORDER = 100
 """Up to this order an array of the magnitudes costs less than the calls that do without; at n = 300 it is most of the
 time."""
 
@@ -33,9 +33,9 @@ def level(problem: MixedLCP) -> bool:
 
 
 def alike(problem: MixedLCP) -> bool:
-    """Whether the largest entries of all rows and columns are within `ALIKE` of another."""
+    """Whether the largest entries of all rows and columns are within `UNIT_SPREAD` of another."""
     least, most = largest_entries(problem)
-    return 0.0 < most <= ALIKE * least
+    return 0.0 < most <= UNIT_SPREAD * least
 
 
 def largest_entries(problem: MixedLCP) -> tuple[float, float]:
@@ -51,7 +51,7 @@ def _found_entries(problem: MixedLCP) -> tuple[float, float]:
         entries, both = np.abs(problem.A.data), np.zeros(2 * problem.n)
         np.maximum.at(both, np.repeat(np.arange(problem.n), np.diff(problem.A.indptr)), entries)
         np.maximum.at(both, problem.n + problem.A.indices, entries)
-    elif problem.n <= SMALL:
+    elif problem.n <= ARRAY_ORDER:
         sizes = np.abs(problem.A)
         both = np.concatenate([np.maximum.reduce(sizes, 0), np.maximum.reduce(sizes, 1)])
     else:

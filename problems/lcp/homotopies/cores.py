@@ -22,7 +22,7 @@ CORE_REFINEMENTS = 4
 CONVERGED = 1e-9
 """Relative size of a correction, component by component, after which the next would be below 1e-12 (`UNRELIABLE`)."""
 
-RESOLVED = 1e-6
+SMALL_COMPONENT = 1e-6
 """A component smaller than this, of the largest one in the units of the point, need not have relative accuracy.
 
 What it does to the point is a millionth of what the step does.
@@ -90,8 +90,7 @@ class Pairs:
 
     def partner(self, k: Array, r: Array, l: float) -> Array:
         """P alone."""
-        p: Array = self.b * k + self.f * (r + self.c * l)
-        return p
+        return self.b * k + self.f * (r + self.c * l)
 
 
 @_silently
@@ -259,7 +258,7 @@ class CoreSystem:
         size = float(np.abs(z / units).max())
         if size == 0.0:
             return 0.0, 0.0
-        relative = np.abs(correction) / (np.abs(z) + (RESOLVED * size) * units)
+        relative = np.abs(correction) / (np.abs(z) + (SMALL_COMPONENT * size) * units)
         return float(relative.max()), float(np.abs(correction / units).max()) / size
 
 

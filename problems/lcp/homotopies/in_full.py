@@ -14,10 +14,7 @@ from problems.lcp.homotopies.pair_system import PairSystem
 
 
 def kkt_in_full(s: KKTSystem) -> tuple[Matrix, Array]:
-    """(H_y, H_lam) of the KKT homotopy, sparse as A is.
-
-    `s`: The system at a point.
-    """
+    """(H_y, H_lam) of the KKT homotopy from its system at a point, sparse as A is."""
     column = np.concatenate([s.column, -s.c1, s.factor * s.rho - s.c2, -s.c3])
     return (_sparse_kkt(s) if s.structure.problem.sparse else _dense_kkt(s)), column
 
@@ -55,10 +52,7 @@ def _sparse_kkt(s: KKTSystem) -> Matrix:
 
 
 def pairs_in_full(s: PairSystem) -> tuple[Matrix, Array]:
-    """The same of a homotopy in (x, y).
-
-    `s`: The system at a point.
-    """
+    """The same of a homotopy in (x, y)."""
     column = np.concatenate([s.blend.sign * s.column, -s.c])
     return (_sparse_pairs(s) if s.structure.problem.sparse else _dense_pairs(s)), column
 

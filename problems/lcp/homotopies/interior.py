@@ -14,7 +14,7 @@ from problems.lcp.data.problem import MixedLCP
 LARGEST_FALL = 1e-3
 """A component counts at least as this share of its size one step before, so that an end at zero has a metric too."""
 
-TINY = 1e-150
+INVERTIBLE = 1e-150
 """Sizes below this count as this: its square can still be inverted."""
 
 
@@ -38,12 +38,12 @@ class RelativeMetric:
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """1/(N u_i^2), and `lam` for the parameter."""
         n = u.size - 1
-        size = np.maximum(np.abs(u), TINY)
+        size = np.maximum(np.abs(u), INVERTIBLE)
         if self.lower is not None and self.upper is not None:
             x = u[: self.lower.size]
             distance = np.minimum(x - self.lower, self.upper - x)
             relative = np.where(np.isfinite(distance), np.abs(distance), np.maximum(np.abs(x), self.unit))
-            size[: self.lower.size] = np.maximum(relative, TINY)
+            size[: self.lower.size] = np.maximum(relative, INVERTIBLE)
         if current is not None:
             # The size one step before is 1 / sqrt(n current).
             np.maximum(size, LARGEST_FALL / np.sqrt(n * current), out=size)
@@ -57,8 +57,7 @@ class OwnMetric:
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
         """`own_metric`, of the class the metric of an LCP."""
-        metric: RelativeMetric = RelativeMetric() if homotopy is None else homotopy.own_metric
-        return metric
+        return RelativeMetric() if homotopy is None else homotopy.own_metric
 
 
 def longest_step(value: Array, direction: Array) -> float:

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.certificate.form import Quadratic
@@ -94,6 +94,7 @@ class KKTHomotopy:
     target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (DUTTA_DAS_JANA,)
     metric: ClassVar[OwnMetric] = OwnMetric()
+    _recent: Recent[KKTSystem] = field(factory=Recent, init=False, repr=False)
 
     def __init__(
         self,
@@ -154,8 +155,7 @@ class KKTHomotopy:
         rows = self.rows
         if self.problem.standard:
             return self.origin.z2 * self.origin.w0
-        products: Array = self.origin.z2 * rows.raised(rows.sides.force(self.origin.w0), self.t0)
-        return products
+        return self.origin.z2 * rows.raised(rows.sides.force(self.origin.w0), self.t0)
 
     @cached_property
     def c3(self) -> Array:
@@ -258,10 +258,6 @@ class KKTHomotopy:
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """H' v, one shorter than v."""
         return self._recent.at(y, lam, self._system).apply(v)
-
-    @cached_property
-    def _recent(self) -> Recent[KKTSystem]:
-        return Recent()
 
     @quiet
     def taylor(self, point: Linearization, order: int) -> Array:

@@ -9,19 +9,24 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.certificate.form import Affine, Quadratic
 from problems.lcp.data.problem import MixedLCP
-from problems.lcp.proof.certificate import certify_exactly
+from problems.lcp.proof.certificate import certify, certify_exactly
 
-AWAY = 1e-6
+END_DISTANCE = 1e-6
 """How far the exact solution may be from the end of the path, in sizes of x, to be that end."""
+
+NO_SOLUTION = 1e-2
+"""A relative residual above this is not that of a point so near to a solution: rational arithmetic need not say so."""
 
 
 def exact_end(problem: MixedLCP, x: Array) -> str:
     """What is proved of the end x of a path, in rational arithmetic; empty where nothing is."""
+    if certify(problem, x).relative_residual > NO_SOLUTION:
+        return ""
     found = certify_exactly(problem, x)
     if not found.solves:
         return ""
     away = float(np.abs(found.x_rounded - x).max()) / (float(np.abs(x).max()) or 1.0)
-    if not away <= AWAY:
+    if not away <= END_DISTANCE:
         return ""
     return (
         f"The end is a solution by rational arithmetic, {away:.0e} from the stored one; no curve is proved to reach it."
@@ -91,11 +96,11 @@ def pairs_form(homotopy: Any) -> Quadratic:
     lam, last = np.zeros((1, n + count + 1)), np.zeros((count, n + count + 1))
     lam[0, -1] = 1.0
     last[:, -1] = -homotopy.c
-    gap, force = (np.hstack([*parts, np.zeros((count, 1))]) for parts in _pairs(pull, count, n))
+    # The distances from the bounds, and the forces, as matrices of (x, y, lam).
+    gap, force = np.zeros((2, count, n + count + 1))
+    gap[:, :n], force[:, n:-1] = pull, np.eye(count)
     none = np.zeros(count)
-    bounds = (
-        np.zeros(count) if problem.standard else np.concatenate([-problem.lower[sides.low], problem.upper[sides.high]])
-    )
+    bounds = none if problem.standard else np.concatenate([-problem.lower[sides.low], problem.upper[sides.high]])
     sign = float(blend.sign)
     return Quadratic(
         plain=Affine(np.concatenate([sign * problem.q, none]), np.vstack([sign * goal, last])),
@@ -107,11 +112,6 @@ def pairs_form(homotopy: Any) -> Quadratic:
             np.concatenate([terms, none]),
         ),
     )
-
-
-def _pairs(pull: Array, count: int, n: int) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-    """The distances from the bounds, and the forces, as matrices of (x, y)."""
-    return (pull, np.zeros((count, count))), (np.zeros((count, n)), np.eye(count))
 
 
 def _dense(matrix: Any) -> Array:

@@ -66,8 +66,7 @@ class Sides:
 
     def _summed(self, values: Array) -> Array:
         # Times 1.0: of no values numpy counts in integers; and interval arrays are to pass.
-        total: Array = np.multiply(1.0, np.bincount(self.index, values, self.problem.n))
-        return total
+        return np.multiply(1.0, np.bincount(self.index, values, self.problem.n))
 
     def sizes(self, x: Array, unit: float) -> Array:
         """In what an unknown is large or small: its distance from the nearest bound, or itself but at least a unit."""

@@ -19,11 +19,12 @@ from problems.lcp.homotopies.sides import Sides
 from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import finite_vector
 
-FAR = (0.7, 2.5)
+START_DISTANCES = (1.0, 2.5)
 """Ten to a power from this interval is the distance of a random start in natural units.
 
 Measured on random nonmonotone problems (docs/lcp_benchmark.md): paths from so far out solve several times as often as
-those from near starts, unless A >= 0.
+those from near starts, unless A >= 0. Of 70 paths of seven that resist (n = 100) 17 solve from 1 to 1.5 or further, 11
+from 0.5 to 1, 4 from 0 to 0.5, and none from nearer.
 """
 
 LOG_DEVIATION = 0.5
@@ -98,8 +99,24 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 
     One where A or q is zero.
     """
-    squares = problem.A.multiply(problem.A) if problem.sparse else problem.A * problem.A
-    row = float(np.sqrt(np.max(squares.sum(axis=1))))
+    return _units(problem, float(np.sqrt(_row_squares(problem).max())))
+
+
+def typical_units(problem: MixedLCP) -> tuple[float, float]:
+    """The same for a typical row, and x twice as large: one row or column in twice the units changes next to nothing.
+
+    Of 100 paths from random starts of ten Gaussian problems (n = 100) 36 solve with it, 30 with x half as large, 28 by
+    `natural_units`, where rows of 2 to 4 times the length that balancing leaves make x so much smaller.
+    """
+    return _units(problem, 0.5 * float(np.sqrt(_row_squares(problem).mean())))
+
+
+def _row_squares(problem: MixedLCP) -> Array:
+    squares: Array = (problem.A.multiply(problem.A) if problem.sparse else problem.A * problem.A).sum(axis=1)
+    return squares
+
+
+def _units(problem: MixedLCP, row: float) -> tuple[float, float]:
     w = float(np.abs(problem.q).max()) or row or 1.0
     return w / row if 0.0 < row < np.inf else w, w
 
@@ -160,7 +177,9 @@ def relaxed_start(problem: MixedLCP, x0: Array) -> Start:
     return centred(problem, x0, np.where(boxed, _product(gaps, w0) / gaps, w0))
 
 
-def random_start(problem: MixedLCP, generator: np.random.Generator, distance: tuple[float, float] = FAR) -> Start:
+def random_start(
+    problem: MixedLCP, generator: np.random.Generator, distance: tuple[float, float] = START_DISTANCES
+) -> Start:
     """A relaxed start for another try: scale, balance and components random; all products x0 z1 equal, and all w0 z2.
 
     Parameters
@@ -169,14 +188,14 @@ def random_start(problem: MixedLCP, generator: np.random.Generator, distance: tu
     generator : numpy.random.Generator
         Its state decides, so that restarts can be repeated.
     distance : tuple of float
-        The scale is ten to a power from this interval, in natural units.
+        The scale is ten to a power from this interval, in natural units, without bounds in `typical_units`.
     """
     require_problem(problem)
     instance_with("generator", generator, ("uniform", "normal", "standard_normal"), "a numpy.random.Generator")
     ends = finite_vector("distance", distance, 2)
     if not ends[0] < ends[1]:
         raise ValueError(f"distance: expected (least, most), found {distance}")
-    x, w = natural_units(problem)
+    x, w = typical_units(problem) if problem.standard else natural_units(problem)
     scale = 10.0 ** generator.uniform(*distance)
     if not problem.standard:
         return _random_inside(problem, generator, scale * x, scale * w)
@@ -230,16 +249,10 @@ def require_interior(problem: MixedLCP) -> None:
         raise ValueError(f"problem: expected lower < upper, found a fixed unknown {i}; lcp.solve eliminates it")
 
 
-def require_order(problem: LCP) -> int:
-    """The order of an LCP; TypeError for anything else."""
-    require_lcp(problem)
-    return problem.n
-
-
 def feasible_start(problem: LCP, x0: Any, y0: Any) -> tuple[Any, Any]:
     """A start (x0, y0) > 0 with y0 = A x0 + q unless y0 is given; ValueError where that is not positive."""
-    n = require_order(problem)
-    x0 = strictly_feasible_start(problem) if x0 is None else positive_vector("x0", x0, n)
+    require_lcp(problem)
+    x0 = strictly_feasible_start(problem) if x0 is None else positive_vector("x0", x0, problem.n)
     if y0 is None:
         y0 = problem.w(x0)
         if not (y0 > 0.0).all():

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.certificate.form import Quadratic
@@ -63,6 +63,7 @@ class TwoVectorHomotopy:
     problem_class: ClassVar[str] = "linear complementarity problems"
     target: ClassVar[float | None] = 0.0
     metric: ClassVar[OwnMetric] = OwnMetric()
+    _recent: Recent[PairSystem] = field(factory=Recent, init=False, repr=False)
 
     @property
     def n(self) -> int:
@@ -142,10 +143,6 @@ class TwoVectorHomotopy:
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """H' v, one shorter than v."""
         return self._recent.at(y, lam, self._system).apply(v)
-
-    @cached_property
-    def _recent(self) -> Recent[PairSystem]:
-        return Recent()
 
     @quiet
     def taylor(self, point: Linearization, order: int) -> Array:

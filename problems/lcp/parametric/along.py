@@ -30,7 +30,7 @@ from problems.options import check_budget, finite_vector
 CORNERS = 100_000
 """Where no budget is given: Murty's example of order 16 has 65,535."""
 
-ALIKE = 1e3
+PATH_UNIT_SPREAD = 1e3
 """Rows and columns whose largest entries differ by less than this need no other units, which take a tenth of the time
 of a path to find (p = 500)."""
 
@@ -140,7 +140,7 @@ def _scaled(problem: MixedLCP, d: Array, levels: Array) -> tuple[MixedLCP, Expon
     """The problem in units in which its rows and columns are comparable, and the exponents of two that lead there."""
     size = np.abs(problem.A)
     largest = np.concatenate([size.max(axis=0, initial=0.0), size.max(axis=1, initial=0.0)])
-    alike = largest.max(initial=0.0) <= ALIKE * largest.min(initial=np.inf)
+    alike = largest.max(initial=0.0) <= PATH_UNIT_SPREAD * largest.min(initial=np.inf)
     scaled = None if alike else balanced(evolve(problem, q=np.abs(problem.q) + np.abs(d) + levels))
     if scaled is None or not scaled.exact:
         none = np.zeros(problem.n, dtype=np.int64)

@@ -9,7 +9,7 @@ from scipy.linalg.blas import dgemm, dger
 
 from continuation.arrays import Array, largest
 
-ROOM = 32
+SPARE_ROWS = 32
 """Rows by which the inverse grows, or twice as many: it is stored with room, and products leave out its columns."""
 
 INEXACT = 1e-9
@@ -212,11 +212,11 @@ class Basis:
         dger(factor, left, right[:k], a=self.inverse[:, :k], overwrite_a=1)
 
     def _allocate(self, order: int) -> None:
-        room = (order // ROOM + 1) * ROOM
+        room = (order // SPARE_ROWS + 1) * SPARE_ROWS
         self.block = np.zeros((self.shares.size, room), order="F")
         self.inverse = np.zeros((room, room), order="F")
 
     def _grow(self) -> None:
         block, inverse, k = self.block, self.inverse, self.order
-        self._allocate(max(2 * k, ROOM) if k < 2 * ROOM else k + 2 * ROOM)
+        self._allocate(max(2 * k, SPARE_ROWS) if k < 2 * SPARE_ROWS else k + 2 * SPARE_ROWS)
         self.block[:, :k], self.inverse[:k, :k] = block[:, :k], inverse[:k, :k]

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import null_space
 
 from continuation.arrays import Array
-from continuation.kinks.pivots import AT_ORDER, FEW, Ray
+from continuation.kinks.pivots import PIVOTS_PER_SWITCH, ZERO_COMPONENT, Ray
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
@@ -40,14 +40,14 @@ def rays(S: Array, r: Array) -> list[Ray]:
             columns = [*active, m]
             rest = [i for i in range(m) if i not in active]
             block = whole[np.ix_(list(active), columns)]
-            kernel = null_space(block, rcond=FEW) if active else np.ones((1, 1))
+            kernel = null_space(block, rcond=ZERO_COMPONENT) if active else np.ones((1, 1))
             signs = np.vstack([np.eye(size, size + 1), whole[np.ix_(rest, columns)]]) @ kernel
             for edge in _edges(signs):
                 along = np.zeros(m + 1)
                 along[columns] = kernel @ edge
                 along /= np.abs(along).max()
-                along[:m] = np.where(along[:m] > FEW, along[:m], 0.0)
-                if not any(np.abs(along - one).max() <= 1e3 * FEW for one in found):
+                along[:m] = np.where(along[:m] > ZERO_COMPONENT, along[:m], 0.0)
+                if not any(np.abs(along - one).max() <= 1e3 * ZERO_COMPONENT for one in found):
                     found.append(along)
     return [Ray(along[:m] / wide, float(along[m])) for along in found]
 
@@ -59,10 +59,10 @@ def _edges(signs: Array) -> list[Array]:
         return []
     candidates = []
     for chosen in combinations(range(signs.shape[0]), dimension - 1):
-        kernel = null_space(signs[list(chosen)], rcond=FEW) if chosen else np.ones((1, 1))
+        kernel = null_space(signs[list(chosen)], rcond=ZERO_COMPONENT) if chosen else np.ones((1, 1))
         if kernel.shape[1] == 1:
             candidates += [kernel[:, 0], -kernel[:, 0]]
-    return [c for c in candidates if (signs @ c >= -FEW).all()]
+    return [c for c in candidates if (signs @ c >= -ZERO_COMPONENT).all()]
 
 
 def a_solution(S: Array, r: Array) -> Array | None:
@@ -74,7 +74,7 @@ def a_solution(S: Array, r: Array) -> Array | None:
     r : ndarray, shape (m,)
     """
     path = covering(LCP(S, r), np.ones(r.size))
-    if path is None or path.run(AT_ORDER * r.size) is not Ended.REACHED:
+    if path is None or path.run(PIVOTS_PER_SWITCH * r.size) is not Ended.REACHED:
         return None
     grown = np.zeros(r.size)
     active = np.flatnonzero(path.active)

@@ -18,7 +18,7 @@ from problems.lcp.parametric.stairs import Stairs
 from problems.lcp.proof.rational import fractions, full_row_rank, integers, solve_exactly
 from problems.options import finite_vector
 
-NEAR = 1e-6
+SAME_CORNER = 1e-6
 """How far, relatively, the exact corner may be from a path's: else another path would be proved."""
 
 Exactly = tuple[Fraction, ...]
@@ -196,7 +196,7 @@ class _Exactly:
         for j, value in zip(columns, fractions(*solved)):
             whole[j] = value
         off = max(abs(float(a) - b) for a, b in zip(whole, near.tolist()))
-        if off > NEAR * (1.0 + float(np.abs(near).max())):
+        if off > SAME_CORNER * (1.0 + float(np.abs(near).max())):
             raise UnprovenError(f"path: expected a corner near t = {near[-1]:g}, found the nearest one {off:.1e} away")
         return tuple(whole)
 

@@ -24,7 +24,7 @@ from problems.options import check_budget, check_seed, check_tolerance, finite_v
 LARGEST_TRIED = 10
 """Orders up to which all faces are tried: 0.1 s for ten; about a second for twelve."""
 
-SAME = 1e-7
+SAME_SOLUTION = 1e-7
 """Solutions whose every x_i agrees this well, relative to the largest, are the same."""
 
 IN_VAIN = 30
@@ -178,7 +178,7 @@ class _Search:
         return False
 
     def _known(self, x: Array) -> bool:
-        size = SAME * float(np.abs(x).max(initial=0.0))
+        size = SAME_SOLUTION * float(np.abs(x).max(initial=0.0))
         return any(float(np.abs(x - one.x).max(initial=0.0)) <= size for one in self.found)
 
     def run(self) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from continuation.arrays import Array
-from continuation.kinks.pivots import FEW
+from continuation.kinks.pivots import ZERO_COMPONENT
 from problems.lcp.data.problem import MixedLCP, State
 from problems.lcp.parametric.basis import Basis, SingularBasisError
 from problems.lcp.parametric.corner import LARGEST_LISTED, a_solution, rays
@@ -108,7 +108,7 @@ def _agreement(direction: Array, ray: Array | None, sign: float) -> float:
     length = float(np.linalg.norm(direction))
     if ray is not None:
         return float(direction @ ray) / length
-    return sign * float(direction[-1]) / length if abs(direction[-1]) > FEW * length else 0.0
+    return sign * float(direction[-1]) / length if abs(direction[-1]) > ZERO_COMPONENT * length else 0.0
 
 
 def _standing(walk: Walk, x: Array, t: float, ray: Array | None, sign: float) -> Walk:

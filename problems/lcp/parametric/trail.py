@@ -18,7 +18,7 @@ from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.ties import Corner, snap, turn
 from problems.lcp.parametric.walk import Left, Walk
 
-SAME = 1e-9
+SAME_DIRECTION = 1e-9
 """Two unit directions, or two points relative to their size, that differ by less are the same."""
 
 ARRIVED = 1e-11
@@ -142,7 +142,7 @@ class Trail:
 
     def _goes_round(self, u: Array, unit: Array) -> bool:
         """Whether it has left this kink in this direction before, as it may where more than two rays meet."""
-        size = SAME * (1.0 + largest(u))
+        size = SAME_DIRECTION * (1.0 + largest(u))
         been = any(largest(u - at) <= size and _same(unit, way) for at, way in self._left)
         self._left.append((u, unit))
         return been
@@ -156,7 +156,7 @@ class Trail:
         gap = first - last
         ahead = float(gap @ unit)
         size = 1.0 + largest(first)
-        if not 0.0 < ahead <= length * (1.0 + SAME) or largest(gap - ahead * unit) > SAME * size:
+        if not 0.0 < ahead <= length * (1.0 + SAME_DIRECTION) or largest(gap - ahead * unit) > SAME_DIRECTION * size:
             return False
         if not _same(unit, self.tangents[0]):
             return False
@@ -197,7 +197,7 @@ def _unit(a: Array) -> Array:
 
 
 def _same(a: Array, b: Array) -> bool:
-    return largest(a - b) <= SAME
+    return largest(a - b) <= SAME_DIRECTION
 
 
 def _located(walk: Walk) -> bool:

@@ -16,20 +16,20 @@ from problems.lcp.parametric.stairs import Stairs
 FLAT = 1e-11
 """A rate below this, relative to its row's entries and the direction, is rounding: it leads to no corner."""
 
-TIE = 1e-10
+SWITCH_TIE = 1e-10
 """Switches that vanish so near to each other, relative to the step and to t, vanish at once. On 10,000 problems of
 integers (n <= 6) anything from 1e-13 to 1e-7 gives the same; 1e-6 is too loose for cond X = 1e6."""
 
-ROUND_OFF = 1e-14
+ZERO_SWITCH = 1e-14
 """Relative to the terms of its row, what of a switch is zero whether it falls or not."""
 
-NOISE = 1e-15
+RATE_NOISE = 1e-15
 """A few units in the last place: a rate of t below what these make of it is zero, and t stands still."""
 
-SLOW = 1e-6
+SLOW_RATE = 1e-6
 """Whether a rate of t is rounding is looked at where it is this much smaller than the largest."""
 
-INSIDE = 1e-9
+OUTSIDE_LIMITS = 1e-9
 """How far outside its limits, relative to its row, rounding may put a variable before the path counts as lost."""
 
 
@@ -128,7 +128,7 @@ class Walk:
             y[:, j] = self.value + slope * self.t, self.sign + slope * self.dt
         self.dy = dy = y[1]
         self.scale = [largest(whole[0]), largest(whole[1])]
-        self.still = j != n and abs(self.dt) <= SLOW * self.scale[1] and self._stands()
+        self.still = j != n and abs(self.dt) <= SLOW_RATE * self.scale[1] and self._stands()
         # Of what does not move by x nothing is in z: there x is what is fixed.
         whole[0, :n] += self._fixed
         if self.degenerate:
@@ -145,7 +145,7 @@ class Walk:
     def _settle(self, y: Array) -> None:
         """What is basic and stays at its limit, as x of columns that are alike, is there exactly."""
         for limit in self.limits:
-            near = self.moves_x & (np.abs(y[0] - limit) <= ROUND_OFF * self.scale[0])
+            near = self.moves_x & (np.abs(y[0] - limit) <= ZERO_SWITCH * self.scale[0])
             y[0, near] = self.u[0, :-1][near] = limit[near]
             near &= np.abs(y[1]) <= FLAT * self.scale[1]
             y[1, near] = self.u[1, :-1][near] = 0.0
@@ -154,11 +154,11 @@ class Walk:
         """Whether the rate of t is no more than rounding."""
         basis = self.basis
         of_t = np.abs(basis.inverse[basis.column_place[self.problem.n], : basis.order])
-        return bool(abs(self.dt) <= NOISE * (of_t @ self.sizes[basis.rows]) * self.scale[1])
+        return bool(abs(self.dt) <= RATE_NOISE * (of_t @ self.sizes[basis.rows]) * self.scale[1])
 
     def find_tied(self) -> None:
         """Which switches vanish where it is."""
-        self._tie(self.gaps <= ROUND_OFF * self._terms(0.0))
+        self._tie(self.gaps <= ZERO_SWITCH * self._terms(0.0))
 
     def next_corner(self) -> tuple[Left, float]:
         """How far the driver goes until a switch vanishes, and which do then."""
@@ -172,11 +172,11 @@ class Walk:
             return Left.RAY, step
         reach = max(step, 0.0 if self.still else abs(self.t + step * self.dt) / abs(self.dt))
         self.step = step
-        vanishing = self.gaps + step * self.rates <= ROUND_OFF * self._terms(step)
+        vanishing = self.gaps + step * self.rates <= ZERO_SWITCH * self._terms(step)
         # The driver has left its corner, however short the step was.
         if self.driver < self.problem.n:
             vanishing[:, self.driver] = False
-        vanishing.ravel()[falling[steps <= step + TIE * reach]] = True
+        vanishing.ravel()[falling[steps <= step + SWITCH_TIE * reach]] = True
         self._tie(vanishing)
         return Left.CORNER, step
 
@@ -189,7 +189,7 @@ class Walk:
 
     def inside(self) -> bool:
         """Whether all that moves is within its limits, but for rounding."""
-        return bool((self.gaps >= -INSIDE * self._terms(0.0)).all())
+        return bool((self.gaps >= -OUTSIDE_LIMITS * self._terms(0.0)).all())
 
     # -- round the corner -----------------------------------------------------------------------------------------
 

@@ -10,13 +10,18 @@ from attrs import define, field
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from problems.lcp.pivoting.dictionary import Dictionary
+from problems.lcp.pivoting.compiled import RAY, REACHED, available, kernel
+from problems.lcp.pivoting.dictionary import TIE, ZERO_PIVOT, Dictionary
 
 REBUILT_AFTER = 100
 """Pivots, and the order more, after which a table is computed afresh: that costs about as much as they did."""
 
-LOST = -1e-7
+PATH_LEFT = -1e-7
 """A basic variable that is this negative once the table is exact, relative to the largest: the path was left."""
+
+
+KEPT = "basic", "nonbasic", "places"
+"""What a dictionary has beside its table."""
 
 
 class Ended(Enum):
@@ -26,7 +31,7 @@ class Ended(Enum):
     RAY = "a variable grows without bound"
     PIVOTS = "all pivots are used up"
     TIME = "time is up"
-    LOST = "rounding has led off the path"
+    PATH_LEFT = "rounding has led off the path"
 
 
 @define(eq=False)
@@ -69,11 +74,31 @@ class AlmostComplementary:
             self.ended = Ended.RAY
             return
         self.left(now.pivot(row, column))
-        self._since += 1
-        if self._since >= REBUILT_AFTER + self.n:
+        self._counted(1)
+
+    def _counted(self, pivots: int) -> None:
+        self._since += pivots
+        if self._since >= REBUILT_AFTER + self.n and self.ended is None:
             self._since = 0
-            if not min(one.rebuilt() for one in self.dictionaries) >= LOST:
-                self.ended = Ended.LOST
+            if not min(one.rebuilt() for one in self.dictionaries) >= PATH_LEFT:
+                self.ended = Ended.PATH_LEFT
+
+    @property
+    def compiled(self) -> bool:
+        """Whether numba's pivots are there, and quicker."""
+        return available() and all(one.compilable for one in self.dictionaries)
+
+    def _steps(self, most: int) -> None:
+        """So many pivots, compiled."""
+        both = self.dictionaries[0], self.dictionaries[-1]
+        ended, done, entering = kernel()(
+            (both[0].table, both[1].table), *(tuple(getattr(one, name) for one in both) for name in KEPT),
+            (int(both[0].rows[0]), int(both[1].rows[0])), self.entering, (min(self.stop), max(self.stop)), self.n,
+            min(most, REBUILT_AFTER + self.n - self._since), (ZERO_PIVOT, TIE),
+        )  # fmt: skip
+        self.pivots, self.entering = self.pivots + done, int(entering)
+        self.ended = {REACHED: Ended.REACHED, RAY: Ended.RAY}.get(ended)
+        self._counted(done)
 
     def left(self, leaving: int) -> None:
         """Go on from a variable that has left the basis: with its complement, unless the path ends with it.
@@ -102,7 +127,10 @@ class AlmostComplementary:
                 return Ended.PIVOTS
             if time.perf_counter() > end:
                 return Ended.TIME
-            self.step()
+            if self.compiled:
+                self._steps(most - self.pivots)
+            else:
+                self.step()
         return self.ended
 
     @property

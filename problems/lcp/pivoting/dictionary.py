@@ -15,7 +15,7 @@ from continuation.arrays import Array, largest
 
 Indices = NDArray[np.intp]
 
-ZERO = 1e-10
+ZERO_PIVOT = 1e-10
 """An entry below this, relative to its column's largest, counts as rounding: a pivot on it loses the path."""
 
 AT_FIRST = 512
@@ -33,6 +33,9 @@ LARGEST_AT_ONCE = 100_000
 """one of more entries is large. Microseconds a pivot of a game, one by one and 32 together: 31 and 29 (90,000 entries),
 53 and 40 (250,000), 280 and 86 (1e6); of traffic with 5.6e6 entries 2,700 and 460. 16 and 64 together take as long."""
 
+LARGEST_COMPILED = 300_000
+"""One by one, but compiled, a pivot takes 30 us with 250,000 entries (37 in numpy), and 51 (44) with 360,000."""
+
 
 @define(eq=False)
 class Dictionary:
@@ -40,7 +43,7 @@ class Dictionary:
 
     `first`, of shape (m, k + 1): The table at the beginning, the constants last. `rows`, of shape (m,), `columns`, of
     shape (k,): Which variables were basic, by consecutive numbers, and which were not. `basic`, `nonbasic`, of the same
-    shapes: The same now.
+    shapes: The same now. `places`: Of each variable among the nonbasic ones, -1 where it is not.
     """
 
     first: Array
@@ -49,7 +52,7 @@ class Dictionary:
     basic: Indices = field(init=False)
     nonbasic: Indices = field(init=False)
     _table: Array = field(init=False)
-    _place: Indices = field(init=False)
+    places: Indices = field(init=False)
     _left: Array = field(init=False)
     _right: Array = field(init=False)
     _waiting: int = field(init=False, default=0)
@@ -60,8 +63,13 @@ class Dictionary:
         room = DELAYED if m * k > LARGEST_AT_ONCE else 0
         self._left, self._right = np.empty((m, room), order="F"), np.empty((k, room), order="F")
         self.basic, self.nonbasic = self.rows.copy(), self.columns.copy()
-        self._place = np.full(1 + max(int(one.max(initial=0)) for one in (self.rows, self.columns)), -1)
-        self._place[self.nonbasic] = np.arange(self.nonbasic.size)
+        self.places = np.full(1 + max(int(one.max(initial=0)) for one in (self.rows, self.columns)), -1)
+        self.places[self.nonbasic] = np.arange(self.nonbasic.size)
+
+    @property
+    def compilable(self) -> bool:
+        """Whether numba's pivots are quicker; a single row or column it would not take for a table by columns."""
+        return min(self._table.shape) > 1 and self._table.size <= LARGEST_COMPILED
 
     @property
     def table(self) -> Array:
@@ -86,7 +94,7 @@ class Dictionary:
 
     def column(self, variable: int) -> int | None:
         """Where a variable is among the nonbasic ones; None if it is not."""
-        place: int = self._place.item(variable) if variable < self._place.size else -1
+        place: int = self.places.item(variable) if variable < self.places.size else -1
         return place if place >= 0 else None
 
     def pivot(self, row: int, column: int) -> int:
@@ -114,7 +122,7 @@ class Dictionary:
             table[row] = moved
         leaving, entering = self.basic.item(row), self.nonbasic.item(column)
         self.basic[row], self.nonbasic[column] = entering, leaving
-        self._place[leaving], self._place[entering] = column, -1
+        self.places[leaving], self.places[entering] = column, -1
         return leaving
 
     def last_zero(self, column: int) -> int | None:
@@ -123,7 +131,7 @@ class Dictionary:
         `column`: Of the variable. Returns int or None: None if no row grows with the variable.
         """
         slopes, constants = self.entries(column), self.entries(-1)
-        growing = np.flatnonzero(slopes > ZERO * np.abs(slopes).max(initial=0.0))
+        growing = np.flatnonzero(slopes > ZERO_PIVOT * np.abs(slopes).max(initial=0.0))
         if growing.size == 0:
             return None
         at = constants[growing] / slopes[growing]
@@ -137,7 +145,7 @@ class Dictionary:
         None if no row falls: the variable grows along a ray.
         """
         slopes, constants = self.entries(column), self.entries(-1)
-        falling = (slopes < -ZERO * largest(slopes)).nonzero()[0]
+        falling = (slopes < -ZERO_PIVOT * largest(slopes)).nonzero()[0]
         if falling.size == 0:
             return None
         values, rates = constants[falling], slopes[falling]
@@ -175,8 +183,8 @@ class Dictionary:
         self._table, self._waiting = np.asfortranarray(np.vstack([solved, kept])), 0
         self.basic = np.concatenate([self.columns[entered], self.rows[~left]])
         self.nonbasic = np.concatenate([self.rows[left], self.columns[~entered]])
-        self._place.fill(-1)
-        self._place[self.nonbasic] = np.arange(self.nonbasic.size)
+        self.places.fill(-1)
+        self.places[self.nonbasic] = np.arange(self.nonbasic.size)
         least: float = self.entries(-1).min() / max(largest(self.entries(-1)), np.finfo(float).tiny)
         return least
 
@@ -184,7 +192,7 @@ class Dictionary:
         """Of rows whose constants are tied the one that is least in eps, eps^2, ..., relative to a scale."""
         # The coefficients of eps^k are those of the inverse basis: of a variable of the first one with their sign, and
         # of a row whose basic variable is of the first one 1 at its power, where others have 0.
-        places = self._place[self.rows]
+        places = self.places[self.rows]
         powers = (places >= 0).nonzero()[0]
         own = np.minimum(self.basic[tied] - self.rows[0], places.size)
         at, width = 0, AT_FIRST // tied.size + 1

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from problems.lcp.pivoting.dictionary import ZERO
+from problems.lcp.pivoting.dictionary import ZERO_PIVOT
 
 MOST_PIVOTS = 3
 """Times the order, and ten. Of 2,000 random P-matrices of order 5, 10 and 20 none needs more than n + 10 pivots, and of
@@ -85,7 +85,7 @@ def _first_zero(
     """The rows that become zero first, that of t where it is tied, and where there is one at all."""
     each = np.arange(len(table))
     slopes, constants = -table[each, :, column], table[:, :, -1]
-    falling = slopes > ZERO * np.abs(slopes).max(axis=1)[:, None]
+    falling = slopes > ZERO_PIVOT * np.abs(slopes).max(axis=1)[:, None]
     ratios = np.where(falling, np.maximum(constants, 0.0) / np.where(falling, slopes, 1.0), np.inf)
     row = ratios.argmin(axis=1)
     last = (basic == t).argmax(axis=1)

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array, largest
 from problems.lcp.data.problem import LCP
-from problems.lcp.pivoting.almost import LOST, AlmostComplementary, Ended
+from problems.lcp.data.spread import largest_entries
+from problems.lcp.pivoting.almost import PATH_LEFT, AlmostComplementary, Ended
 from problems.lcp.pivoting.dictionary import TIE, Dictionary
 
 
 def unit_of(problem: LCP) -> float:
     """The power of two next to the largest entry of A: in it tables are kept, so that no common factor counts."""
-    A = problem.A.data if problem.sparse else problem.A
-    largest = max(float(A.max(initial=0.0)), -float(A.min(initial=0.0)))
-    return math.ldexp(1.0, math.frexp(largest)[1]) if largest > 0.0 else 1.0
+    most = largest_entries(problem)[1]
+    return math.ldexp(1.0, math.frexp(most)[1]) if most > 0.0 else 1.0
 
 
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:
@@ -48,7 +48,7 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
             return None
         # What is zero at t = 1 but for rounding is raised to zero: no other t has the active set.
         short = -(dictionary.table[:, -1] + dictionary.table[:, dictionary.column(t)])
-        if short.max() > -LOST * largest(dictionary.table[:, -1]):
+        if short.max() > -PATH_LEFT * largest(dictionary.table[:, -1]):
             return None
         dictionary.table[:, -1] += np.maximum(short, 0.0)
     column = dictionary.column(t)
@@ -63,7 +63,7 @@ def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) ->
         return None
     path.left(dictionary.pivot(row, column))
     constants = dictionary.table[:, -1]
-    return path if constants.min() >= LOST * np.abs(constants).max() else None
+    return path if constants.min() >= PATH_LEFT * np.abs(constants).max() else None
 
 
 @frozen(eq=False)
@@ -89,7 +89,7 @@ class Game:
         problem : LCP
         """
         A, n = problem.A, problem.n
-        if problem.sparse or n < 2 or not (problem.q < 0.0).all() or A[0, 0] != 0.0:
+        if problem.sparse or n < 2 or A[0, 0] != 0.0 or not (problem.q < 0.0).all():
             return None
         m = int(np.argmax(A[0] != 0.0))
         if m == 0 or A[:m, :m].any() or A[m:, m:].any() or not ((A[:m, m:] > 0.0).all() and (A[m:, :m] > 0.0).all()):
@@ -125,6 +125,7 @@ class Game:
     def _dictionary(self, mine: tuple[int, int], theirs: tuple[int, int]) -> Dictionary:
         """W of one player by x of the other, each from an index to another."""
         columns, rows = slice(*mine), slice(*theirs)
-        first = np.column_stack([self.problem.A[rows, columns], self.problem.q[rows]])
+        first = np.empty((theirs[1] - theirs[0], mine[1] - mine[0] + 1), order="F")
+        first[:, :-1], first[:, -1] = self.problem.A[rows, columns], self.problem.q[rows]
         first /= unit_of(self.problem)
         return Dictionary(first, np.arange(*theirs), np.arange(*mine) + self.problem.n)

@@ -26,10 +26,10 @@ LARGEST_ACTIVE_SET = 400
 ROUND_OFF = 64 * float(np.finfo(float).eps)
 """A relative residual below this is what rounding x leaves; refining x in twice the precision reaches it."""
 
-SMALL = 1e-6
+BOTH_ZERO = 1e-6
 """Relative to the terms of the rows: an x_i and a w_i below this may both be zero in truth."""
 
-TINY = float(np.finfo(float).smallest_normal)
+SMALLEST_NORMAL = float(np.finfo(float).smallest_normal)
 """An x_j below this in size is a multiple of 2^-1074, and may be off by half of that."""
 
 MOST_MADE_UP = 2.0**-50
@@ -178,7 +178,7 @@ def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
     away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
-    reach = abs(problem.A) @ ((np.abs(x) < TINY) & away).astype(float)
+    reach = abs(problem.A) @ ((np.abs(x) < SMALLEST_NORMAL) & away).astype(float)
     most = np.ldexp(np.minimum(reach, np.finfo(float).max), -1074 - terms.exponents)
     made_up = (np.abs(terms.w) <= most) & (x >= problem.lower) & (x <= problem.upper)
     return np.where(made_up, 0.0, off)
@@ -242,7 +242,7 @@ def certify_exactly(problem: MixedLCP, x: Array) -> ExactCertificate:
 
     The active set is {x_i > w_i}, each relative to the terms of the rows, or with bounds the piece of the natural map
     on which x is; if its point is not a solution, two more are tried, in which the indices that are zero in both x and
-    w (at a bound, and zero in w), to `SMALL`, are left out or taken in. On a singular
+    w (at a bound, and zero in w), to `BOTH_ZERO`, are left out or taken in. On a singular
     active set the dependent entries of x keep their float values, so degenerate and rank-deficient problems have
     certificates too.
 
@@ -285,7 +285,7 @@ def _states(problem: MixedLCP, x: Array) -> list[State]:
     nearest = np.where(above <= below, LOWER, UPPER)
     state = np.where(above <= w, LOWER, np.where(below <= -w, UPPER, BETWEEN))
     state = np.where(problem.fixed, LOWER, state)
-    doubtful = (np.minimum(np.abs(above), np.abs(below)) <= SMALL) & (np.abs(w) <= SMALL) & ~problem.fixed
+    doubtful = (np.minimum(np.abs(above), np.abs(below)) <= BOTH_ZERO) & (np.abs(w) <= BOTH_ZERO) & ~problem.fixed
     states: list[State] = []
     for chosen in (state, np.where(doubtful, nearest, state), np.where(doubtful, BETWEEN, state)):
         if not any(np.array_equal(chosen, other) for other in states):

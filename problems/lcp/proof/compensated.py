@@ -24,7 +24,7 @@ _AT_ONCE = 2**13
 _BLOCK = 2**15
 """Entries of A in a block of rows: 256 KiB, of which two at a time stay in the cache."""
 
-LARGE = 1e240
+LARGEST_TERMS = 1e240
 """Rows whose terms sum to more than this, or to less than its inverse, are computed over a power of two: the low halves
 of products below 1e-260 are no longer exact."""
 
@@ -69,17 +69,17 @@ class Terms:
     exponents: NDArray[Any]
 
 
+@np.errstate(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     """What each row of A x + q comes to and what it is made of; nothing overflows, and no row underflows.
 
     `x`, of shape (n,): Finite.
     """
-    with np.errstate(over="ignore", invalid="ignore", under="ignore"):
-        w, size, _ = _rows(problem, x)
+    w, size, _ = _rows(problem, x)
     none = np.zeros(problem.n, dtype=np.int64)
-    if least(size) >= 1.0 / LARGE and largest(size) <= LARGE:
+    if least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS:
         return Terms(problem.A, x, w, size, none)  # w is finite where the size is
-    doubtful, small = ~np.isfinite(w) | ~(size <= LARGE), size < 1.0 / LARGE
+    doubtful, small = ~np.isfinite(w) | ~(size <= LARGEST_TERMS), size < 1.0 / LARGEST_TERMS
     if small.any():
         doubtful |= small & _filled(problem, x)
     if not doubtful.any():
@@ -99,12 +99,11 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
         row_of = np.arange(problem.n)[:, None]
         exponents = np.maximum(exponents, products.max(axis=1))
     exponents = np.where(exponents == lowest, 0, exponents)
-    with np.errstate(under="ignore"):
-        # Products that are smaller than their row's largest by 2^-1000 may vanish: they are below its last digits.
-        moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
-        q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
-        A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
-        w, size, _ = _rows(Inequalities(A, q), mantissas)
+    # Products that are smaller than their row's largest by 2^-1000 may vanish: they are below its last digits.
+    moved = np.ldexp(entries, np.maximum(products - exponents[row_of], -1100))
+    q = np.ldexp(constants, np.maximum(constant_powers - exponents, -1100))
+    A = sp.csr_array((moved, stored.indices, stored.indptr), shape=stored.shape) if problem.sparse else moved
+    w, size, _ = _rows(Inequalities(A, q), mantissas)
     return Terms(A, mantissas, w, size, exponents)
 
 

@@ -37,7 +37,7 @@ _SUPPORT = 1e-9
 """Scaled multipliers above this are taken as nonzero."""
 PRECISION = 100 * float(np.finfo(float).eps)
 """The relative error of A'y <= 0 that counts as rounding."""
-CLEAR = 1e-6
+GAP_IN_DOUBT = 1e-6
 """A gap -q'y below this part of |q|'y is too near zero to say infeasible without a proof."""
 _NEARLY_TIGHT = 1e-7
 """A condition this close to zero, relative to its terms, is solved as an equation when y is refined,"""
@@ -110,7 +110,7 @@ class FloatFarkas:
     error : float
         max_j (A'y)_j / (|A|'y)_j: of the size of the rounding unit.
     gap : float
-        -q'y / |q|'y, at least `CLEAR`: how clearly q'y is negative.
+        -q'y / |q|'y, at least `GAP_IN_DOUBT`: how clearly q'y is negative.
     """
 
     y: Array
@@ -271,7 +271,7 @@ def _nearly(scaled: Inequalities, guess: Array, rows: Array, system: Inequalitie
         if size == 0.0:
             return None
         gap = float(scaled.q @ y) / size
-        if error <= PRECISION and gap <= -CLEAR:
+        if error <= PRECISION and gap <= -GAP_IN_DOUBT:
             given = system.on_rows(y / rows, n)
             return FloatFarkas(given / np.abs(given).max(), error, -gap) if given.any() else None
         support, tight = np.flatnonzero(y), np.flatnonzero(np.abs(relative) <= _NEARLY_TIGHT)

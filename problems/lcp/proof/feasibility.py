@@ -19,10 +19,10 @@ HIGHS_TOLERANCE = 1e-10
 LARGEST_PIVOTED = 50
 """Order of A up to which this is quicker than a call of HiGHS: 0.2 and 1.1 ms at n = 4, 2.0 and 2.5 ms at n = 40."""
 
-AT_ORDER = 4
+PIVOTS_PER_ROW = 4
 """Pivots, times the order, after which it is left to a linear program."""
 
-ROUNDING = 1e-13
+ROW_ROUNDING = 1e-13
 """Of the terms of a row: what is off by more is left to a linear program too."""
 
 
@@ -41,13 +41,13 @@ def by_pivots(A: Array, q: Array) -> tuple[bool, Array | None]:
     whole = np.zeros((k + m, k + m))
     whole[:k, k:], whole[k:, :k] = -A.T, A
     path = covering(LCP(whole, np.append(np.zeros(k), q)), np.ones(k + m))
-    ended = None if path is None else path.run(AT_ORDER * (k + m))
+    ended = None if path is None else path.run(PIVOTS_PER_ROW * (k + m))
     if path is None or ended not in (Ended.REACHED, Ended.RAY):
         return False, None
     if ended is Ended.RAY:
         return False, path.ray()[k:]
     z = path.values()[:k]
-    return bool((A @ z + q >= -ROUNDING * (np.abs(A) @ z + np.abs(q))).all()), None
+    return bool((A @ z + q >= -ROW_ROUNDING * (np.abs(A) @ z + np.abs(q))).all()), None
 
 
 def by_linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | None:

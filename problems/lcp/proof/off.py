@@ -19,7 +19,7 @@ FAR_BELOW_Q = 1e-10
 """What is no more than this counts as zero: any point that runs off to infinity is far above it; the ends of the
 Maros-Meszaros programs that are solved to precision are below 1e-12."""
 
-CLEAR = 1e-13
+CLEAR_OF_ZERO = 1e-13
 """The same relative to the least |q_i| that is not zero, in the units given, where these are `alike`: then no units are
 to be found, which takes longer than all else (arches of five stones: 0.45 of 1.2 ms)."""
 
@@ -69,7 +69,9 @@ def drowned_part(problem: MixedLCP, terms: Terms, off: Array) -> float:
         return 0.0
     if not moved:
         constants = np.abs(q)
-        clear = float((off * terms.size)[asked].max()) <= CLEAR * float(constants[constants > 0.0].min(initial=np.inf))
+        clear = float((off * terms.size)[asked].max()) <= CLEAR_OF_ZERO * float(
+            constants[constants > 0.0].min(initial=np.inf)
+        )
         if clear and q.any() and alike(problem):
             return 0.0
     rows, _ = units(problem)

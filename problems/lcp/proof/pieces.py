@@ -23,8 +23,10 @@ from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP
 TOGETHER = 1024
 """Pieces in one array: a few megabytes at the orders for which all are tried."""
 
-ROUNDING = 4.0 * float(np.finfo(float).eps)
+SUM_OF_TERMS_ROUNDING = 4.0 * float(np.finfo(float).eps)
 """Over twice what k + 4 terms, times k + 4, can be off (Higham, section 3.5)."""
+
+SMALLEST_NORMAL = float(np.finfo(float).tiny)
 
 States = NDArray[np.int8]
 
@@ -36,11 +38,11 @@ def doubtful(problem: MixedLCP, states: States) -> NDArray[np.bool_]:
     """
     A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
     asked = _signs_allow(A, problem.q, states == BETWEEN) if problem.standard else np.ones(len(states), dtype=bool)
-    left = asked.nonzero()[0]
+    left, bounds = asked.nonzero()[0], None if problem.standard else (problem.lower, problem.upper)
     with np.errstate(all="ignore"):
         for k in range(0, left.size, TOGETHER):
             part = left[k : k + TOGETHER]
-            asked[part] = in_doubt(A, problem.q, problem.lower, problem.upper, states[part])
+            asked[part] = in_doubt(A, problem.q, states[part], bounds)
     return asked
 
 
@@ -63,36 +65,43 @@ def _signs_allow(A: Array, q: Array, inside: NDArray[np.bool_]) -> NDArray[np.bo
     return np.asarray(~forbidden.any(axis=1))
 
 
-def in_doubt(A: Array, q: Array, low: Array, high: Array, states: States) -> NDArray[np.bool_]:
+def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | None = None) -> NDArray[np.bool_]:
     """Which pieces are not proved to hold no solution, of one problem or each of its own; shape (number,).
 
-    `A` of shape (n, n). `q`, `low`, `high` of shape (n,). `states` of shape (number, n).
+    `A` of shape (n, n). `q` of shape (n,). `states` of shape (number, n). `bounds`: Of x, shape (n,) each; None for
+    those of an LCP.
     """
     n = states.shape[1]
-    sizes = np.abs(A)
-    unit = (n + 4) * ROUNDING
+    sizes, one, ones = np.abs(A), identity(n), np.ones(n)
+    unit = (n + 4) * SUM_OF_TERMS_ROUNDING
     between = states == BETWEEN
-    ends = np.where(states == LOWER, low, np.where(states == UPPER, high, 0.0))
-    B = np.where(between[:, :, None] & between[:, None, :], A, np.eye(n))
-    right = np.where(between, -(q + _times(A, ends)), 0.0)
-    lost = np.where(between, unit * (np.abs(q) + _times(sizes, np.abs(ends))), 0.0)
+    B = np.where(between[:, :, None] & between[:, None, :], A, one)
+    fixed, known = q, np.abs(q)
+    if bounds is not None:
+        ends = np.where(states == LOWER, bounds[0], np.where(states == UPPER, bounds[1], 0.0))
+        fixed, known = q + _times(A, ends), known + _times(sizes, np.abs(ends))
+    right = np.where(between, -fixed, 0.0)
     R = inverses(B)
     x = np.where(between, _times(R, right), 0.0)
-    size = np.abs(R)
-    defect = np.abs(R @ B - np.eye(n)) + unit * (size @ np.abs(B))
-    d = defect.sum(axis=2).max(axis=1) * (1.0 + unit)
-    r = np.abs(right - _times(B, x))
-    lost += unit * (np.abs(right) + _times(np.abs(B), np.abs(x))) + np.finfo(float).tiny
-    off = _times(size, r + lost).max(axis=1) * (1.0 + unit) / (1.0 - d)
-    wrong_x = between & ((x + off[:, None] < low) | (x - off[:, None] > high))
-    whole = np.where(between, x, ends)
+    size, block = np.abs(R), np.abs(B)
+    defect = np.abs(R @ B - one) + unit * (size @ block)
+    d = np.maximum.reduce(defect @ ones, axis=1) * (1.0 + unit)
+    lost = np.where(between, unit * known, 0.0) + unit * (np.abs(right) + _times(block, np.abs(x))) + SMALLEST_NORMAL
+    off = _times(size, np.abs(right - _times(B, x)) + lost)
+    off = np.maximum.reduce(off, axis=1)[:, None] * (1.0 + unit) / (1.0 - d[:, None])
+    whole = x if bounds is None else np.where(between, x, ends)
     w = q + _times(A, whole)
     terms = np.abs(q) + _times(sizes, np.abs(whole))
-    unsure = unit * terms + off[:, None] * _times(sizes, between.astype(float)) * (1.0 + unit) + np.finfo(float).tiny
-    free = low < high
-    wrong_w = free & (((states == LOWER) & (w + unsure < 0.0)) | ((states == UPPER) & (w - unsure > 0.0)))
+    unsure = unit * terms + off * _times(sizes, between.astype(float)) * (1.0 + unit) + SMALLEST_NORMAL
+    if bounds is None:
+        wrong = np.where(between, x + off, w + unsure) < 0.0
+    else:
+        low, high = bounds
+        wrong = between & ((x + off < low) | (x - off > high))
+        wrong_w = ((states == LOWER) & (w + unsure < 0.0)) | ((states == UPPER) & (w - unsure > 0.0))
+        wrong |= (low < high) & wrong_w
     # A comparison with NaN is false: what overflows is in doubt.
-    excluded = (d < 0.5) & (off < np.inf) & (wrong_x | wrong_w).any(axis=1)
+    excluded = (d < 0.5) & (off[:, 0] < np.inf) & np.logical_or.reduce(wrong, axis=1)
     asked: NDArray[np.bool_] = ~excluded
     return asked
 
@@ -101,6 +110,14 @@ def _times(A: Array, v: Array) -> Array:
     """The matrix, or each, times each vector."""
     product: Array = v @ A.T if A.ndim == 2 else (A @ v[:, :, None])[:, :, 0]
     return product
+
+
+@lru_cache(maxsize=32)
+def identity(n: int) -> Array:
+    """The matrix, read-only."""
+    one = np.eye(n)
+    one.flags.writeable = False
+    return one
 
 
 def inverses(B: Array) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 
 from continuation.arrays import Array
 
-DIGITS = 53
+DOUBLE_BITS = 53
 """Of a double."""
 
 
@@ -30,7 +30,7 @@ def sliced_terms(A: Array, x: Array, block: int) -> Iterator[tuple[slice, Array,
     mantissas, powers = np.frexp(x)
     scale = np.where(x == 0.0, 0.0, np.ldexp(1.0, powers))
     # Integers below 2^(digits - 1): m products of two of them add up to less than 2^53.
-    digits = (DIGITS - int(np.ceil(np.log2(x.size)))) // 2 + 1
+    digits = (DOUBLE_BITS - int(np.ceil(np.log2(x.size)))) // 2 + 1
     parts, left, top = [], mantissas.copy(), np.ones(1)
     for _ in range(3):
         parts.append(_leading(left, top, digits))
@@ -55,7 +55,7 @@ def sliced_terms(A: Array, x: Array, block: int) -> Iterator[tuple[slice, Array,
 
 def _leading(values: Array, top: Array, digits: int) -> Array:
     """So many leading digits, those above top 2^-digits, of numbers that are at most top."""
-    shift = top * (1.5 * 2.0 ** (DIGITS - digits))
+    shift = top * (1.5 * 2.0 ** (DOUBLE_BITS - digits))
     leading = values + shift
     leading -= shift
     return leading

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from problems.lcp.proof.certificate import ROUND_OFF
-from problems.lcp.proof.compensated import LARGE, error_bound, summed
+from problems.lcp.proof.compensated import LARGEST_TERMS, error_bound, summed
 from problems.lcp.proof.off import DROWNED
-from problems.lcp.proof.pieces import all_faces, in_doubt, inverses
-from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced, identity
+from problems.lcp.proof.pieces import all_faces, identity, in_doubt, inverses
+from problems.lcp.proof.verdict import LARGEST_DECIDED, Faced
 
-CORRECTIONS = 2
+POINT_CORRECTIONS = 2
 """Of a point with w in twice the working precision, as in `active_set.finish`."""
 
 
@@ -47,7 +47,7 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
     n = q.shape[1]
     inverse = inverses(np.where(active[:, :, None] & active[:, None, :], A, identity(n)))
     by_columns, x, w = np.ascontiguousarray(A.transpose(2, 0, 1)), np.zeros_like(q), q
-    for _ in range(1 + CORRECTIONS):
+    for _ in range(1 + POINT_CORRECTIONS):
         moved = x - np.where(active, (inverse @ np.where(active, w, 0.0)[..., None])[..., 0], 0.0)
         x = np.where(np.isfinite(moved).all(axis=1, keepdims=True), np.maximum(moved, 0.0), x)
         # In twice the working precision.
@@ -60,9 +60,9 @@ def judged(A: Array, q: Array, active: NDArray[np.bool_], tolerance: float) -> J
             break
     solves: NDArray[np.bool_] = (worst <= min(ROUND_OFF, tolerance)) & ~(off * size > DROWNED * np.abs(q)).any(axis=1)
     # Beyond this rows are summed over powers of two, one by one.
-    solves &= (size.max(axis=1) <= LARGE) & ((size >= 1.0 / LARGE).all(axis=1))
+    solves &= (size.max(axis=1) <= LARGEST_TERMS) & ((size >= 1.0 / LARGEST_TERMS).all(axis=1))
     if n <= LARGEST_DECIDED:
-        exact: NDArray[np.bool_] = Faced.of(A, q, x).exact(w, error_bound(w, size, n + 1))
+        exact: NDArray[np.bool_] = Faced.of(A, x).exact(w, error_bound(w, size, n + 1))
         solves &= exact | (~x.any(axis=1) & (q.min(axis=1) >= 0.0))
     return Judged(x, solves, np.abs(np.minimum(x, w)).max(axis=1), worst)
 
@@ -74,5 +74,4 @@ def faces_in_doubt(A: Array, q: Array) -> NDArray[np.bool_]:
     """
     k, n = q.shape
     states = np.broadcast_to(-1 + all_faces(n).astype(np.int8), (k, 2**n, n)).reshape(-1, n)
-    repeated, zero = np.repeat(A, 2**n, axis=0), np.zeros(n)
-    return in_doubt(repeated, np.repeat(q, 2**n, axis=0), zero, zero + np.inf, states).reshape(k, 2**n)
+    return in_doubt(np.repeat(A, 2**n, axis=0), np.repeat(q, 2**n, axis=0), states).reshape(k, 2**n)

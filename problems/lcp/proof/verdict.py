@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from continuation.arrays import Array, least
+from continuation.arrays import Array, largest, least
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify_exactly
-from problems.lcp.proof.compensated import accurate_w
-from problems.lcp.proof.pieces import inverses
+from problems.lcp.proof.compensated import LARGEST_TERMS, accurate_w, error_bound
+from problems.lcp.proof.pieces import identity, inverses
 
 EPS = float(np.finfo(float).eps)
 
@@ -27,7 +24,7 @@ LARGEST_DECIDED = 12
 """Up to this order all faces are tried in exact arithmetic, within about a second, before the first restart; and what
 solves a problem to the tolerance but not to round-off is called a solution only if exact arithmetic agrees."""
 
-ENTRIES = 2 * float(np.finfo(float).eps)
+ENTRY_ROUNDING = 2 * float(np.finfo(float).eps)
 """A relative residual below this is within rounding: half an eps for x, and half for each factor that gave the entries
 their units, of a row and of a column; the last half is for their products."""
 
@@ -51,9 +48,9 @@ def confirmed(problem: MixedLCP, certificate: Certificate, tolerance: float) -> 
     """
     if not certificate.solves(tolerance):
         return False
-    if certificate.relative_residual <= ENTRIES or problem.n > LARGEST_DECIDED:
+    if certificate.relative_residual <= ENTRY_ROUNDING or problem.n > LARGEST_DECIDED:
         return True
-    return exact_nearby(problem, certificate.x)
+    return exact_nearby(problem, certificate.x, certificate.w)
 
 
 def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
@@ -70,7 +67,7 @@ def to_precision(problem: MixedLCP, certificate: Certificate) -> bool:
     return problem.relative_residual(certificate.x) <= ROUND_OFF
 
 
-def exact_nearby(problem: MixedLCP, x: Array) -> bool:
+def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     """Whether the problem has a solution, exactly, on the face of x or on one that x touches.
 
     Where rounding cannot matter floats prove it; in doubt the equations are solved in rationals.
@@ -81,6 +78,8 @@ def exact_nearby(problem: MixedLCP, x: Array) -> bool:
         Small: dense matrices are made.
     x : ndarray, shape (n,)
         A point that is `confirmed`.
+    w : ndarray, shape (n,), optional
+        That of its certificate.
 
     References
     ----------
@@ -88,95 +87,105 @@ def exact_nearby(problem: MixedLCP, x: Array) -> bool:
     """
     # Asked by the finish, by the search and for the outcome, of the same point.
     point, answer = problem.known.get("exact", (None, False))
-    if point is None or not np.array_equal(point, x):
-        answer = (problem.standard and _clearly_exact(problem, x)) or certify_exactly(problem, x).solves
+    if point is None or not (point is x or np.array_equal(point, x)):
+        answer = (problem.standard and _clearly_exact(problem, x, w)) or certify_exactly(problem, x).solves
         problem.known["exact"] = x, answer
     return bool(answer)
 
 
-def _clearly_exact(problem: MixedLCP, x: Array) -> bool:
-    """Whether floats prove it; mostly plain arithmetic is enough."""
-    if not x.any():
-        return least(problem.q) >= 0.0
-    A: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
-    found = Faced.of(A, problem.q, x)
-    return bool(found.exact(*found.plain) or found.exact(*accurate_w(problem, x)))
+def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
+    """Whether floats prove it, as `Faced` does of many points; w is in twice the working precision."""
+    q, n, on = problem.q, problem.n, x.nonzero()[0]
+    if not on.size:
+        return least(q) >= 0.0
+    if w is None:
+        w = accurate_w(problem, x)[0]
+    A: Array = problem.A.toarray() if problem.sparse else problem.A
+    terms, ones = A * x, np.ones(n)
+    total = np.abs(terms) @ ones
+    size = total + np.abs(q)
+    # Beyond this w is summed over powers of two, and what it lost is not known here.
+    if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
+        return False
+    unit, ones = total, ones[: on.size]
+    if on.size < n:
+        terms, unit = terms.take(on, 0).take(on, 1), unit.take(on)
+    if not least(unit) > UNDERFLOW:
+        return False
+    # No row of |B| sums to more than 1; what rounding of it and of the product may hide (Higham, section 3.5), twice.
+    block, one, rounding = terms / unit[:, None], identity(on.size), 2.0 * (n + 4) * EPS
+    found, singular = dgesv(block, one)[2:]
+    if singular:
+        return False
+    inverse = np.abs(found)
+    off = np.abs(found @ block - one) @ ones + rounding * (inverse @ ones)
+    defect = off.item(off.argmax())
+
+    def clear(bound: Array) -> bool:
+        far = inverse @ ((np.abs(w) + bound).take(on) / unit)
+        moved = far.item(far.argmax()) * (1.0 + ROUND_OFF) / (1.0 - defect)
+        positive = w - bound > 2.0 * moved * total
+        positive[on] = True
+        return moved < 0.5 and bool(np.logical_and.reduce(positive))
+
+    # Mostly the error of plain arithmetic is small enough, which takes less time to say.
+    return defect < 0.5 and (clear(2.0 * EPS * size) or clear(error_bound(w, size, n + 1)))
 
 
 @frozen(eq=False)
 class Faced:
-    """The equations of the faces of points of one LCP or of a stack, in units of x, with approximate inverses.
+    """The equations of the faces of points of a stack of LCPs, in units of x, with approximate inverses.
 
     Where the others are off a face its block B has rows of the identity. With an approximate inverse R and
     |I - R B| <= d < 1, B is not singular, and B u = r has |u| <= |R| |r| / (1 - d) in the largest norm.
 
-    `on`, of shape (..., n): Where x > 0. `total`, `largest`, of shape (..., n): Sum and largest of the terms of each
-    row of A x, the largest 1 off the face. `plain`: w, and how far it may be off by rounding. `size`, of shape (..., n,
-    n): |R|. `defect`, of shape (...): d, NaN or infinite where nothing is proved.
+    `on`, of shape (..., n): Where x > 0. `total`, `top`, of shape (..., n): Sum and largest of the terms of each
+    row of A x, the largest 1 off the face. `size`, of shape (..., n, n): |R|. `defect`, of shape (...): d, NaN or
+    infinite where nothing is proved.
     """
 
     on: NDArray[np.bool_]
     total: Array
-    largest: Array
-    plain: tuple[Array, Array]
+    top: Array
     size: Array
     defect: Array
 
     @classmethod
-    def of(cls, A: Array, q: Array, x: Array) -> Faced:
+    def of(cls, A: Array, x: Array) -> Faced:
         """For points x >= 0.
 
-        `A` of shape (..., n, n). `q`, `x` of shape (..., n).
+        `A` of shape (..., n, n). `x` of shape (..., n).
         """
         on, n = x > 0.0, x.shape[-1]
         terms = A * x[..., None, :]
         sizes = np.abs(terms)
         # Reductions of ufuncs: for the small problems that come here methods of arrays take half as long again.
         total = np.add.reduce(sizes, axis=-1)
-        largest = np.where(on, np.maximum(np.maximum.reduce(sizes, axis=-1), UNDERFLOW), 1.0)
-        fine = np.minimum.reduce(largest, axis=-1) > UNDERFLOW
+        top = np.where(on, np.maximum(np.maximum.reduce(sizes, axis=-1), UNDERFLOW), 1.0)
+        fine = np.minimum.reduce(top, axis=-1) > UNDERFLOW
         one = identity(n)
         block = np.where(on[..., None], terms, one)
-        block /= largest[..., None]
-        inverse = _inverse(block)
+        block /= top[..., None]
+        inverse = inverses(block)
         # What rounding of the block and of the product may hide (Higham, section 3.5), twice; no row of |B| sums to
         # more than n.
         size, rounding = np.abs(inverse), 2.0 * (n + 4) * EPS
         off = np.abs(inverse @ block - one)
         off += n * rounding * size
-        # The error of a sum of n + 1 products (Higham, section 3.1).
-        bound = 0.5 * rounding * (total + np.abs(q)) + n * np.finfo(float).tiny
-        plain = np.add.reduce(terms, axis=-1) + q, bound
         defect = np.maximum.reduce(np.add.reduce(off, axis=-1), axis=-1)
-        return cls(on, total, largest, plain, size, np.where(fine, defect, np.inf))
+        return cls(on, total, top, size, np.where(fine, defect, np.inf))
 
     def exact(self, w: Array, bound: Array) -> NDArray[np.bool_]:
         """Whether the equations have a solution near x with w > 0 elsewhere.
 
         `w`, `bound`, of shape (..., n): w, and how far it may be off.
         """
-        right = np.where(self.on, (np.abs(w) + bound) / self.largest, 0.0)
+        right = np.where(self.on, (np.abs(w) + bound) / self.top, 0.0)
         moved = np.maximum.reduce((self.size @ right[..., None])[..., 0], axis=-1)
         moved = moved * (1.0 + ROUND_OFF) / (1.0 - self.defect)
         clear = self.on | (w - bound > 2.0 * moved[..., None] * self.total)
         exact: NDArray[np.bool_] = (self.defect < 0.5) & (moved < 0.5) & np.logical_and.reduce(clear, axis=-1)
         return exact
-
-
-@lru_cache(maxsize=32)
-def identity(n: int) -> Array:
-    """The matrix, read-only."""
-    one = np.eye(n)
-    one.flags.writeable = False
-    return one
-
-
-def _inverse(block: Array) -> Array:
-    """An approximate inverse, NaN where there is none; of a stack each."""
-    if block.ndim > 2:
-        return inverses(block)
-    found, singular = dgesv(block, identity(len(block)))[2:]
-    return np.full_like(block, np.nan) if singular else found
 
 
 def stationary(problem: MixedLCP, y: Array) -> bool:

@@ -102,8 +102,7 @@ def _lexicographic_least(rows: Array, scale: Array) -> int:
 
 def _lexicographic_rows(tableau: Array, candidates: NDArray[np.intp]) -> Array:
     n = tableau.shape[0]
-    rows: Array = np.hstack([tableau[candidates, -1:], tableau[candidates, :n]])
-    return rows
+    return np.hstack([tableau[candidates, -1:], tableau[candidates, :n]])
 
 
 def _leaving_row(tableau: Array, basis: NDArray[np.intp], entering: int, z0: int) -> int | None:

@@ -15,10 +15,10 @@ from problems.lcp.proof.verdict import LARGEST_DECIDED, exact_nearby
 from problems.lcp.reference.enumeration import Exhaustion
 from problems.lcp.search.outcome import LARGEST_SOUGHT, Outcome, Solution
 
-LARGEST = 100
+LARGEST_IN_ONE = 100
 """Up to this order making what a search consists of takes as long as this answer, and the face is made once."""
 
-LARGEST_FACES = LARGEST_SOUGHT
+LARGEST_EXCLUDED = LARGEST_SOUGHT
 """Up to this order all faces are excluded together, where that can be, before anything else is tried: floats with error
 bounds do it in 0.1 ms, where a proof by pivots takes 0.6."""
 
@@ -35,10 +35,11 @@ def at_once(finish: Finish) -> Solution | None:
     face = finish.faces.face(active_state(problem.q < 0.0), regular=finish.faces.structure.symmetric)
     point = None if face is None else face.point(np.zeros(problem.n))
     if face is None or point is None or not finish.judged(face, *point)[2]:
+        problem.known["looked"] = face is not None and face.exact
         return None
     certificate = finish.certificate
     assert certificate is not None
-    if problem.n <= LARGEST_DECIDED and not exact_nearby(problem, certificate.x):
+    if problem.n <= LARGEST_DECIDED and not exact_nearby(problem, certificate.x, certificate.w):
         return None
     counts = Counts(factorizations=1)
     return Solution(problem, Outcome.SOLVED, MESSAGE, certificate, (), -1, counts, time.perf_counter() - began)

@@ -10,8 +10,9 @@ from continuation.arrays import Array
 from continuation.linear.factoring import Factoring
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
-from problems.lcp.data.problem import MixedLCP, State, active_state
-from problems.lcp.search.pivots import Nearby
+from problems.lcp.data.problem import LCP, MixedLCP, State, active_state
+from problems.lcp.search.limits import LARGEST_SINGULAR, LEAST_REGULAR, LEAST_SINGULAR
+from problems.lcp.search.pivots import Nearby, independent
 from problems.lcp.search.search import Search
 
 
@@ -95,11 +96,30 @@ class Case:
         return self.known.symmetric and not self.known.z_matrix and not self.known.negative_diagonal
 
     @property
+    def contact_perhaps(self) -> bool:
+        """Whether faces are singular, as those of contact and constraints, so that pivots are quicker than these.
+
+        But not all is singular, as with one box on many corners.
+        """
+        known, problem = self.known, self.problem
+        if not LEAST_SINGULAR <= problem.n <= LARGEST_SINGULAR or known.z_matrix or known.negative_diagonal:
+            return False
+        if not isinstance(problem, LCP) or problem.sparse:
+            return False
+        share = 1.0 if problem.known.get("looked", False) else independent(problem)
+        return (share < 1.0 or not problem.A.diagonal().all()) and (known.symmetric or share >= LEAST_REGULAR)
+
+    @property
     def semidefinite(self) -> bool:
         """Whether A is known to be positive semidefinite: costs a factorisation."""
         if self.known.semidefinite is None:
             self.facts = matrix_facts(self.search.structure, self.known)
         return bool(self.known.semidefinite)
+
+    @property
+    def compiled(self) -> str:
+        """What is said of pivots that numba has compiled."""
+        return " (pivots compiled by numba)" if self.search.compiled else ""
 
     @property
     def in_budget(self) -> bool:

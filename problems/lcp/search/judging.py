@@ -65,7 +65,7 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
         undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)
-        exact = not undecided or exact_nearby(search.problem, end.certificate.x)
+        exact = not undecided or exact_nearby(search.problem, end.certificate.x, end.certificate.w)
         return Outcome.SOLVED if exact else Outcome.SOLVED_TO_PRECISION
     if isinstance(proof, Farkas) or (exhaustion is not None and not exhaustion.solvable):
         return Outcome.UNSOLVABLE

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from attrs import evolve
 
-from problems.lcp.active_set.finish import PATIENCE
+from problems.lcp.active_set.finish import CORRECTIONS_WITHOUT_GAIN
 from problems.lcp.active_set.iteration import Policy
 
 FIRST = Policy(steps=30)
@@ -13,13 +13,22 @@ FIRST = Policy(steps=30)
 AT_GUESS = Policy(steps=2)
 """Of the active set of a problem nearby: where it has hardly changed that is all; else pivots are quicker."""
 
-FROM_ZERO = Policy(steps=30, patience=PATIENCE)
+FROM_ZERO = Policy(steps=30, patience=CORRECTIONS_WITHOUT_GAIN)
 """From x = 0, which is no guess at all."""
 
 WHILE_REGULAR = evolve(FROM_ZERO, regular=True, singular=3)
 """The same where pivots come next: contacts in excess make faces singular, of which 10 to 20 take 1 to 30 ms, and
 Lemke's method half of that (arches and piles, n = 40 to 320; prices, n = 225 and 400). Two of them are enough for a box
 on many corners, in half of the time of pivots."""
+
+LEAST_SINGULAR, LARGEST_SINGULAR = 13, 400
+"""Between these orders Lemke's method comes before any other active set than the first, where that is singular or zeros
+are on the diagonal: of arches, piles and prices (n = 25 to 400) that takes 0.1 to 0.9 of the time. Below, a few active
+sets take as long; semidefinite problems of rank n / 2 take as long either way at n = 400."""
+
+LEAST_REGULAR = 0.4
+"""So many of the equations of the first face, as a share, are independent where pivots come first: of contact 0.5 to 1,
+of one box on many corners, of which two or three singular faces are enough, 0.05 to 0.4."""
 
 MOST_Z_STEPS = 1000
 """The same for a Z-matrix, where n corrections are enough: each makes the active set larger until it is right."""

@@ -29,7 +29,7 @@ LARGEST_ALL_FACES = 8
 """Up to this order all faces of what pivots have not solved are tried together: 64 take 0.3 ms (n = 6), 256 1.6 ms
 (n = 8), where `solve` takes 3 and 4 ms; at n = 9 both take 4 ms."""
 
-ENTRIES = 1 << 16
+TABLE_ENTRIES = 1 << 16
 """Entries of the tables that are pivoted together: half a megabyte, which stays in the cache."""
 
 AT_A_TIME = 4096
@@ -111,7 +111,7 @@ def solve_many(
     if executor is not None:
         instance_with("executor", executor, ("map",), "a concurrent.futures.Executor")
     k, n = constants.shape
-    together = max(ENTRIES // (n * (n + 2)), 1) if 0 < n <= LARGEST_TOGETHER else AT_A_TIME
+    together = max(TABLE_ENTRIES // (n * (n + 2)), 1) if 0 < n <= LARGEST_TOGETHER else AT_A_TIME
     one = partial(_answers, together=together, tolerance=tolerance, budget=budget)
     parts = [slice(begin, begin + AT_A_TIME) for begin in range(0, max(k, 1), AT_A_TIME)]
     given = [matrices[part] for part in parts], [constants[part] for part in parts]

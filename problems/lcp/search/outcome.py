@@ -10,7 +10,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.html import MOST_ROWS, table
+from continuation.html import TABLE_ROWS, table
 from continuation.path import Path, Step
 from continuation.status import Described, Kind, Status
 from problems.lcp.data.problem import MixedLCP
@@ -166,8 +166,8 @@ class Solution:
         rows = [("message", self.message), ("residual", f"{self.residual:.2e}"), ("paths", len(self.paths))]
         page = table(f"Solution: {self.outcome.name}, n = {self.problem.n}", rows)
         for name, values in self.named.items():
-            shown = ", ".join(f"{value:.6g}" for value in values[:MOST_ROWS])
-            page += table("", [(name, shown + (", ..." if len(values) > MOST_ROWS else ""))])
+            shown = ", ".join(f"{value:.6g}" for value in values[:TABLE_ROWS])
+            page += table("", [(name, shown + (", ..." if len(values) > TABLE_ROWS else ""))])
         return page
 
     def __bool__(self) -> bool:

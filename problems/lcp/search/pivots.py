@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from attrs import evolve, frozen
+from scipy.linalg.lapack import dgetrf
 
-from continuation.arrays import Array
+from continuation.arrays import Array, largest
 from problems.lcp.active_set.face import Mask
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
@@ -19,7 +20,7 @@ from problems.lcp.pivoting.starts import Game, covering, unit_of
 from problems.lcp.proof.farkas import infeasibility
 from problems.lcp.search.search import Search
 
-LARGEST = 1000
+LARGEST_TABLE = 1000
 """A larger order is not pivoted: a table is n^2 numbers, and a pivot goes through all of them."""
 
 LARGEST_CONVEX = 3000
@@ -32,10 +33,10 @@ MANY_ENTRIES = 10
 CONVEX_PIVOTS = 3
 """Times the order: what they may take."""
 
-AT_ORDER = 10
+PIVOTS_PER_ORDER = 10
 """So many pivots times the order are done at most,"""
 
-WORK = 1_000_000
+PIVOT_WORK = 1_000_000
 """and so many over the order, which is less from order 316 on: a second, where a path of order 1000 takes ten."""
 
 COVERINGS = 5
@@ -48,7 +49,7 @@ with 20 n pivots; with 10 n up to 6 are needed; entries from 0.1 to 3 need up to
 LABELS = (0, -1)
 """One of each player: where a path from one is long those from the others mostly are (covariant games of order 300)."""
 
-SHORT = 4
+SHORT_PATHS = 4
 """But of uniform and normal games of order 1000, where these take more than 10,000 pivots, 6 to 14 % of the labels
 have a path of less than n / 2, half of them of less than n / 4: at first so many labels are tried as one long path
 takes pivots, later twice as many with twice the pivots."""
@@ -57,6 +58,10 @@ GAME_WORK = 1_000_000_000
 """Entries of its table that a path of a game goes through at most; its pivots are doubled, label by label, up to there.
 Covariant games (rho = -.9) of order 300 take 5,000 to 17,000 pivots, 0.15 to 0.6 s; by other paths 2 s, where these
 arrive, which is in two of three."""
+
+ENOUGH, ROUNDING = 64, 1e-10
+"""Equations of the first face of which is asked how many are independent; a pivot that is rounding is smaller than this
+beside the largest."""
 
 AT_END = Policy(steps=2)
 """Corrections of the active set of the last basis, which is right but for rounding."""
@@ -77,11 +82,11 @@ def most_pivots(n: int) -> int:
     ----------
     n : int
     """
-    return min(AT_ORDER * n, WORK // n) if n <= LARGEST else CONVEX_PIVOTS * n
+    return min(PIVOTS_PER_ORDER * n, PIVOT_WORK // n) if n <= LARGEST_TABLE else CONVEX_PIVOTS * n
 
 
 def convex(structure: Structure) -> bool:
-    """Whether a problem beyond `LARGEST` is that of a convex program with constraints that is worth its pivots.
+    """Whether a problem beyond `LARGEST_TABLE` is that of a convex program with constraints that is worth its pivots.
 
     Parameters
     ----------
@@ -91,6 +96,19 @@ def convex(structure: Structure) -> bool:
     if not problem.sparse or problem.n > LARGEST_CONVEX or problem.A.nnz < MANY_ENTRIES * problem.n:
         return False
     return not structure.problem.A.diagonal().all() and structure.definite_where_it_has_entries()
+
+
+def independent(problem: LCP) -> float:
+    """How many equations of the first face, where q < 0, are independent but for rounding, as a share of the first few.
+
+    Parameters
+    ----------
+    problem : LCP
+        Dense.
+    """
+    inside = (problem.q < 0.0).nonzero()[0][:ENOUGH]
+    pivots = np.abs(dgetrf(problem.A[inside][:, inside])[0].diagonal())
+    return float(np.count_nonzero(pivots > ROUNDING * largest(pivots)) / pivots.size)
 
 
 def by_lemke(search: Search, seed: int) -> bool:
@@ -205,7 +223,8 @@ def by_lemke_howson(search: Search, seed: int) -> bool:
     def shortly(labels: Indices, most: int) -> bool:
         return any(leads(game.path(int(label)), most) for label in labels)
 
-    most, labels, batch = AT_ORDER * n, np.random.default_rng(seed).permutation(n), SHORT * AT_ORDER
+    most, batch = PIVOTS_PER_ORDER * n, SHORT_PATHS * PIVOTS_PER_ORDER
+    labels = np.random.default_rng(seed).permutation(n)
     paths = [game.path(LABELS[0] % n)]
     if leads(paths[0], most):
         return True
@@ -214,8 +233,14 @@ def by_lemke_howson(search: Search, seed: int) -> bool:
         most *= 2
         if any(leads(path, most) for path in paths):
             return True
-    return shortly(labels[:batch], n // SHORT) or shortly(labels[batch : 3 * batch], 2 * n // SHORT)
+    return shortly(labels[:batch], n // SHORT_PATHS) or shortly(labels[batch : 3 * batch], 2 * n // SHORT_PATHS)
 
 
 def _reached(search: Search, path: AlmostComplementary, ended: Ended) -> bool:
-    return ended is Ended.REACHED and search.settle(active_state(path.active), AT_END)
+    search.compiled = path.compiled
+    # A first active set that was looked at, and not tried since, is counted here.
+    looked = not search.counts.factorizations and "looked" in search.problem.known
+    if ended is not Ended.REACHED or not search.settle(active_state(path.active), AT_END):
+        return False
+    search.counts.factorizations += looked
+    return True

@@ -61,7 +61,7 @@ class Search:
     For `continuation.trace`. `counts`: Of everything so far. `ends`: Where the paths, and the finish, led. `scaled`:
     The problem in units of its own, where it is solved in these. `postponed`: Whether these are looked for only when
     active sets have failed in the units given. `proof`: That there is no feasible point, exactly or to working
-    precision. `exhaustion`: What trying all faces came to.
+    precision. `exhaustion`: What trying all faces came to. `compiled`: Whether pivots were.
     """
 
     structure: Structure
@@ -78,6 +78,7 @@ class Search:
     postponed: bool = False
     proof: Farkas | FloatFarkas | None = None
     exhaustion: Exhaustion | None = None
+    compiled: bool = False
     began: float = field(factory=time.perf_counter)
     _kept: int = field(default=0, init=False)
 

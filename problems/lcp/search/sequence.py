@@ -15,12 +15,12 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
-from problems.lcp.data.scaling import SMALLEST, Scaled, balanced
+from problems.lcp.data.scaling import LEAST_EXPONENT, Scaled, balanced
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering, unit_of
 from problems.lcp.search.judging import answer, unscaled
 from problems.lcp.search.outcome import Solution
-from problems.lcp.search.pivots import AT_END, LARGEST, most_pivots
+from problems.lcp.search.pivots import AT_END, LARGEST_TABLE, most_pivots
 from problems.lcp.search.search import Search
 from problems.lcp.search.solver import solve
 from problems.options import check_tolerance
@@ -102,7 +102,7 @@ class Solver:
         scaled, current = self._scaled, problem
         if scaled is not None:
             moved = np.ldexp(problem.q, scaled.rows)
-            if not np.isfinite(moved).all() or (np.frexp(moved)[1][problem.q != 0.0] <= SMALLEST).any():
+            if not np.isfinite(moved).all() or (np.frexp(moved)[1][problem.q != 0.0] <= LEAST_EXPONENT).any():
                 return None
             current = self._scaled_lcp().with_q(moved)
         finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
@@ -131,7 +131,7 @@ class Solver:
         """Follow LCP(q + t (q before - q), A) from t = 1 to 0, else Lemke's path; whether that led to a solution."""
         problem = search.problem
         assert isinstance(problem, LCP)
-        if problem.n > LARGEST:
+        if problem.n > LARGEST_TABLE:
             return False
         begins = [(before - problem.q, basis) for before, basis in self._bases[::-1]]
         for d, basis in [*begins, (np.full(problem.n, unit_of(problem)), None)]:

@@ -36,6 +36,7 @@ from problems.lcp.data.spread import extreme, far_apart
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
+from problems.lcp.pivoting.starts import Game
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
@@ -179,15 +180,19 @@ def solve(
     plain = problem if scaled is None else scaled.problem
     # What scaling to floats would round is decided by exact arithmetic where that is cheap.
     postponed = postponed and (problem.n > LARGEST_DECIDED or not far_apart(plain))
-    quick = postponed and problem.n <= at_once.LARGEST and not problem.sparse
+    structure = Structure(plain)
+    quick = postponed and problem.n <= at_once.LARGEST_IN_ONE and not problem.sparse
+    # A game is left to its own method, which takes no active set.
+    game = quick and plain.A[0, 0] == 0.0 and isinstance(plain, LCP) and Game.of(plain) is not None
     kept: dict[bytes, Face] | None = {} if quick else None
+    plain.known.pop("looked", None)
     immediate = None
-    if quick and start is None and near is None and least(problem.q) < 0.0:
+    if quick and not game and start is None and near is None and least(problem.q) < 0.0:
         with np.errstate(all="ignore"):
-            immediate = at_once.at_once(Finish(Faces(Structure(plain), kept=kept), tolerance))
+            immediate = at_once.at_once(Finish(Faces(structure, kept=kept), tolerance))
             if immediate is not None and scaled is not None:
                 immediate = unscaled(problem, scaled, immediate, tolerance)
-            if immediate is None and plain.n <= at_once.LARGEST_FACES:
+            if immediate is None and plain.n <= at_once.LARGEST_EXCLUDED:
                 immediate = at_once.none_at_once(problem, plain)
         if immediate is not None and archive is None:
             return immediate
@@ -200,7 +205,8 @@ def solve(
         start = scaled.u(start)
     if scaled is not None and near is not None:
         near = Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
-    structure = Structure(problem if scaled is None else scaled.problem)
+    current = problem if scaled is None else scaled.problem
+    structure = structure if current is plain else Structure(current)
     search = Search(
         structure,
         Finish(Faces(structure, kept=kept, factoring=exchanging(sparse)), tolerance) if finish else None,

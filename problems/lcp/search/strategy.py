@@ -43,8 +43,8 @@ from problems.lcp.search.limits import (
     PROOF_SHARE,
     WHILE_REGULAR,
 )
-from problems.lcp.search.pivots import LARGEST, by_guess, by_lemke, by_lemke_howson, convex
-from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS
+from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, by_lemke, by_lemke_howson, convex
+from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, first_patience
 
 
 @frozen
@@ -174,7 +174,7 @@ def _feasible_start(case: Case) -> bool:
     return False
 
 
-def _path(name: str = "", **options: Any) -> Callable[[Case], bool]:
+def _path(name: str = "", patient: bool = False, **options: Any) -> Callable[[Case], bool]:
     """The path of a homotopy by name, or of the one that was asked for."""
 
     def run(case: Case) -> bool:
@@ -183,17 +183,16 @@ def _path(name: str = "", **options: Any) -> Callable[[Case], bool]:
         if start is not None and case.problem.standard and not start.all():
             start = np.where(start > 0.0, start, LEAST_START * natural_units(case.problem)[0])
         homotopy = HOMOTOPIES[case.followed].from_x0(case.problem, start, case.search.structure)
-        return case.search.follow(homotopy, **options)
+        patience = first_patience(case.problem.n) if patient and case.restarts > 0 else None
+        return case.search.follow(homotopy, patience=patience, **options)
 
     return run
 
 
 def _restarts(case: Case) -> bool:
     # Of a matrix that a homotopy by name was chosen for nothing was found out.
-    near = case.facts is not None and case.facts.nonnegative
-    case.tried = case.search.restart(
-        case.asked, case.seed, case.restarts, case.executor, NEAR_STARTS if near else FAR_STARTS
-    )
+    bands = NEAR_STARTS if case.facts is not None and case.facts.nonnegative else FAR_STARTS
+    case.tried = case.search.restart(case.asked, case.seed, case.restarts, case.executor, bands)
     return case.search.solved
 
 
@@ -225,7 +224,7 @@ def _pivotable(case: Case) -> bool:
     """Where the pure path is not asked for, and a table of n^2 numbers is no burden."""
     if not case.problem.standard or not case.in_budget or case.search.finish is None:
         return False
-    return case.problem.n <= LARGEST or convex(case.search.structure)
+    return case.problem.n <= LARGEST_TABLE or convex(case.search.structure)
 
 
 def _game_perhaps(case: Case) -> bool:
@@ -238,12 +237,12 @@ def _as_given(when: Callable[[Case], bool]) -> Callable[[Case], bool]:
 
 
 def _scaled(when: Callable[[Case], bool]) -> Callable[[Case], bool]:
-    """Else in units of the problem's own."""
+    """Else in units of the problem's own, once."""
     return lambda case: not case.pivoted and when(case)
 
 
 def _near(case: Case) -> bool:
-    return case.guess is not None and case.problem.n <= LARGEST and case.search.finish is not None
+    return case.guess is not None and case.problem.n <= LARGEST_TABLE and case.search.finish is not None
 
 
 def _provable(case: Case) -> bool:
@@ -279,10 +278,6 @@ def _tiny(case: Case) -> bool:
     return case.pivoted and case.problem.n <= LARGEST_TINY
 
 
-def _lacks_feasible_start(case: Case) -> bool:
-    return case.x0 is None and HOMOTOPIES[case.asked].feasible
-
-
 WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
     Attempt(
@@ -294,13 +289,14 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("a problem nearby", _near, _from_guess, "Solved from the solution of a problem nearby, before any path."),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, said.SETTLED),
     Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, said.SETTLED),
+    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
+    Attempt("Lemke, at once", _as_given(lambda c: _pivotable(c) and c.contact_perhaps), _by_lemke, said.LEMKE),
     Attempt(
         "active sets of A + shift I, from x = 0", lambda c: c.definite_perhaps, _proximally_from_zero, said.SETTLED
     ),
-    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("active sets, from x = 0", _always, _from_zero, said.SETTLED),
     Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, said.SETTLED_SHIFTED),
-    Attempt("Lemke, as given", _as_given(_pivotable), _by_lemke, said.LEMKE),
+    Attempt("Lemke, as given", _as_given(_scaled(_pivotable)), _by_lemke, said.LEMKE),
     Attempt("active sets, further", _stopped, _further, said.SETTLED),
     Attempt("proof, at once", _tiny, _proof, said.PROVED),
     Attempt("few faces, at once", _tiny, _all_faces, said.TRIED),
@@ -318,7 +314,7 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
 # The end of Wang's path solves the problem, where it has one; the KKT path has an end, which need not solve it.
 PATHS: tuple[Attempt, ...] = (
     Attempt("Wang's path", _wang_may_do, _path("wang", preset=FAST), said.FOLLOWED),
-    Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
+    Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", True, preset=FAST), said.FOLLOWED),
     Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, said.PROVED),
     Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
     Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, said.TRIED),
@@ -330,7 +326,9 @@ AUTOMATIC = (*WITHOUT_PATH, *PATHS)
 """For any matrix."""
 
 NAMED: tuple[Attempt, ...] = (
-    Attempt("feasible start", _lacks_feasible_start, _feasible_start, "{case.reason}"),
+    Attempt(
+        "feasible start", lambda c: c.x0 is None and HOMOTOPIES[c.asked].feasible, _feasible_start, "{case.reason}"
+    ),
     Attempt("path", _always, _path(), said.FOLLOWED),
     Attempt("proof", _provable, _proof, said.PROVED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 from continuation.budget import Budget
 from problems.lcp.data.problem import MixedLCP
 
 FACTORIZATIONS = 170_000
 """About a minute's for a small problem."""
 
-LEAST = 100
+LEAST_WORK = 100
 """About two paths."""
 
 
@@ -21,5 +23,9 @@ def default_budget(problem: MixedLCP) -> Budget:
     6.4 (a grid, n = 900), 180 (n = 10,000) and 38 (random, n = 1000), which is 0.35 (1 + n / 50) within a factor of 5.
     """
     size = problem.n / 50.0 if problem.sparse else problem.n**2 / 5000.0
-    limit = max(round(FACTORIZATIONS / (1.0 + size)), LEAST)
+    return _budget(max(round(FACTORIZATIONS / (1.0 + size)), LEAST_WORK))
+
+
+@lru_cache(maxsize=32)
+def _budget(limit: int) -> Budget:
     return Budget(steps=limit, factorizations=limit)

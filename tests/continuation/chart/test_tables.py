@@ -6,7 +6,7 @@ import pytest
 from attrs import evolve
 
 from continuation import chart
-from continuation.chart.front import FLOOR
+from continuation.chart.front import ERROR_FLOOR
 from continuation.chart.profile import profile_table, ratios
 from continuation.chart.scaling import scaling_table
 from continuation.counts import Counts
@@ -34,9 +34,9 @@ def test_the_front_is_what_nothing_beats():
         ("cheap", 1e-2, 10, ""),
         ("middle", 1e-4, 20, ""),
         ("beaten", 1e-3, 30, ""),
-        ("exact", FLOOR / 10, 50, ""),
-        ("also exact", FLOOR / 2, 50, ""),
-        ("dearer", FLOOR / 100, 60, ""),
+        ("exact", ERROR_FLOOR / 10, 50, ""),
+        ("also exact", ERROR_FLOOR / 2, 50, ""),
+        ("dearer", ERROR_FLOOR / 100, 60, ""),
         ("failed", 1e-9, 1, "jump"),
     )
     front = [r.method for r in chart.on_front(results.rows, "e", "factorizations")]

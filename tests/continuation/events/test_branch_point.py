@@ -5,7 +5,10 @@ import pytest
 from attrs import evolve
 
 from continuation import (
+    CONSERVATIVE,
     DEFAULT,
+    FAST,
+    SERIES,
     BranchPoint,
     Budget,
     Kind,
@@ -20,7 +23,7 @@ from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from problems.bifurcation import Pitchfork
 
-from ...util import every_preset
+from ...util import by_preset, every_preset
 from ..util import scalar
 
 
@@ -186,3 +189,30 @@ def test_an_avoided_branch_point_is_not_crossed(imperfection, preset):
     x = path.endpoint.y[0]
     assert np.sign(x) == np.sign(imperfection)
     assert abs(x) > 0.9
+
+
+@pytest.mark.parametrize(("first", "second", "bent"), [(0.2, -2.2, 0.0), (0.2, -2.2, 0.3), (-1.8, -2.5, 0.1)])
+@by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
+def test_two_curves_a_millionth_apart_do_not_cross(first, second, bent, preset):
+    # (y - f)(y - g) = 1e-12: all that H is made of, but for the constant, vanishes where f and g cross.
+    def graphs(lam):
+        return first * lam + bent * np.sin(2.0 * lam), second * lam - bent * lam**2
+
+    def upper(lam):
+        f, g = graphs(lam)
+        return 0.5 * (f + g) + np.hypot(0.5 * (f - g), 1e-6)
+
+    def derivatives(y, lam):
+        (f, g), slope = graphs(lam), second - 2.0 * bent * lam
+        return 2.0 * y - f - g, -(first + 2.0 * bent * np.cos(2.0 * lam)) * (y - g) - slope * (y - f)
+
+    homotopy = scalar(
+        lambda y, lam: (y - graphs(lam)[0]) * (y - graphs(lam)[1]) - 1e-12,
+        derivatives,
+        start=(upper(-2.0), -2.0),
+        target=2.0,
+    )
+    path = trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert not path.events
+    np.testing.assert_allclose(path.endpoint.y, [upper(2.0)], rtol=1e-9)

@@ -8,6 +8,7 @@ import pytest
 from continuation import Kind, Monitor, Status, TargetValue, TurningPoint, trace
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
+from continuation.point.segment import HermiteSegment
 from problems.bifurcation import Circle, Cusp, ExponentialCosine, FreudensteinRoth
 
 from ..util import scalar
@@ -199,3 +200,12 @@ def test_no_false_turning_point_where_the_parameter_dies_out():
 def test_no_false_turning_point_on_a_path_of_constant_parameter_rate():
     flat = scalar(lambda y, lam: y - 1.0, lambda y, lam: (1.0, 0.0), start=(1.0, 0.0))
     assert trace(flat, events=[TurningPoint(0)]).events == []
+
+
+@pytest.mark.parametrize("i", [0, 2, -1])
+def test_one_coordinate_of_a_cubic_is_that_of_all(i):
+    segment = HermiteSegment(*np.random.default_rng(5).standard_normal((4, 4)))
+    at, slope = segment.coordinate(i)
+    for t in (0.0, 0.3, 0.77, 1.0, 1.4):
+        assert at(t) == pytest.approx(segment.at(t)[i], rel=1e-14)
+        assert slope(t) == pytest.approx(segment.derivative(t)[i], rel=1e-14, abs=1e-14)

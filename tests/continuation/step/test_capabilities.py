@@ -3,12 +3,20 @@
 import numpy as np
 import pytest
 
-from continuation import Status, check_jacobian, trace
+from continuation import Status, check_jacobian, homotopy, trace
 from continuation.predictors import Hermite, Polynomial, Taylor
 from continuation.step.capabilities import interior_fraction, max_step_of
 from problems.bifurcation import FreudensteinRoth
 
 from ...util import every_preset
+
+
+@pytest.mark.parametrize("name", ["Bordered", "Events", "Jacobian", "MaxStep", "Metric", "Pieces"])
+def test_what_is_offered_is_what_isinstance_says(name):
+    protocol = getattr(homotopy, f"Supports{name}")
+    parts = [Straight(), Straight(jacobian=None), Straight(switches=len), Straight(switches=len, piece=len)]
+    for part in (*parts, Straight(events=()), Straight(max_step=len), FreudensteinRoth()):
+        assert homotopy.offers(part, protocol) == isinstance(part, protocol)
 
 
 class Straight:

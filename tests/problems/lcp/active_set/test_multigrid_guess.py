@@ -39,7 +39,7 @@ def solved(problem, **options):
 
 @pytest.mark.parametrize(("m", "every"), [(31, 8), (63, 10)])
 def test_a_membrane_takes_two_factorisations_of_the_finest_level(m, every, orders):
-    found = solved(BENCHMARK["obstacle"](m), sparse="superlu")
+    found = solved(BENCHMARK["obstacle_2d"](m), sparse="superlu")
     assert found.counts.factorizations == len(orders) == every
     assert sum(2 * order > m * m for order in orders) == 2
     assert f"Sparse factorisations: {every} by SuperLU, at most " in found.message
@@ -53,7 +53,7 @@ def test_bounds_above_and_weighted_rows_have_a_cascade_too(row, m, finest, order
 
 def test_the_cascade_does_not_depend_on_which_side_the_obstacle_is(orders):
     """x >= l, x <= -l with signs changed, and x - l >= 0 have the same faces."""
-    problem = BENCHMARK["obstacle"](31)
+    problem = BENCHMARK["obstacle_2d"](31)
     l = np.sin(np.arange(problem.n))
     below = MixedLCP(problem.A, problem.q - problem.A @ l, l, np.full(problem.n, np.inf))
     above = MixedLCP(problem.A, problem.A @ l - problem.q, np.full(problem.n, -np.inf), -l)
@@ -65,7 +65,7 @@ def test_the_cascade_does_not_depend_on_which_side_the_obstacle_is(orders):
 
 def test_units_of_the_unknowns_cost_the_cascade_nothing(orders):
     """Powers of two that differ from one unknown to the next, on a line."""
-    problem = BENCHMARK["obstacle"](63)
+    problem = BENCHMARK["obstacle_2d"](63)
     unit = np.where(np.arange(problem.n) // 63 == 30, 4.0, 1.0)
     D = sp.diags_array(unit)
     moved = LCP(D @ problem.A @ D, unit * problem.q)

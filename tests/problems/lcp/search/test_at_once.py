@@ -50,7 +50,7 @@ def test_a_first_active_set_that_is_wrong_is_factored_once(made, monkeypatch):
     assert found.solved
     assert len(made) == len(set(made)) == found.counts.factorizations > 1
     made.clear()
-    monkeypatch.setattr(at_once, "LARGEST", 0)
+    monkeypatch.setattr(at_once, "LARGEST_IN_ONE", 0)
     without = lcp.solve(LCP(problem.A, problem.q))
     assert (without.message, without.counts) == (found.message, found.counts)
     assert len(made) == without.counts.factorizations
@@ -72,7 +72,7 @@ def test_an_iteration_over_regular_faces_ends_before_a_singular_one_which_may_be
 
 
 def test_where_pivots_fail_active_sets_go_on_from_the_singular_face(monkeypatch):
-    monkeypatch.setattr(at_once, "LARGEST", 0)
+    monkeypatch.setattr(at_once, "LARGEST_IN_ONE", 0)
     monkeypatch.setattr(strategy, "WHILE_REGULAR", evolve(strategy.WHILE_REGULAR, singular=0))
     assert "Lemke" in lcp.solve(SINGULAR).message
     monkeypatch.setattr(strategy, "by_lemke", lambda search, seed: False)
@@ -153,3 +153,31 @@ def test_a_singular_first_face_of_a_symmetric_matrix_is_left_to_the_proximal_met
     assert (len(made), asked) == (1, [])
     found = lcp.solve(problem)
     np.testing.assert_allclose(found.x, [1.5, 0.0, 0.0], atol=1e-15)
+
+
+def test_contact_goes_to_pivots_after_the_first_face_and_in_any_unit(made):
+    """Two boxes on each other: singular faces, but no few degrees of freedom of which each face tells nearly all."""
+    bodies = [(1.0, 1.0 / 6.0, 0.0, k + 0.5) for k in range(3)]
+    contacts = [(k, k - 1, side, float(k), 0.0, 1.0) for k in range(3) for side in (-0.5, 0.5)]
+    A, J, inverse = time_step(bodies, contacts, 0.5)
+    v = np.random.default_rng(1).normal(0.0, 0.05, 9) + 0.01 * inverse * np.tile([0.0, -9.81, 0.0], 3)
+    q = free_motion(J @ v)
+    found = lcp.solve(LCP(A, q))
+    assert "By Lemke's method" in found.message
+    assert len(made) == found.counts.factorizations == 2
+    other = lcp.solve(LCP(2.0**-11 * A, 2.0**-14 * q))
+    assert (other.outcome, other.counts) == (found.outcome, found.counts)
+    np.testing.assert_array_equal(8.0 * other.x, found.x)
+
+
+def test_a_singular_block_of_zeros_is_left_alone_in_any_unit():
+    """Routes between two pairs of nodes: the first face is that of the times, a block of zeros."""
+    R = np.array([[1.0, 1.0, 0.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
+    G = np.eye(2)[[0, 0, 1, 1]]
+    A = np.block([[R @ R.T, -G], [G.T, np.zeros((2, 2))]])
+    q = np.array([1.0, 2.0, 3.0, 1.0, -2.0, -1.0])
+    faces = Faces(Structure(LCP(A, q)))
+    assert faces.face(active_state(q < 0.0)) is None
+    x = lcp.solve(LCP(A, q)).x
+    for k in (-40, -11, 12):
+        np.testing.assert_array_equal(lcp.solve(LCP(2.0**k * A, 2.0**k * q)).x, x)

@@ -11,7 +11,7 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import Game
 from problems.lcp.search import pivots
-from problems.lcp.search.pivots import AT_ORDER, convex
+from problems.lcp.search.pivots import PIVOTS_PER_ORDER, convex
 from tests.util import benchmark
 
 HARD = benchmark("size/hard.py")
@@ -24,7 +24,7 @@ def test_they_are_followed_on_before_any_path():
     nothing = np.zeros((m, m))
     problem = LCP(np.block([[nothing, X - X.min() + 1.0], [(Y - Y.min() + 1.0).T, nothing]]), -np.ones(2 * m))
     game = Game.of(problem)
-    assert game.path(0).run(AT_ORDER * problem.n) is Ended.PIVOTS
+    assert game.path(0).run(PIVOTS_PER_ORDER * problem.n) is Ended.PIVOTS
     found = solve(problem)
     assert found.solved
     assert not found.paths
@@ -35,7 +35,7 @@ def test_they_are_followed_on_before_any_path():
 def test_other_labels_have_short_paths(seed, monkeypatch):
     problem = LCP(*HARD.game_of("uniform", 60, np.random.default_rng(seed)))
     # Neither of the two labels may go far.
-    monkeypatch.setattr(pivots, "AT_ORDER", 1)
+    monkeypatch.setattr(pivots, "PIVOTS_PER_ORDER", 1)
     monkeypatch.setattr(pivots, "GAME_WORK", 0)
     assert all(Game.of(problem).path(label).run(120) is Ended.PIVOTS for label in (0, 119))
     found = solve(problem)
@@ -60,5 +60,5 @@ def test_the_benchmark_runs(table, monkeypatch, capsys):
     monkeypatch.setattr(HARD.sys, "argv", ["hard.py", table, "--seeds", "1", "--size", "0.05"])
     HARD.main()
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == {"games": 25, "traffic": 4, "nonmonotone": 8}[table]
+    assert len(lines) == {"games": 25, "traffic": 4, "nonmonotone": 8, "boxes": 7}[table]
     assert not any(": 0 of 1" in line for line in lines)

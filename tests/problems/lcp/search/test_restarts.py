@@ -9,7 +9,7 @@ from attrs import evolve
 
 import continuation
 from problems import lcp
-from problems.lcp.homotopies.starts import LOG_DEVIATION, natural_units
+from problems.lcp.homotopies.starts import LOG_DEVIATION, natural_units, typical_units
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, Restart, light, reweighted, search_preset, trace_light
 
 PLANTED = 30
@@ -32,7 +32,7 @@ def restart(problem, k, **changes):
 @pytest.mark.parametrize("bands", [FAR_STARTS, NEAR_STARTS])
 def test_starts_are_centred_positive_and_at_their_distance(bands):
     problem = planted(1)
-    x, w = natural_units(problem)
+    x, w = typical_units(problem)
     for k in range(20):
         start = lcp.random_start(problem, np.random.default_rng(k), bands[k % len(bands)])
         assert min(a.min() for a in (start.x0, start.z1, start.z2, start.w0)) > 0.0
@@ -86,6 +86,30 @@ def test_a_solution_gains_nothing():
     assert reweighted(problem, weights, path) is weights
 
 
+def test_a_path_that_failed_on_its_way_says_nothing_of_stationary_points():
+    problem = planted(2)
+    path = restart(problem, 3).trace(continuation.Budget(steps=2))
+    assert path.endpoint.lam > 1e-3
+    assert reweighted(problem, np.full(PLANTED, 2.0), path) is None
+
+
+def test_the_first_path_leaves_time_for_others(monkeypatch):
+    monkeypatch.setattr("problems.lcp.search.restarts.FIRST", 0.1)
+    problem = next(p for p in map(planted, range(50)) if lcp.solve(p, restarts=0).paths)
+    first = lcp.solve(problem, restarts=1).paths[0]
+    assert "it has not ended after 9 steps" in first.message
+    assert "it has not ended" not in lcp.solve(problem, restarts=0).paths[0].message
+
+
+def test_one_row_in_other_units_hardly_moves_the_starts():
+    problem = planted(1)
+    units = np.ones(PLANTED)
+    units[np.argmin(np.abs(problem.q))] = 4.0
+    other = lcp.LCP(units[:, None] * problem.A, units * problem.q)
+    assert natural_units(other)[0] < 0.5 * natural_units(problem)[0]
+    assert typical_units(other)[0] > 0.75 * typical_units(problem)[0]
+
+
 def test_weights_move_the_path_and_not_the_solutions():
     problem = planted(5)
     weights = np.exp(np.random.default_rng(1).normal(0.0, 0.2, PLANTED))
@@ -116,7 +140,7 @@ def test_the_end_of_a_weighted_path_is_not_called_stationary(monkeypatch):
 
 
 def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.restarts.SMALLEST", 1e-2)
+    monkeypatch.setattr("problems.lcp.search.restarts.SETTLED_PRODUCT", 1e-2)
     problem = planted(3)
     paths = [restart(problem, k).trace(continuation.Budget()) for k in range(6)]
     given_up = [k for k, path in enumerate(paths) if "Given up: " in path.message]

@@ -6,7 +6,7 @@ import scipy.sparse as sp
 from attrs import fields
 
 from problems import lcp
-from problems.lcp.active_set.face import KEPT, Faces
+from problems.lcp.active_set.face import FACES_KEPT, Faces
 from problems.lcp.pivoting.dictionary import Dictionary
 from problems.lcp.search import judging
 from problems.scenes.planar import free_motion, impulses, time_step
@@ -41,9 +41,9 @@ def test_factors_are_kept(monkeypatch):
     made.clear()
     assert solver.solve(q * 1.001).solved
     assert not made
-    for k in range(3 * KEPT):
+    for k in range(3 * FACES_KEPT):
         solver.solve(r.standard_normal(30) + k)
-    assert len(solver._kept) <= KEPT
+    assert len(solver._kept) <= FACES_KEPT
 
 
 def test_a_solution_with_zeros_is_a_start():

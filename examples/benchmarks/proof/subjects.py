@@ -1,0 +1,107 @@
+"""Traced paths with their proofs, smooth, kinked and piecewise linear, which `corrupted.py` spoils."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation import Budget, certify, trace
+from continuation.certificate import Proof
+from continuation.path import Path
+from problems.bifurcation import Cusp, ExponentialCosine, FreudensteinRoth
+from problems.lcp import LCP, UnprovenError, along, prove_path
+from problems.lcp.homotopies import KKTHomotopy
+from problems.nonlinear import NormalMap, bratu_under_obstacle
+
+
+@frozen(eq=False)
+class Linear:
+    """A piecewise linear path, which is proved in rational numbers."""
+
+    problem: LCP
+    d: np.ndarray
+
+    def proved(self, path: Path) -> bool:
+        """Whether it is."""
+        try:
+            prove_path(self.problem, self.d, path)
+        except (UnprovenError, ValueError):
+            return False
+        return True
+
+
+def cubic(seed: int) -> NormalMap:
+    """Of three unknowns between bounds, with a force that is no line; kinks where they meet these."""
+    rng = np.random.default_rng(seed)
+    A, q, d = rng.normal(size=(3, 3)), rng.normal(size=3), rng.choice([-1.0, 1.0], 3)
+    return NormalMap(Cubic(A, q, d), x0=d, lam0=-12.0, lower=-1.0, upper=1.0, target=12.0)
+
+
+@frozen(eq=False)
+class Cubic:
+    """F(x, lam) = A x + x^3 / 4 + sin(x lam) / 5 + q + lam d."""
+
+    A: np.ndarray
+    q: np.ndarray
+    d: np.ndarray
+
+    def __call__(self, x: Any, lam: Any) -> Any:
+        """The force."""
+        return self.A @ x + 0.25 * x**3 + 0.2 * np.sin(x * lam) + self.q + lam * self.d
+
+
+@frozen
+class TwoSheets:
+    """y^2 = lam^2 + gap^2: for a small gap each of the two sheets has a sharp bend next to that of the other."""
+
+    gap: float
+    target: float = 1.0
+
+    def start(self) -> tuple[np.ndarray, float]:
+        """On the upper sheet."""
+        return np.array([np.hypot(1.0, self.gap)]), -1.0
+
+    def residual(self, y: Any, lam: Any) -> Any:
+        """Of the equation."""
+        return y**2 - lam**2 - self.gap**2
+
+
+@cache
+def subjects(seed: int = 0) -> list[tuple[Any, Path, Proof]]:
+    """Homotopies with their paths and proofs; from seed 1 on random ones among them, those that are proved."""
+    rng = np.random.default_rng([seed, 20])
+    matrix, q = np.array([[1.0, -2.0, 0.5], [3.0, 0.2, -1.0], [-0.5, 2.0, 1.0]]), np.array([-1.0, 1.0, -2.0])
+    drawn_ones = [LCP(rng.normal(size=(n, n)), rng.normal(size=n)) for n in rng.integers(2, 5, 4)] if seed else []
+    homotopies = [
+        FreudensteinRoth(),
+        Cusp(),
+        ExponentialCosine(3),
+        KKTHomotopy(LCP(matrix, q)),
+        *kinked(),
+        *([TwoSheets(10.0 ** rng.uniform(-4.0, -1.0))] if seed else []),
+        *map(KKTHomotopy, drawn_ones),
+    ]
+    out = []
+    for homotopy in homotopies:
+        path = trace(homotopy, budget=Budget(steps=60))
+        out.append((homotopy, path, certify(path, homotopy)))
+    for problem in (turning(), *drawn_ones):
+        d = np.ones(problem.n)
+        line, homotopy = along(problem, d, (np.inf, 0.0)), Linear(problem, d)
+        if homotopy.proved(line):
+            out.append((homotopy, line, Proof.empty(problem.n + 1)))
+    return [one for one in out if len(one[1]) > 4 and one[2].complete]
+
+
+def turning() -> LCP:
+    """On the path of Lemke's method for it are six kinks, and in four of them t turns."""
+    return LCP(np.array([[2.0, 2.0, 4.0], [-3.0, 0.0, -3.0], [1.0, 3.0, 1.0]]), np.array([-5.0, 1.0, -4.0]))
+
+
+def kinked() -> list[Any]:
+    """Homotopies in pieces: kinks in which the parameter turns, and smooth turning points between kinks."""
+    lemke = NormalMap.affine(turning().A, turning().q, np.ones(3), x0=np.zeros(3), lam0=12.0)
+    return [bratu_under_obstacle(9, 2.0, target=3.55), lemke, cubic(39)]

@@ -1,0 +1,124 @@
+"""The pivots of `almost.AlmostComplementary` as one loop over numbers, which numba compiles where a program imports it.
+
+An import of numba and the first use of it take as long as 25,000 pivots of order 50 in numpy: none is made here.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+
+Indices = NDArray[np.intp]
+
+REACHED, RAY, MORE = 0, 1, 2
+"""How a run of pivots ends: with one of the last variables, on a ray, or because all of them are done."""
+
+
+def available() -> bool:
+    """Whether the program has imported numba."""
+    return hasattr(sys.modules.get("numba"), "njit")
+
+
+@lru_cache(maxsize=1)
+def kernel() -> Callable[..., Any]:
+    """`pivots`, compiled once for all programs of this machine, if numba finds a place to keep it."""
+    numba = sys.modules["numba"]
+    try:
+        found: Callable[..., Any] = numba.njit(cache=True)(pivots)
+    except RuntimeError:  # no such place
+        found = numba.njit(pivots)
+    return found
+
+
+def pivots(
+    tables: tuple[Array, Array],
+    basics: tuple[Indices, Indices],
+    nonbasics: tuple[Indices, Indices],
+    places: tuple[Indices, Indices],
+    firsts: tuple[int, int],
+    entering: int,
+    stop: tuple[int, int],
+    n: int,
+    most: int,
+    tiny: tuple[float, float],
+) -> tuple[int, int, int]:
+    """Pivot in place, as `Dictionary.first_zero`, `_least` and `pivot` do: (how it ended, pivots, entering variable).
+
+    `tables`, by columns, `basics`, `nonbasics`, `places`: Of two dictionaries, one of which may be empty. `firsts`: The
+    first of the variables that were basic at the beginning, m of them in a row. `stop`: The variables that end it.
+    `tiny`: `dictionary.ZERO` and `TIE`.
+    """
+    zero, tie = tiny
+    for done in range(most):
+        which = 0 if entering < places[0].size and places[0][entering] >= 0 else 1
+        table, basic, nonbasic, place = tables[which], basics[which], nonbasics[which], places[which]
+        m, k = table.shape
+        column = place[entering]
+        slopes = table[:, column].copy()
+        steepest = largest = 0.0
+        for i in range(m):
+            steepest = max(steepest, abs(slopes[i]))
+            largest = max(largest, abs(table[i, k - 1]))
+        best, row = -np.inf, -1
+        for i in range(m):
+            if slopes[i] < -zero * steepest:
+                ratio = max(table[i, k - 1], 0.0) / slopes[i]
+                if ratio > best:
+                    best, row = ratio, i
+        if row < 0:
+            return RAY, done, entering
+        tied, number, stops = np.empty(m, np.intp), 0, -1
+        for i in range(m):
+            if slopes[i] < -zero * steepest and max(table[i, k - 1], 0.0) - best * slopes[i] <= tie * largest:
+                tied[number] = i
+                number += 1
+                if stops < 0 and (basic[i] == stop[0] or basic[i] == stop[1]):
+                    stops = i
+        if number > 1 and stops >= 0:
+            row = stops
+        else:
+            # The coefficients of eps, eps^2, ...: least in the first that differs.
+            for power in range(m):
+                if number == 1:
+                    break
+                p, kept = place[firsts[which] + power], 0
+                if p >= 0:
+                    low, high = np.inf, -np.inf
+                    for j in range(number):
+                        ratio = table[tied[j], p] / slopes[tied[j]]
+                        low, high = min(low, ratio), max(high, ratio)
+                    limit = low + tie * max(max(high, -low), 1.0)
+                    for j in range(number):
+                        if table[tied[j], p] / slopes[tied[j]] <= limit:
+                            tied[kept] = tied[j]
+                            kept += 1
+                else:
+                    for j in range(number):
+                        if basic[tied[j]] != firsts[which] + power:
+                            tied[kept] = tied[j]
+                            kept += 1
+                number = kept
+            row = tied[0]
+        pivot = slopes[row]
+        slopes[row] = 0.0
+        table[:, column] = 0.0
+        for j in range(k):
+            moved = 1.0 / pivot if j == column else table[row, j] / -pivot
+            if moved != 0.0:
+                for i in range(m):
+                    table[i, j] += slopes[i] * moved
+            table[row, j] = moved
+        leaving = basic[row]
+        basic[row], nonbasic[column] = entering, leaving
+        place[leaving], place[entering] = column, -1
+        if leaving == stop[0] or leaving == stop[1]:
+            return REACHED, done + 1, entering
+        entering = leaving + n if leaving < n else leaving - n
+    return MORE, most, entering

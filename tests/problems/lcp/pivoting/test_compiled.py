@@ -1,0 +1,117 @@
+"""The loop that numba compiles takes the pivots that numpy takes: as plain Python here, compiled where numba is."""
+
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from problems import lcp
+from problems.lcp import LCP
+from problems.lcp.pivoting import almost, compiled
+from problems.lcp.pivoting.starts import Game, covering
+
+
+def problem(seed):
+    """Small integers, so that most ratio tests have ties; nonnegative ones end on a solution."""
+    r = np.random.default_rng([19, seed])
+    n = int(r.integers(2, 9))
+    return LCP(r.integers(-3 if seed % 2 else 0, 4, (n, n)), r.integers(-3, 2, n))
+
+
+def game(seed):
+    r = np.random.default_rng([20, seed])
+    m, n = r.integers(2, 7, 2)
+    A = np.zeros((m + n, m + n))
+    A[:m, m:], A[m:, :m] = r.integers(1, 4, (m, n)), r.integers(1, 4, (n, m))
+    return Game.of(LCP(A, -np.ones(m + n)))
+
+
+def ends(make, most=200):
+    """How a path ends, and where: by steps, and by the loop."""
+    found = []
+    for on in (False, True):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(almost, "available", lambda on=on: on)
+            path = make()
+            if path is None:
+                return [None, None]
+            path.run(most)
+            last = (
+                [] if path.ended is almost.Ended.PATH_LEFT else np.concatenate([d.table.ravel() for d in path.dictionaries])
+            )
+            found.append((path.ended, path.pivots, path.entering, path.active.tolist(), last))
+    return found
+
+
+def same(make):
+    by_steps, by_loop = ends(make)
+    assert (by_steps is None) == (by_loop is None)
+    if by_steps is None:
+        return None
+    assert by_steps[:4] == by_loop[:4]
+    np.testing.assert_allclose(by_steps[4], by_loop[4], rtol=1e-9, atol=1e-9)
+    return by_steps[0]
+
+
+@pytest.fixture
+def plain(monkeypatch):
+    monkeypatch.setattr(almost, "kernel", lambda: compiled.pivots)
+
+
+def agreed():
+    """How paths of Lemke's method, and of games, ended."""
+    seen = {}
+    for seed in range(80):
+        one = problem(seed)
+        end = same(lambda one=one: covering(one, np.ones(one.n)))
+        seen[end] = seen.get(end, 0) + 1
+    for seed in range(20):
+        assert same(lambda seed=seed: game(seed).path(seed % 4)) is almost.Ended.REACHED
+    return seen
+
+
+def test_the_loop_takes_the_pivots_of_the_steps(plain):
+    seen = agreed()
+    assert seen[almost.Ended.REACHED] > 20
+    assert seen[almost.Ended.RAY] > 10
+
+
+def test_the_loop_stops_where_pivots_are_used_up_and_tables_are_made_afresh(plain, monkeypatch):
+    monkeypatch.setattr(almost, "REBUILT_AFTER", -3)
+    one = LCP(np.eye(9) + np.triu(np.full((9, 9), 2.0), 1), -np.ones(9))
+    for most in (0, 1, 5, 100):
+        same(lambda: covering(one, np.arange(1.0, 10.0)))
+        by_steps, by_loop = ends(lambda: covering(one, np.arange(1.0, 10.0)), most)
+        assert by_steps[:4] == by_loop[:4]
+
+
+def test_it_is_used_where_the_program_has_imported_numba_and_said_so(monkeypatch):
+    monkeypatch.delitem(sys.modules, "numba", raising=False)
+    assert not compiled.available()
+    asked = []
+
+    def njit(function=None, cache=False):
+        asked.append(cache)
+        if cache:
+            raise RuntimeError("cannot cache function: no locator available")
+        return function
+
+    monkeypatch.setitem(sys.modules, "numba", SimpleNamespace(njit=njit))
+    compiled.kernel.cache_clear()
+    one = game(3).problem
+    try:
+        found = lcp.solve(one)
+    finally:
+        compiled.kernel.cache_clear()
+    assert asked == [True, False]
+    assert "Lemke and Howson (pivots compiled by numba)" in found.message
+    monkeypatch.delitem(sys.modules, "numba")
+    without = lcp.solve(LCP(one.A, one.q))
+    assert "Lemke and Howson, before" in without.message
+    np.testing.assert_array_equal(found.x, without.x)
+
+
+def test_numba_compiles_it():
+    pytest.importorskip("numba")
+    assert agreed()[almost.Ended.REACHED] > 20
