@@ -38,7 +38,9 @@ def ends(make, most=200):
                 return [None, None]
             path.run(most)
             last = (
-                [] if path.ended is almost.Ended.PATH_LEFT else np.concatenate([d.table.ravel() for d in path.dictionaries])
+                []
+                if path.ended is almost.Ended.PATH_LEFT
+                else np.concatenate([d.table.ravel() for d in path.dictionaries])
             )
             found.append((path.ended, path.pivots, path.entering, path.active.tolist(), last))
     return found
