@@ -53,7 +53,7 @@ def pivots(
 
     `tables`, by columns, `basics`, `nonbasics`, `places`: Of two dictionaries, one of which may be empty. `firsts`: The
     first of the variables that were basic at the beginning, m of them in a row. `stop`: The variables that end it.
-    `tiny`: `dictionary.ZERO` and `TIE`.
+    `tiny`: `dictionary.ZERO_PIVOT` and `TIE`.
     """
     zero, tie = tiny
     for done in range(most):
@@ -70,13 +70,14 @@ def pivots(
         for i in range(m):
             if slopes[i] < -zero * steepest:
                 ratio = max(table[i, k - 1], 0.0) / slopes[i]
-                if ratio > best:
+                if row < 0 or ratio > best:
                     best, row = ratio, i
         if row < 0:
             return RAY, done, entering
         tied, number, stops = np.empty(m, np.intp), 0, -1
         for i in range(m):
-            if slopes[i] < -zero * steepest and max(table[i, k - 1], 0.0) - best * slopes[i] <= tie * largest:
+            falls = slopes[i] < -zero * steepest
+            if i == row or (falls and max(table[i, k - 1], 0.0) - best * slopes[i] <= tie * largest):
                 tied[number] = i
                 number += 1
                 if stops < 0 and (basic[i] == stop[0] or basic[i] == stop[1]):

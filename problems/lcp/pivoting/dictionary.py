@@ -135,7 +135,9 @@ class Dictionary:
         if growing.size == 0:
             return None
         at = constants[growing] / slopes[growing]
-        zero = constants[growing] - at.min() * slopes[growing] <= TIE * largest(constants)
+        last = at.argmin()
+        zero = constants[growing] - at[last] * slopes[growing] <= TIE * largest(constants)
+        zero[last] = True  # also where that underflows
         return self._least(growing[zero], slopes[growing[zero]])
 
     def first_zero(self, column: int, preferred: frozenset[int]) -> int | None:
@@ -153,7 +155,9 @@ class Dictionary:
             values = np.maximum(values, 0.0)
         ratios = values / rates
         last = ratios.argmax()
-        zero = (values - ratios[last] * rates <= TIE * largest(constants)).nonzero()[0]
+        together = values - ratios[last] * rates <= TIE * largest(constants)
+        together[last] = True  # also where that underflows
+        zero = together.nonzero()[0]
         if zero.size == 1:
             return int(falling[zero[0]])
         tied = falling[zero]
