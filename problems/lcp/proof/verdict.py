@@ -98,6 +98,8 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     q, n, on = problem.q, problem.n, x.nonzero()[0]
     if not on.size:
         return least(q) >= 0.0
+    if least(x) < 0.0:
+        return False
     if w is None:
         w = accurate_w(problem, x)[0]
     A: Array = problem.A.toarray() if problem.sparse else problem.A

@@ -40,6 +40,10 @@ def test_floats_prove_what_is_clear_and_rationals_the_rest():
     assert exact_nearby(singular, np.array([2.0, 1.0]))
     inconsistent = LCP([[1.0, -1.0], [-1.0, 1.0]], [-1.0, 1.0 - LAST])
     assert not exact_nearby(inconsistent, np.array([2.0, 1.0]))
+    # Its equations have a solution, with an x that is negative, to far less than the tolerance.
+    below = LCP([[-1.0, 1.0], [0.0, 1.0]], [-1.0 - 2.0**-40, -1.0])
+    assert lcp.certify(below, [-(2.0**-40), 1.0]).solves()
+    assert not exact_nearby(below, np.array([-(2.0**-40), 1.0]))
 
 
 @pytest.mark.parametrize("make", [np.asarray, sp.csr_array])
