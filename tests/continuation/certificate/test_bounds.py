@@ -79,3 +79,12 @@ def test_the_parameter_moves_along_the_curve_as_is_bounded():
     assert proof.complete
     assert proof.boxes == len(path)
     assert (np.isfinite(second.lo).all(axis=1) | (first.lo > 0.0).all(axis=1) | (first.hi < 0.0).all(axis=1)).all()
+
+
+@pytest.mark.parametrize("A", [np.eye(2), [[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 1.0]]])
+def test_an_end_at_which_all_of_a_row_is_zero_is_proved_in_rationals(A):
+    q = np.append([-1.0, 1.0][: len(A) - 1], 0.0)
+    homotopy = KKTHomotopy(LCP(A, q))
+    proof = certify(trace(homotopy), homotopy)
+    assert proof.complete
+    assert "rational arithmetic" in proof.end
