@@ -56,7 +56,7 @@ SETTLED_PRODUCT = 5e-5
 RESTART_STEPS = 60
 """Steps, and n more, after which a restart is given up: of 144 paths that solved one took nearly as many."""
 
-FIRST = 2
+FIRST_PATH = 2
 """Times as many are left to the first path, which takes shorter ones, where nothing tells that it leads to a solution:
 one of a Hankel matrix of order 100 was not at its end after 3,000, and restarts had no time left."""
 
@@ -166,7 +166,7 @@ def first_patience(n: int) -> Patience:
 
     `n`: The order.
     """
-    return lambda step: _unending(step, FIRST * (RESTART_STEPS + n))
+    return lambda step: _unending(step, FIRST_PATH * (RESTART_STEPS + n))
 
 
 def _unending(step: Step, longest: int) -> str:

@@ -183,6 +183,8 @@ def _path(name: str = "", patient: bool = False, **options: Any) -> Callable[[Ca
         if start is not None and case.problem.standard and not start.all():
             start = np.where(start > 0.0, start, LEAST_START * natural_units(case.problem)[0])
         homotopy = HOMOTOPIES[case.followed].from_x0(case.problem, start, case.search.structure)
+        if name and not np.isfinite(homotopy.start()[0]).all():  # products with x0 overflow
+            homotopy = HOMOTOPIES[name].from_x0(case.problem, None, case.search.structure)
         patience = first_patience(case.problem.n) if patient and case.restarts > 0 else None
         return case.search.follow(homotopy, patience=patience, **options)
 

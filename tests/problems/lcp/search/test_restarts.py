@@ -94,7 +94,7 @@ def test_a_path_that_failed_on_its_way_says_nothing_of_stationary_points():
 
 
 def test_the_first_path_leaves_time_for_others(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.restarts.FIRST", 0.1)
+    monkeypatch.setattr("problems.lcp.search.restarts.FIRST_PATH", 0.1)
     problem = next(p for p in map(planted, range(50)) if lcp.solve(p, restarts=0).paths)
     first = lcp.solve(problem, restarts=1).paths[0]
     assert "it has not ended after 9 steps" in first.message

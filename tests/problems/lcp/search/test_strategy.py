@@ -135,3 +135,9 @@ def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, opt
     assert (problem.A.T @ y <= 0.0).all()
     assert problem.q @ y < 0.0
     assert len(calls) == expected
+
+
+def test_a_start_whose_products_overflow_is_left_for_the_path_s_own():
+    A = 1e300 * np.random.default_rng(0).standard_normal((5, 5))
+    found = lcp.solve(lcp.LCP(A, -np.full(5, 1e-2)), x0=np.ones(5), path=True, restarts=0)
+    assert found.paths[0].steps
