@@ -6,6 +6,8 @@ With bounds z1 and w0 have a number for each of them, which is as much as the ho
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.checks import instance_with
 from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
+from problems.lcp.data.spread import largest_entries
 from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.proof.phase1 import strictly_feasible_start
@@ -26,6 +29,9 @@ Measured on random nonmonotone problems (docs/lcp_benchmark.md): paths from so f
 those from near starts, unless A >= 0. Of 70 paths of seven that resist (n = 100) 17 solve from 1 to 1.5 or further, 11
 from 0.5 to 1, 4 from 0 to 0.5, and none from nearer.
 """
+
+SQUARED = 1e-140, 1e140
+"""Between these the largest entry of A can be squared, and what is less by ten digits or more too."""
 
 LOG_DEVIATION = 0.5
 """Standard deviation of the natural logarithms of the components; with 0 or 1 half as many paths solve (measured)."""
@@ -99,7 +105,7 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 
     One where A or q is zero.
     """
-    return _units(problem, float(np.sqrt(_row_squares(problem).max())))
+    return _units(problem, np.max)
 
 
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
@@ -108,15 +114,15 @@ def typical_units(problem: MixedLCP) -> tuple[float, float]:
     Of 100 paths from random starts of ten Gaussian problems (n = 100) 36 solve with it, 30 with x half as large, 28 by
     `natural_units`, where rows of 2 to 4 times the length that balancing leaves make x so much smaller.
     """
-    return _units(problem, 0.5 * float(np.sqrt(_row_squares(problem).mean())))
+    return _units(problem, np.mean, 0.5)
 
 
-def _row_squares(problem: MixedLCP) -> Array:
-    squares: Array = (problem.A.multiply(problem.A) if problem.sparse else problem.A * problem.A).sum(axis=1)
-    return squares
-
-
-def _units(problem: MixedLCP, row: float) -> tuple[float, float]:
+def _units(problem: MixedLCP, of_rows: Callable[[Array], Any], share: float = 1.0) -> tuple[float, float]:
+    most = largest_entries(problem)[1]
+    # Squares of what is far from 1 are no floats; over a power of two no digit is another one.
+    unit = 1.0 if SQUARED[0] < most < SQUARED[1] else 2.0 ** (math.frexp(most)[1] - 1)
+    A = problem.A if unit == 1.0 else problem.A / unit
+    row = share * math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
     w = float(np.abs(problem.q).max()) or row or 1.0
     return w / row if 0.0 < row < np.inf else w, w
 

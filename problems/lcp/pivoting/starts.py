@@ -18,7 +18,7 @@ from problems.lcp.pivoting.dictionary import TIE, Dictionary
 def unit_of(problem: LCP) -> float:
     """The power of two next to the largest entry of A: in it tables are kept, so that no common factor counts."""
     most = largest_entries(problem)[1]
-    return math.ldexp(1.0, math.frexp(most)[1]) if most > 0.0 else 1.0
+    return math.ldexp(1.0, min(math.frexp(most)[1], 1023)) if most > 0.0 else 1.0
 
 
 def covering(problem: LCP, d: Array, active: NDArray[np.bool_] | None = None) -> AlmostComplementary | None:

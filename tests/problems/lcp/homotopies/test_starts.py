@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from problems import lcp
+from problems.lcp.homotopies.starts import natural_units, typical_units
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint
 from problems.lcp.strategies import lcps
 from problems.paper import EXAMPLES
@@ -94,3 +96,14 @@ def test_bad_starts(make, argument, value, found):
     name = argument if argument == "x0" else ("w0" if make is lcp.KKTHomotopy else "y0")
     with pytest.raises(ValueError, match=f"{name}: expected .* found {found}|{name}: expected .* found .*{found}"):
         make(EXAMPLES[1].problem, **{"x0": [2.0, 1.0], name: value})
+
+
+@pytest.mark.parametrize("make", [np.asarray, sp.csr_array])
+@pytest.mark.parametrize("k", [-1000, -600, 500, 1000])
+def test_units_follow_a_common_factor_whose_square_is_no_float(make, k):
+    A, q = np.array([[2.0, 1.0], [-1.0, 3.0]]), np.array([-1.0, 2.0])
+    problem, other = lcp.LCP(make(A), q), lcp.LCP(make(2.0**k * A), 2.0**k * q)
+    for units in (natural_units, typical_units):
+        x, w = units(problem)
+        with np.errstate(all="raise"):
+            assert units(other) == (pytest.approx(x, rel=1e-15), 2.0**k * w)

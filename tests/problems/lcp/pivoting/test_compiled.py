@@ -134,6 +134,13 @@ def test_a_ratio_that_underflows_is_still_the_first(monkeypatch):
     run_to_ends()
 
 
+def test_the_largest_floats_have_a_unit():
+    largest = np.finfo(float).max
+    path = covering(LCP([[largest, 0.0], [0.0, largest]], [-largest, -largest]), np.full(2, largest))
+    assert path.run(10) is almost.Ended.REACHED
+    assert path.active.all()
+
+
 def test_numba_compiles_it():
     pytest.importorskip("numba")
     assert agreed()[almost.Ended.REACHED] > 20
