@@ -122,6 +122,11 @@ class Case:
         return " (pivots compiled by numba)" if self.search.compiled else ""
 
     @property
+    def hurried(self) -> bool:
+        """Whether restarts are to have time after a path that is not asked for, nor made of the caller's parts."""
+        return self.restarts > 0 and self.search.finish is not None and not self.search.options
+
+    @property
     def in_budget(self) -> bool:
         """Whether some of the budget is left."""
         return not self.search.exhausted

@@ -185,7 +185,7 @@ def _path(name: str = "", patient: bool = False, **options: Any) -> Callable[[Ca
         homotopy = HOMOTOPIES[case.followed].from_x0(case.problem, start, case.search.structure)
         if name and not np.isfinite(homotopy.start()[0]).all():  # products with x0 overflow
             homotopy = HOMOTOPIES[name].from_x0(case.problem, None, case.search.structure)
-        patience = first_patience(case.problem.n) if patient and case.restarts > 0 else None
+        patience = first_patience(case.problem.n) if patient and case.hurried else None
         return case.search.follow(homotopy, patience=patience, **options)
 
     return run

@@ -99,6 +99,10 @@ def test_the_first_path_leaves_time_for_others(monkeypatch):
     first = lcp.solve(problem, restarts=1).paths[0]
     assert "it has not ended after 9 steps" in first.message
     assert "it has not ended" not in lcp.solve(problem, restarts=0).paths[0].message
+    # A path that is asked for, or its steps, is followed to its end.
+    small = continuation.CONSERVATIVE
+    for options in ({"finish": False}, {"preset": small}, {"finish": False, "preset": small}):
+        assert "it has not ended" not in lcp.solve(problem, restarts=1, path=True, **options).paths[0].message
 
 
 def test_one_row_in_other_units_hardly_moves_the_starts():
