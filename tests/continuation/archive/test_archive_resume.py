@@ -113,10 +113,11 @@ def assert_same_path(found, path):
 
 
 WHOLE = {name: trace(PROBLEMS[name]) for name in ("circle", "freudenstein-roth")}
-EVERY_STEP = [(name, k) for name, path in WHOLE.items() for k in range(len(path) - 1)]
+EVERY_STEP = [("circle", k) for k in range(len(WHOLE["circle"]) - 1)]
+AT_EVENTS = [("freudenstein-roth", e.step + k) for e in WHOLE["freudenstein-roth"].events for k in (-1, 0)]
 
 
-@pytest.mark.parametrize(("problem", "k"), EVERY_STEP)
+@pytest.mark.parametrize(("problem", "k"), EVERY_STEP + AT_EVENTS)
 def test_interrupted_at_every_step_through_a_file(tmp_path, problem, k):
     path = WHOLE[problem]
     interrupt(tmp_path / "run.h5", PROBLEMS[problem], k)
