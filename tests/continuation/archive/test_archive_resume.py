@@ -80,7 +80,7 @@ class Snapshots:
 def test_each_state_leads_to_the_next_exactly(problem, options):
     """By induction from here on: the state that an archive holds gives the next state, bit for bit, at every step."""
     homotopy, seen = PROBLEMS[problem], Snapshots()
-    options = {"budget": Budget(steps=40), **options}
+    options = {"budget": Budget(steps=20), **options}
     tracer = Tracer(homotopy, observers=(seen,), **options)
     for _ in tracer:
         pass
