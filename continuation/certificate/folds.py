@@ -8,8 +8,9 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, slabs_of
+from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, slabs_of
 from continuation.certificate.engine import Engine, Judged, solved
+from continuation.certificate.links import nodes
 from continuation.intervals.ends import EPS, Ends
 
 SLAB_CUTS = 3
@@ -18,6 +19,13 @@ SLAB_CUTS = 3
 FOLD_PARTS = {1: 4, 2: 2, 3: 2}
 """Into how many parts, by the engine's order: with either what it leaves of the derivative is a quarter at most."""
 
+
+NEAR_LISTED = (1e-3, 1e-2, 0.1)
+"""Before and behind a listed turning point the sign is asked there, in lengths of the cell: it is off by its tolerance,
+of 1e-6 of a step, of which a cell is 1/256 at least."""
+
+RANGE = 0.25
+"""Longer ranges with a turning point, in cells, do not say where it is: these are asked, and what comes is less."""
 
 HOPE = 0.3
 """A cell of whose parts fewer than that are told is not cut further: its tube is too wide."""
@@ -48,12 +56,14 @@ class Piece:
 class Turn:
     """A range in which the path has exactly one turning point, in cells: number + parameter.
 
-    At an end of the path it is not `certain`: the point may lie a little beyond.
+    At an end of the path it is not `certain`: the point may lie a little beyond. The derivative of the parameter's
+    component of the tangent has the sign `bend` all over it.
     """
 
     lo: float
     hi: float
     certain: bool
+    bend: int
 
 
 def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> list[Piece]:
@@ -196,5 +206,46 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
         if len(bends) != 1 or 0 in bends:
             unknown.append(place)
         elif before != after:
-            out.append(Turn(*place, certain=bool(before and after)))
+            out.append(Turn(*place, certain=bool(before and after), bend=bends.pop()))
     return out, unknown
+
+
+def located(engine: Engine, cells: Cells, found: list[Turn], places: list[float]) -> list[Turn]:
+    """The same in shorter ranges, where turning points are said to be at these places.
+
+    The component grows, or falls, all over a range: where it has the sign that it has before its zero, that lies
+    behind. At points within a cell the order of parameters is that of the curve; next to nodes it need not be.
+
+    Parameters
+    ----------
+    engine : Engine
+    cells : Cells
+    found : list of Turn
+    places : list of float
+        In cells.
+    """
+    asked = [
+        (k, x)
+        for k, turn in enumerate(found)
+        for place in places
+        if turn.hi - turn.lo > RANGE and turn.lo <= place <= turn.hi
+        for near in NEAR_LISTED
+        for x in (place - near, place + near)
+        if turn.lo < x < turn.hi and abs(x - round(x)) > 2.0 * OVERHANG
+    ]
+    if not asked:
+        return found
+    x = np.array([place for _, place in asked])
+    owner = np.clip(x.astype(np.intp), 0, len(cells) - 1)
+    own = cells.take(owner)
+    at = nodes(engine, own, x - owner)
+    with np.errstate(all="ignore"):
+        sign = np.where((at.radius <= own.radius).all(axis=1), _sign(at.tangent), 0)
+    out = list(found)
+    for (k, place), told in zip(asked, sign.tolist()):
+        turn = out[k]
+        if told == -turn.bend:
+            out[k] = evolve(turn, lo=max(turn.lo, place))
+        elif told:
+            out[k] = evolve(turn, hi=min(turn.hi, place))
+    return out
