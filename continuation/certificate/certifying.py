@@ -223,7 +223,7 @@ class Search:
         if not len(cells):
             return np.zeros(0, bool), []
         by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
-        for piece in pieces(self.engine, cells, known):
+        for piece in pieces(self.engine, cells, known, last):
             by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]

@@ -13,12 +13,16 @@ from continuation.certificate.engine import Engine, Judged, solved
 from continuation.certificate.links import nodes
 from continuation.intervals.ends import EPS, Ends
 
-SLAB_CUTS = 3
-"""A slab without a sign is cut so often at most: where that does not help the tube is too wide."""
-
 FOLD_PARTS = {1: 4, 2: 2, 3: 2}
-"""Into how many parts, by the engine's order: with either what it leaves of the derivative is a quarter at most."""
+"""Into how many parts a slab is cut, by the engine's order: with either what it leaves of the derivative is a quarter at
+most."""
 
+SLAB_CUTS, LAST_CUTS = 3, {1: 3, 2: 6, 3: 6}
+"""A slab without a sign is cut so often at most, as a shorter cell tells more; and one of a cell that is not halved any
+more, by the engine's order: two turning points within 3e-8 of the parameter, on a way of 1, took five."""
+
+HOPE, HOPE_CUTS, LAST_HOPE_CUTS = 0.3, 2, 4
+"""A cell of whose parts fewer than that are told after so many cuts is not cut further: its tube is too wide."""
 
 NEAR_LISTED = (1e-3, 1e-2, 0.1)
 """Before and behind a listed turning point the sign is asked there, in lengths of the cell: it is off by its tolerance,
@@ -26,9 +30,6 @@ of 1e-6 of a step, of which a cell is 1/256 at least."""
 
 RANGE = 0.25
 """Longer ranges with a turning point, in cells, do not say where it is: these are asked, and what comes is less."""
-
-HOPE = 0.3
-"""A cell of whose parts fewer than that are told is not cut further: its tube is too wide."""
 
 
 @frozen(eq=False)
@@ -66,7 +67,7 @@ class Turn:
     bend: int
 
 
-def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> list[Piece]:
+def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = (), last: bool = True) -> list[Piece]:
     """Pieces of all cells in order, cut until the sign of the tangent, or of its derivative, is known.
 
     Parameters
@@ -76,6 +77,8 @@ def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> l
         Proved ones.
     known : sequence of list of Piece, optional
         Of each cell, as `told` gives them, where the bounds of its test told them.
+    last : bool
+        Whether cells are not to be halved instead, where many cuts do not tell it.
     """
     if known:
         return [evolve(piece, cell=k) for k, part in enumerate(known) for piece in part]
@@ -83,7 +86,8 @@ def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> l
     radius = slabs.cells.radius
     found: list[Piece] = []
     parts = FOLD_PARTS[engine.order]
-    for depth in range(SLAB_CUTS + 1):
+    cuts, patient = (LAST_CUTS[engine.order], LAST_HOPE_CUTS) if last else (SLAB_CUTS, HOPE_CUTS)
+    for depth in range(cuts + 1):
         judged, tube = engine.judge(slabs, radius), slabs.cells.radius
         if engine.exact:
             return told(judged, slabs, radius)
@@ -95,7 +99,7 @@ def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> l
         clear = (sign != 0) | (bend != 0)
         share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
         # A shorter cell tells more than parts of a slab: its cubic is nearer, and it has a smaller tube.
-        keep = clear | (depth == SLAB_CUTS) | (depth > 1) & (share[slabs.owner] < HOPE)
+        keep = clear | (depth == cuts) | (depth >= patient) & (share[slabs.owner] < HOPE)
         found += _rows(slabs.take(keep), sign[keep], bend[keep])
         if keep.all():
             break

@@ -54,7 +54,8 @@ def tail(solver: PathSolver, before: Node, end: Node, near: float) -> list[Node]
     list of Node
         None where the corrector does not find them.
     """
-    out, a, goal = [], before, float(end.u[-1])
+    out: list[Node] = []
+    a, goal = before, float(end.u[-1])
     while abs(float(a.u[-1]) - goal) > abs(near - goal) and len(out) < TAIL_NODES:
         found = _nearer(solver, a, end)
         if found is None:
