@@ -8,14 +8,12 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, slabs_of
+from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, slabs_of
 from continuation.certificate.engine import Engine, Judged, solved
-from continuation.certificate.links import nodes
 from continuation.intervals.ends import EPS, Ends
 
 FOLD_PARTS = {1: 4, 2: 2, 3: 2}
-"""Into how many parts a slab is cut, by the engine's order: with either what it leaves of the derivative is a quarter at
-most."""
+"""Into how many parts a slab is cut, by the engine's order: what it leaves of the derivative is a quarter at most."""
 
 SLAB_CUTS, LAST_CUTS = 3, {1: 3, 2: 6, 3: 6}
 """A slab without a sign is cut so often at most, as a shorter cell tells more; and one of a cell that is not halved any
@@ -23,6 +21,9 @@ more, by the engine's order: two turning points within 3e-8 of the parameter, on
 
 HOPE, HOPE_CUTS, LAST_HOPE_CUTS = 0.3, 2, 4
 """A cell of whose parts fewer than that are told after so many cuts is not cut further: its tube is too wide."""
+
+NARROWINGS = 2
+"""How often radii are replaced by those of the image: each time those of a wide tube fall to a tenth."""
 
 NEAR_LISTED = (1e-3, 1e-2, 0.1)
 """Before and behind a listed turning point the sign is asked there, in lengths of the cell: it is off by its tolerance,
@@ -147,6 +148,23 @@ def _narrowed(judged: Judged, radius: Array) -> Array:
         return np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
 
 
+def narrowed(engine: Engine, slabs: Slabs, radius: Array) -> tuple[Judged, Array]:
+    """Radii of parts of tubes within which the curve lies, and what is known of them there.
+
+    Parameters
+    ----------
+    engine : Engine
+    slabs : Slabs
+    radius : ndarray, shape (slabs, N + 1)
+        Within which it lies.
+    """
+    judged = engine.judge(slabs, radius)
+    for _ in range(NARROWINGS):
+        radius = _narrowed(judged, radius)
+        judged = engine.judge(slabs, radius)
+    return judged, radius
+
+
 def _sign(t: Ends) -> Index:
     """That of the last component."""
     return _sign_of(t[:, -1])
@@ -242,9 +260,8 @@ def located(engine: Engine, cells: Cells, found: list[Turn], places: list[float]
     x = np.array([place for _, place in asked])
     owner = np.clip(x.astype(np.intp), 0, len(cells) - 1)
     own = cells.take(owner)
-    at = nodes(engine, own, x - owner)
-    with np.errstate(all="ignore"):
-        sign = np.where((at.radius <= own.radius).all(axis=1), _sign(at.tangent), 0)
+    judged, radius = narrowed(engine, at_node(own, x - owner), own.radius)
+    sign = _sign(judged.tangent(radius, own.radius))
     out = list(found)
     for (k, place), told in zip(asked, sign.tolist()):
         turn = out[k]

@@ -26,7 +26,7 @@ NO_END = "no tube was found at the end"
 NOWHERE = "where the parameter turns is not known"
 
 EVENT_DISTANCE = 1e-4
-"""How far an event may be from the curve, in sizes of its cell: located ones are off by their tolerance, of 1e-6."""
+"""How far an event may be from the curve, in sizes of its step: located ones are off by their tolerance, of 1e-6."""
 
 LINK_TRIALS = 3
 """Looks at the links: with what tubes tell of their ends, with tests of these alone, and with wider tubes."""
@@ -79,7 +79,7 @@ def verified(
     if certificate or series:
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
     places = [_place(cells, event, path.arclength) for event in path.events]
-    places = _on_curve(engine, cells, path.events, places)
+    places = _on_curve(engine, cells, path, places)
     told = _between_nodes(known or pieces(engine, cells), cells, ends, at)
     turning, more = _turning(engine, cells, told, path, places)
     gaps += more + _events(path, places)
@@ -237,7 +237,7 @@ def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> flo
     span = cells.place[:, 1] - cells.place[:, 0]
     near = (cells.place[:, 0] - span <= s) & (s <= cells.place[:, 1] + span)
     if knots is not None:
-        k = int(np.clip(np.searchsorted(knots, s), 1, len(knots) - 1))
+        k = _later(knots, s)
         near |= (knots[k - 1] <= cells.place[:, 0]) & (cells.place[:, 1] <= knots[k])
     for k in np.flatnonzero(near).tolist():
         cell = cells.take(np.array([k]))
@@ -248,19 +248,23 @@ def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> flo
     return None
 
 
-def _on_curve(
-    engine: Engine, cells: Cells, events: list[LocatedEvent], places: list[float | None]
-) -> list[float | None]:
+def _later(knots: Array, s: float) -> int:
+    """The end of the step between two of the arclengths."""
+    return int(np.clip(np.searchsorted(knots, s), 1, len(knots) - 1))
+
+
+def _on_curve(engine: Engine, cells: Cells, path: Path, places: list[float | None]) -> list[float | None]:
     """The places of events next to which there is a point of the curve; None for others, in a wide tube."""
     known = [k for k, place in enumerate(places) if place is not None]
     if not known:
         return places
     owner = np.clip(np.array([int(places[k] or 0.0) for k in known]), 0, len(cells) - 1)
-    own = cells.take(owner)
-    at = nodes(engine, evolve(own, begin=np.array([events[k].u for k in known])), np.zeros(len(known)))
-    round_off = 8.0 * NODE_ULPS * EPS * np.abs([events[k].u for k in known])
+    own, u = cells.take(owner), np.array([path.events[k].u for k in known])
+    at = nodes(engine, evolve(own, begin=u), np.zeros(len(known)))
+    later = [_later(path.arclength, path.events[k].arclength) for k in known]
+    size = np.maximum(sizes(own), np.abs(np.diff(path.u, axis=0))[np.array(later) - 1])
     # Of what stands still a cell knows no size but the tube's.
-    allowed = np.where(own.begin == own.end, own.radius, EVENT_DISTANCE * sizes(own)) + round_off
+    allowed = np.where(own.begin == own.end, own.radius, EVENT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
     near = np.asarray((at.radius <= allowed).all(axis=1))
     lost = {k for k, good in zip(known, near) if not good}
     return [None if k in lost else place for k, place in enumerate(places)]
