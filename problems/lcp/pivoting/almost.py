@@ -80,7 +80,7 @@ class AlmostComplementary:
         self._since += pivots
         if self._since >= REBUILT_AFTER + self.n and self.ended is None:
             self._since = 0
-            if not min(one.rebuilt() for one in self.dictionaries) >= PATH_LEFT:
+            if not all(one.rebuilt() >= PATH_LEFT for one in self.dictionaries):
                 self.ended = Ended.PATH_LEFT
 
     @property

@@ -88,7 +88,8 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
     d = np.maximum.reduce(defect @ ones, axis=1) * (1.0 + unit)
     lost = np.where(between, unit * known, 0.0) + unit * (np.abs(right) + _times(block, np.abs(x))) + SMALLEST_NORMAL
     off = _times(size, np.abs(right - _times(B, x)) + lost)
-    off = np.maximum.reduce(off, axis=1)[:, None] * (1.0 + unit) / (1.0 - d[:, None])
+    # What is added is more than what underflow may cost, here as above.
+    off = np.maximum.reduce(off, axis=1)[:, None] * (1.0 + unit) / (1.0 - d[:, None]) + SMALLEST_NORMAL
     whole = x if bounds is None else np.where(between, x, ends)
     w = q + _times(A, whole)
     terms = np.abs(q) + _times(sizes, np.abs(whole))

@@ -134,6 +134,16 @@ def test_a_ratio_that_underflows_is_still_the_first(monkeypatch):
     run_to_ends()
 
 
+def test_a_game_is_left_where_the_table_of_either_player_is_singular(monkeypatch):
+    monkeypatch.setattr(almost, "REBUILT_AFTER", -100)
+    for lost in (0, 1):
+        path = game(15).path(0)
+        monkeypatch.setattr(
+            almost.Dictionary, "rebuilt", lambda one, at=path.dictionaries[lost]: np.nan if one is at else 0.0
+        )
+        assert path.run(200) is almost.Ended.PATH_LEFT
+
+
 def test_the_largest_floats_have_a_unit():
     largest = np.finfo(float).max
     path = covering(LCP([[largest, 0.0], [0.0, largest]], [-largest, -largest]), np.full(2, largest))

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 
 from problems import lcp
 from problems.lcp.mixed_strategies import mixed_lcps
-from problems.lcp.proof.pieces import doubtful
+from problems.lcp.proof.pieces import doubtful, in_doubt
 from problems.lcp.reference.enumeration import exhaust
 
 from ....util import benchmark
@@ -53,3 +53,10 @@ def test_nearly_all_faces_of_a_regular_problem_are_excluded():
     for _ in range(5):
         problem = lcp.LCP(rng.standard_normal((8, 8)), rng.standard_normal(8))
         assert doubtful(problem, states).sum() <= 8
+
+
+def test_a_solution_below_the_least_float_is_not_excluded():
+    A, x = np.array([[-6.0, 8.0, 7.0], [2.0, 2.0, 6.0], [-6.0, -4.0, -4.0]]), np.array([3.0, 1.0, 6.0])
+    with np.errstate(all="ignore"):
+        # x 2^-1078 solves it, and the products by which that is found underflow.
+        assert in_doubt(np.ldexp(A, 72), np.ldexp(-A @ x, -1006), np.zeros((1, 3), dtype=np.int8)).all()
