@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import Executor
 
+import numpy as np
 from attrs import define, field
 
 from continuation.arrays import Array
@@ -11,8 +12,10 @@ from continuation.linear.factoring import Factoring
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import LCP, MixedLCP, State, active_state
+from problems.lcp.proof.certificate import certify
+from problems.lcp.reference.branching import Branching
 from problems.lcp.search.limits import LARGEST_SINGULAR, LEAST_REGULAR, LEAST_SINGULAR
-from problems.lcp.search.pivots import Nearby, independent
+from problems.lcp.search.pivots import AT_END, Nearby, independent
 from problems.lcp.search.search import Search
 
 
@@ -42,6 +45,8 @@ class Case:
         The homotopy of the last path but for restarts.
     tried : int
         How many restarts were begun.
+    branching : Branching or None
+        The tree of the implicit enumeration, once that has begun.
     reason : str
         Why there is no start.
     """
@@ -58,6 +63,7 @@ class Case:
     proof_sought: bool = field(default=False, init=False)
     followed: str = field(default="", init=False)
     tried: int = field(default=0, init=False)
+    branching: Branching | None = field(default=None, init=False)
     reason: str = field(default="", init=False)
 
     @property
@@ -125,3 +131,35 @@ class Case:
     def in_budget(self) -> bool:
         """Whether some of the budget is left."""
         return not self.search.exhausted
+
+    def groupable(self, tree: tuple[int, int]) -> bool:
+        """Whether faces can be enumerated in groups: of an LCP no entry of which was rounded.
+
+        Parameters
+        ----------
+        tree : tuple of int
+            Its largest order, and how many linear programs it may take.
+        """
+        search, problem = self.search, self.problem
+        if search.finish is None or not isinstance(problem, LCP) or problem.sparse or problem.n > tree[0]:
+            return False
+        return (search.scaled is None or search.scaled.exact) and self.in_budget
+
+    def branch(self, tree: tuple[int, int]) -> bool:
+        """Begin that enumeration, or go on with it; whether it decided the problem.
+
+        Parameters
+        ----------
+        tree : tuple of int
+        """
+        search, problem = self.search, self.problem
+        if self.branching is None:
+            assert isinstance(problem, LCP)
+            self.branching = Branching(problem, lambda active: search.settle(active_state(active), AT_END))
+        found = self.branching.run(tree[1], search.seconds_left)
+        if found is None:
+            return self.branching.accepted
+        search.exhaustion = found
+        if found.point is not None and np.isfinite(found.point).all():
+            search.accept(certify(problem, found.point))
+        return True

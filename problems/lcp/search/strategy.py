@@ -32,7 +32,7 @@ from problems.lcp.search.limits import (
     FEW_PIECES,
     FIRST,
     FROM_ZERO,
-    LARGEST_EARLY_FACES,
+    LARGE_TREE,
     LARGEST_EARLY_PROOF,
     LARGEST_MADE_DENSE,
     LARGEST_PROOF,
@@ -41,6 +41,7 @@ from problems.lcp.search.limits import (
     MOST_AUGMENTED,
     MOST_Z_STEPS,
     PROOF_SHARE,
+    SMALL_TREE,
     WHILE_REGULAR,
 )
 from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, by_lemke, by_lemke_howson, convex
@@ -268,10 +269,8 @@ def _with_rows(case: Case) -> bool:
     return case.problem.primal > 0 and case.in_budget and not _in_a_box(case)
 
 
-def _has_few_faces(case: Case) -> bool:
-    if case.problem.standard:
-        return _pivotable(case) and case.problem.n <= LARGEST_EARLY_FACES
-    return decidable(case.problem, FEW_PIECES)
+def _has_few_pieces(case: Case) -> bool:
+    return not case.problem.standard and decidable(case.problem, FEW_PIECES)
 
 
 def _tiny(case: Case) -> bool:
@@ -306,7 +305,8 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("Lemke and Howson", _scaled(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
-    Attempt("few faces", _has_few_faces, _all_faces, said.TRIED),
+    Attempt("some groups of faces", lambda c: c.groupable(SMALL_TREE), lambda c: c.branch(SMALL_TREE), said.BRANCHED),
+    Attempt("few pieces", _has_few_pieces, _all_faces, said.TRIED),
     Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
 )
 """What is cheap and cannot mislead."""
@@ -317,6 +317,7 @@ PATHS: tuple[Attempt, ...] = (
     Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", True, preset=FAST), said.FOLLOWED),
     Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, said.PROVED),
     Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
+    Attempt("groups of faces", lambda c: c.groupable(LARGE_TREE), lambda c: c.branch(LARGE_TREE), said.BRANCHED),
     Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, said.TRIED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),
 )
