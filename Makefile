@@ -4,8 +4,9 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 OUT    ?= build/paper
 # One thread a worker: the suite runs two workers, and small matrices lose by threading. A file goes to one worker, so
-# that what its tests share is made once.
-TESTENV := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=Agg
+# that what its tests share is made once. What is compiled is kept, whatever the surroundings say of that: each worker,
+# and each program that a test starts, would compile all that it imports.
+TESTENV := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=Agg PYTHONDONTWRITEBYTECODE=
 
 .PHONY: demo test lint types suite reliability nightly chart docs clean
 

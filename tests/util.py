@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES
 from continuation.archive import ArchiveError
@@ -33,6 +34,11 @@ def load(file):
 def benchmark(name):
     """A module of the benchmarks, by its path below them."""
     return load(Path(__file__).parents[1] / "examples" / "benchmarks" / name)
+
+
+def share(examples):
+    """So many of a hundred examples of the profile: a hundred times as many in the nightly one."""
+    return settings(max_examples=settings.default.max_examples * examples // 100)
 
 
 every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE)

@@ -68,12 +68,13 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> t
     places = [0, *(kink.step for kink in kinks), len(path) - 1]
     tied = [(), *(kink.switches for kink in kinks), ()]
     arcs, others = [], [event for event in path.events if event.kind is not Kind.KINK]
+    before = None
     for k, (first, last) in enumerate(pairwise(places)):
         if first == last:  # a kink in which the path begins or ends
             continue
         steps, ends = path.steps[first : last + 1], (tied[k], tied[k + 1])
-        signs, told = _signs(homotopy, steps, ends)
-        gaps += told
+        signs, told = _signs(homotopy, steps, ends, before)
+        gaps, before = gaps + told, None if told else signs
         begin, end = steps[0].arclength, steps[-1].arclength
         if told:
             gaps.append(Gap(begin, end, "it is not on one piece"))
@@ -92,10 +93,10 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> t
     by_begin = {arc.proof.cells.place[0, 0]: arc for arc in arcs if len(arc.proof.cells)}
     crossed = []
     for kink in kinks:
-        before, after = by_end.get(kink.arclength), by_begin.get(kink.arclength)
-        if before is None or after is None:
+        left, right = by_end.get(kink.arclength), by_begin.get(kink.arclength)
+        if left is None or right is None:
             continue  # the path begins or ends there, or there is a gap
-        found = _joined(before, after, switches, kink)
+        found = _joined(left, right, switches, kink)
         if isinstance(found, str):
             gaps.append(Gap(kink.arclength, kink.arclength, found))
         else:
@@ -129,12 +130,18 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
     return out, gaps
 
 
-def _signs(homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...]) -> tuple[Array, list[Gap]]:
-    """Those of the switches between two kinks, and where the points are not on one piece."""
+def _signs(
+    homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...], before: Array | None
+) -> tuple[Array, list[Gap]]:
+    """Those of the switches between two kinks, given those before, and where the points are not on one piece."""
     with np.errstate(all="ignore"):
         values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
         middle = 0.5 * (steps[0].u + steps[1].u)
         signs = np.where(np.asarray(homotopy.switches(middle[:-1], middle[-1]), dtype=float) > 0.0, 1, -1)
+    if before is not None:
+        # What vanishes at both ends of a step is zero in the middle of its chord, too.
+        crossed = [j for j in ends[0] if 0 <= j < len(signs)]
+        signs[crossed] = -before[crossed]
     for row, end in zip((0, -1), ends):
         known = [j for j in end if 0 <= j < len(signs)]
         values[row, known] = signs[known]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from itertools import pairwise
 from typing import Any
 
@@ -10,7 +9,6 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.budget import Budget
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined
 from continuation.certificate.engine import Engine
@@ -22,6 +20,7 @@ from continuation.certificate.links import Nodes
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
+from continuation.certificate.tails import NEXT_TO_END, Node, tail
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
 from continuation.counts import Counts
@@ -32,13 +31,7 @@ from continuation.metric import Automatic, Metric
 from continuation.path import Path, Step, require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
-from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance
-
-NEXT_TO_END = 1e-6
-"""Where a path has a singular end, in lengths of the parameter's way there, it is proved up to there."""
-
-TAIL_STEPS = 300
 
 CELL_HALVINGS = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
@@ -171,16 +164,6 @@ def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Pr
     return evolve(proof, gaps=(*proof.gaps, *doubts))
 
 
-@frozen(eq=False)
-class Node:
-    """A point of the path with its tangent and the metric there."""
-
-    u: Array
-    tangent: Array
-    weights: Array
-    place: float
-
-
 @frozen(eq=False, slots=False)
 class Search:
     """The search for cells and tubes.
@@ -200,8 +183,7 @@ class Search:
         """Proved cells in order, the gaps between them, the pieces of the cells, and the curve at their ends."""
         solver = PathSolver(Evaluator(self.homotopy, Counts()), Tolerance())
         nodes = self._nodes(solver.evaluator)
-        tail = self._tail(nodes)
-        pending = list(pairwise([*nodes[: -1 if tail else None], *tail]))
+        pending = list(pairwise(self._to_end(solver, nodes)))
         done: list[Cells] = []
         ends: list[Nodes] = []
         told: list[list[Piece]] = []
@@ -241,7 +223,7 @@ class Search:
         if not len(cells):
             return np.zeros(0, bool), []
         by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
-        for piece in pieces(self.engine, cells, known):
+        for piece in pieces(self.engine, cells, known, last):
             by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]
@@ -257,27 +239,18 @@ class Search:
             out.append(Node(step.u, tangent, weights[k], step.arclength))
         return out
 
-    def _tail(self, nodes: list[Node]) -> list[Node]:
-        """Points up to next to an end that was found otherwise than by a step; none where a tube holds it as it is."""
+    def _to_end(self, solver: PathSolver, nodes: list[Node]) -> list[Node]:
+        """The nodes, with others in place of an end that was found otherwise than by a step, unless a tube holds it."""
         before, end = nodes[-2:]
         if not _made(self.path.steps[-1]) or search(self.engine, _cell(before, end)).proved.all():
-            return []
+            return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
         if lam == goal or (lam - near) * (near - goal) <= 0.0:
-            return []
-        start = (before.u, before.tangent)
-        budget = Budget(steps=TAIL_STEPS)
-        traced = Tracer(self.homotopy, start=start, target=near, finish=_never, examine=False, budget=budget)
-        with suppress(EvaluationError):
-            for _ in traced:
-                pass
-        found = traced.path
-        if len(found) < 2 or not np.array_equal(found.steps[0].u, before.u):
-            return []
-        rate = (end.place - before.place) / (found.arclength[-1] * (1.0 + NEXT_TO_END))
-        metric = _weights(self.homotopy, found)
-        return [Node(s.u, s.tangent, w, before.place + rate * s.arclength) for s, w in zip(found.steps[1:], metric[1:])]
+            return nodes
+        before = evolve(before, weights=_by_extent(np.ptp(self.path.u, axis=0)))
+        found = tail(solver, before, end, near)
+        return [*nodes[:-2], before, *found] if found else nodes
 
     def _tangent(self, evaluator: Evaluator, u: Array, weights: Array, before: Array | None) -> Array:
         border = weights * (u - before) if before is not None else weights * (self.path.steps[1].u - u)
@@ -299,10 +272,6 @@ class Search:
         return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
 
 
-def _never(y: Array, lam: float) -> None:
-    """No other finish than the target."""
-
-
 def _made(step: Step) -> bool:
     """Whether a point was not stepped to, but is an end that was found otherwise: its tangent is a chord."""
     return step.index > 0 and step.segment is None and step.corrector_iterations == 0
@@ -318,10 +287,14 @@ def _weights(homotopy: Any, path: Path) -> list[Array]:
     own: Metric | None = getattr(homotopy, "metric", None)
     if own is None:
         extent = np.maximum.accumulate(np.abs(points - points[0]), axis=0)
-        extent = np.vstack([extent[1:], extent[-1:]])
-        extent = np.where(extent > 0.0, extent, extent.max(axis=1, keepdims=True))
-        return [Automatic().of_extent(np.where(row > 0.0, row, 1.0)) for row in extent]
+        return [_by_extent(row) for row in np.vstack([extent[1:], extent[-1:]])]
     out: list[Array] = []
     for u, tangent in zip(points, tangents):
         out.append(own.weights(u, tangent, out[-1] if out else None))
     return out
+
+
+def _by_extent(extent: Array) -> Array:
+    """The metric for how far a path goes; what stands still counts as what goes farthest."""
+    extent = np.where(extent > 0.0, extent, extent.max())
+    return Automatic().of_extent(np.where(extent > 0.0, extent, 1.0))

@@ -8,19 +8,29 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, slabs_of
+from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, slabs_of
 from continuation.certificate.engine import Engine, Judged, solved
 from continuation.intervals.ends import EPS, Ends
 
-SLAB_CUTS = 3
-"""A slab without a sign is cut so often at most: where that does not help the tube is too wide."""
-
 FOLD_PARTS = {1: 4, 2: 2, 3: 2}
-"""Into how many parts, by the engine's order: with either what it leaves of the derivative is a quarter at most."""
+"""Into how many parts a slab is cut, by the engine's order: what it leaves of the derivative is a quarter at most."""
 
+SLAB_CUTS, LAST_CUTS = 3, {1: 3, 2: 6, 3: 6}
+"""A slab without a sign is cut so often at most, as a shorter cell tells more; and one of a cell that is not halved any
+more, by the engine's order: two turning points within 3e-8 of the parameter, on a way of 1, took five."""
 
-HOPE = 0.3
-"""A cell of whose parts fewer than that are told is not cut further: its tube is too wide."""
+HOPE, HOPE_CUTS, LAST_HOPE_CUTS = 0.3, 2, 4
+"""A cell of whose parts fewer than that are told after so many cuts is not cut further: its tube is too wide."""
+
+NARROWINGS = 2
+"""How often radii are replaced by those of the image: each time those of a wide tube fall to a tenth."""
+
+NEAR_LISTED = (1e-3, 1e-2, 0.1)
+"""Before and behind a listed turning point the sign is asked there, in lengths of the cell: it is off by its tolerance,
+of 1e-6 of a step, of which a cell is 1/256 at least."""
+
+RANGE = 0.25
+"""Longer ranges with a turning point, in cells, do not say where it is: these are asked, and what comes is less."""
 
 
 @frozen(eq=False)
@@ -48,15 +58,17 @@ class Piece:
 class Turn:
     """A range in which the path has exactly one turning point, in cells: number + parameter.
 
-    At an end of the path it is not `certain`: the point may lie a little beyond.
+    At an end of the path it is not `certain`: the point may lie a little beyond. The derivative of the parameter's
+    component of the tangent has the sign `bend` all over it.
     """
 
     lo: float
     hi: float
     certain: bool
+    bend: int
 
 
-def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> list[Piece]:
+def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = (), last: bool = True) -> list[Piece]:
     """Pieces of all cells in order, cut until the sign of the tangent, or of its derivative, is known.
 
     Parameters
@@ -66,6 +78,8 @@ def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> l
         Proved ones.
     known : sequence of list of Piece, optional
         Of each cell, as `told` gives them, where the bounds of its test told them.
+    last : bool
+        Whether cells are not to be halved instead, where many cuts do not tell it.
     """
     if known:
         return [evolve(piece, cell=k) for k, part in enumerate(known) for piece in part]
@@ -73,7 +87,8 @@ def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> l
     radius = slabs.cells.radius
     found: list[Piece] = []
     parts = FOLD_PARTS[engine.order]
-    for depth in range(SLAB_CUTS + 1):
+    cuts, patient = (LAST_CUTS[engine.order], LAST_HOPE_CUTS) if last else (SLAB_CUTS, HOPE_CUTS)
+    for depth in range(cuts + 1):
         judged, tube = engine.judge(slabs, radius), slabs.cells.radius
         if engine.exact:
             return told(judged, slabs, radius)
@@ -85,7 +100,7 @@ def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = ()) -> l
         clear = (sign != 0) | (bend != 0)
         share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
         # A shorter cell tells more than parts of a slab: its cubic is nearer, and it has a smaller tube.
-        keep = clear | (depth == SLAB_CUTS) | (depth > 1) & (share[slabs.owner] < HOPE)
+        keep = clear | (depth == cuts) | (depth >= patient) & (share[slabs.owner] < HOPE)
         found += _rows(slabs.take(keep), sign[keep], bend[keep])
         if keep.all():
             break
@@ -131,6 +146,23 @@ def _narrowed(judged: Judged, radius: Array) -> Array:
     with np.errstate(all="ignore"):
         inner = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
         return np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
+
+
+def narrowed(engine: Engine, slabs: Slabs, radius: Array) -> tuple[Judged, Array]:
+    """Radii of parts of tubes within which the curve lies, and what is known of them there.
+
+    Parameters
+    ----------
+    engine : Engine
+    slabs : Slabs
+    radius : ndarray, shape (slabs, N + 1)
+        Within which it lies.
+    """
+    judged = engine.judge(slabs, radius)
+    for _ in range(NARROWINGS):
+        radius = _narrowed(judged, radius)
+        judged = engine.judge(slabs, radius)
+    return judged, radius
 
 
 def _sign(t: Ends) -> Index:
@@ -196,5 +228,45 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
         if len(bends) != 1 or 0 in bends:
             unknown.append(place)
         elif before != after:
-            out.append(Turn(*place, certain=bool(before and after)))
+            out.append(Turn(*place, certain=bool(before and after), bend=bends.pop()))
     return out, unknown
+
+
+def located(engine: Engine, cells: Cells, found: list[Turn], places: list[float]) -> list[Turn]:
+    """The same in shorter ranges, where turning points are said to be at these places.
+
+    The component grows, or falls, all over a range: where it has the sign that it has before its zero, that lies
+    behind. At points within a cell the order of parameters is that of the curve; next to nodes it need not be.
+
+    Parameters
+    ----------
+    engine : Engine
+    cells : Cells
+    found : list of Turn
+    places : list of float
+        In cells.
+    """
+    asked = [
+        (k, x)
+        for k, turn in enumerate(found)
+        for place in places
+        if turn.hi - turn.lo > RANGE and turn.lo <= place <= turn.hi
+        for near in NEAR_LISTED
+        for x in (place - near, place + near)
+        if turn.lo < x < turn.hi and abs(x - round(x)) > 2.0 * OVERHANG
+    ]
+    if not asked:
+        return found
+    x = np.array([place for _, place in asked])
+    owner = np.clip(x.astype(np.intp), 0, len(cells) - 1)
+    own = cells.take(owner)
+    judged, radius = narrowed(engine, at_node(own, x - owner), own.radius)
+    sign = _sign(judged.tangent(radius, own.radius))
+    out = list(found)
+    for (k, place), told in zip(asked, sign.tolist()):
+        turn = out[k]
+        if told == -turn.bend:
+            out[k] = evolve(turn, lo=max(turn.lo, place))
+        elif told:
+            out[k] = evolve(turn, hi=min(turn.hi, place))
+    return out

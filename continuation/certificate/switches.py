@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
+from continuation.certificate.cells import Cells, Slabs, at_node, expansion, slabs_of
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Piece, turns
+from continuation.certificate.folds import Piece, narrowed, turns
 from continuation.certificate.krawczyk import ByIntervals
+from continuation.certificate.links import nodes
 from continuation.intervals.calculus import derivatives, with_gradient
 from continuation.intervals.ends import Ends, bilinear, thin
 
@@ -40,10 +41,11 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
     found: list[list[Piece]] = []
     for depth in range(SLAB_HALVINGS + 1):
         x, m = slabs.offset[:, None], radius.shape[1]
+        known, radius = narrowed(engine, slabs, radius)
         box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
         image = switches.image(with_gradient(box.lo, box.hi))
         sign = _signs(image.ends[0])
-        t = engine.judge(slabs, radius).tangent(radius, radius)
+        t = known.tangent(radius, slabs.cells.radius)
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, m)), Ends(t.lo[..., None], t.hi[..., None]))
         bend = np.where(sign == 0, _signs(Ends(slope.lo[..., 0], slope.hi[..., 0])), 0)
@@ -56,7 +58,20 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
         if keep.all():
             break
         slabs, radius = slabs.take(~keep).halved(2), np.repeat(radius[~keep], 2, axis=0)
-    return [sorted(one, key=lambda piece: (piece.cell, piece.lo)) for one in found]
+    at_ends = _at_ends(engine, switches, cells)
+    ordered = [sorted(one, key=lambda piece: (piece.cell, piece.lo)) for one in found]
+    return [[first, *one, last] for one, (first, last) in zip(ordered, at_ends)]
+
+
+def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> list[tuple[Piece, Piece]]:
+    """Of each switch, its signs at the first and the last point of the arc."""
+    s, sides = np.array([0.0, 1.0]), cells.take([0, -1])
+    radius = nodes(engine, sides, s).radius
+    radius = np.where((radius <= sides.radius).all(axis=1, keepdims=True), radius, np.nan)
+    first, last = value_at(switches, at_node(sides, s), radius)
+    return [
+        (Piece(0, 0.0, 0.0, a, 0), Piece(len(cells) - 1, 1.0, 1.0, b, 0)) for a, b in zip(first.tolist(), last.tolist())
+    ]
 
 
 def judged(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> tuple[float, float] | str:
@@ -73,11 +88,14 @@ def judged(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> 
     at : tuple of bool
         Whether it should vanish at the beginning, and at the end.
     """
+    begin, *inner, end = found
+    # What vanishes there is zero but for rounding.
+    found = [*([] if at[0] or not begin.sign else [begin]), *inner, *([] if at[1] or not end.sign else [end])]
     understood, unknown = turns(found)
     first = [turn for turn in understood if turn.lo <= 0.0 <= turn.hi]
     last = [turn for turn in understood if turn.lo <= count <= turn.hi]
     lo, hi = max((t.hi for t in first), default=-np.inf), min((t.lo for t in last), default=np.inf)
-    between = [piece.sign for piece in found if piece.cell + piece.lo >= lo and piece.cell + piece.hi <= hi]
+    between = [piece.sign for piece in found if lo < piece.cell + 0.5 * (piece.lo + piece.hi) < hi]
     if unknown or not any(between):
         return "kinks could not be counted"
     if len(understood) > len(first) + len(last) or -sign in between or (bool(first), bool(last)) > at:

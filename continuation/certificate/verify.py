@@ -12,7 +12,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, expansion, joined, sizes
 from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, certificate_of, series_of
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Piece, Turn, pieces, turns
+from continuation.certificate.folds import RANGE, Piece, Turn, located, pieces, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
@@ -23,12 +23,16 @@ from continuation.status import Kind
 
 NOT_A_NODE = "a point of the path is no node of the proof"
 NO_END = "no tube was found at the end"
+NOWHERE = "where the parameter turns is not known"
 
 EVENT_DISTANCE = 1e-4
-"""How far an event may be from the curve, in sizes of its cell: located ones are off by their tolerance, of 1e-6."""
+"""How far an event may be from the curve, in sizes of its step: located ones are off by their tolerance, of 1e-6."""
+
+LINK_TRIALS = 3
+"""Looks at the links: with what tubes tell of their ends, with tests of these alone, and with wider tubes."""
 
 WIDER = 1.5
-"""A tube that does not hold its neighbour's node is tried once with radii that do, and so much more."""
+"""A tube that does not hold its neighbour's node is tried with radii that do, and so much more."""
 
 
 def verified(
@@ -75,9 +79,9 @@ def verified(
     if certificate or series:
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
     places = [_place(cells, event, path.arclength) for event in path.events]
-    places = _on_curve(engine, cells, path.events, places)
+    places = _on_curve(engine, cells, path, places)
     told = _between_nodes(known or pieces(engine, cells), cells, ends, at)
-    turning, more = _turning(cells, told, path, places)
+    turning, more = _turning(engine, cells, told, path, places)
     gaps += more + _events(path, places)
     end, radius, missing = (certificate, None, []) if certificate else at_end(cells, at, ends, path)
     if series:
@@ -89,15 +93,17 @@ def verified(
 def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes, Mask, Nodes]:
     """The cells with links between them, some of them widened for that; points of the curve at all nodes.
 
-    Those that are `known`, to have a point in the tube, are not looked for again, unless they do not link.
+    Those that are `known`, to have a point in the tube, are not looked for again, unless they do not link. A wider tube
+    that is proved holds the same curve, and no other: what is known of its points stays.
 
     The last two are those at the start, and at the end with the parameter for a chart.
     """
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
     ask = ~known.proved
+    asked = ask.copy()
     at = Nodes(known.radius.copy(), Ends(known.tangent.lo.copy(), known.tangent.hi.copy()))
-    for again in (True, False):
+    for trial in range(LINK_TRIALS):
         first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
         s = np.ones(ask.sum() + 2)
         s[-2] = 0.0
@@ -106,9 +112,12 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
         ends = every.take(slice(-2, None))
         left, right = cells.take(slice(None, -1)), cells.take(slice(1, None))
         joints = linked(left, at.take(slice(0, -1)), right)
-        if joints.all() or not again:
+        if joints.all() or trial == LINK_TRIALS - 1:
             break
-        ask = np.append(~joints, False) | ~at.proved
+        ask = np.append(~joints, False) & ~asked
+        asked |= ask
+        if ask.any():
+            continue
         wanted = np.maximum(cells.radius, np.where(np.isfinite(at.radius), WIDER * at.radius, 0.0))
         needed = reach(right, np.zeros(len(right)), at.radius[:-1])
         wanted[1:] = np.maximum(wanted[1:], np.where(np.isfinite(needed), WIDER * needed, 0.0))
@@ -120,6 +129,7 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
         radius = cells.radius.copy()
         radius[changed[good]] = wanted[changed[good]]
         cells = cells.with_tubes(radius, cells.slabs)
+        ask = ~at.proved
     return cells, at, joints, ends
 
 
@@ -165,13 +175,16 @@ def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) ->
 
 
 def _turning(
-    cells: Cells, found: list[Piece], path: Path, places: list[float | None]
+    engine: Engine, cells: Cells, found: list[Piece], path: Path, places: list[float | None]
 ) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
     """Ranges of arclength with one turning point each, and where they are not those of the path."""
     understood, unknown = turns(found)
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
     turning = {id(event) for event in path.turning_points}
     listed = [(p, event.arclength) for p, event in zip(places, path.events) if id(event) in turning]
+    understood = located(engine, cells, understood, [place for place, _ in listed if place is not None])
+    wide = [turn for turn in understood if turn.hi - turn.lo > RANGE and _counts(turn, listed)]
+    gaps += [Gap(*_range(cells, turn.lo, turn.hi), NOWHERE) for turn in wide]
     gaps += _unlike(cells, understood, listed, "turning point")
     return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
 
@@ -224,7 +237,7 @@ def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> flo
     span = cells.place[:, 1] - cells.place[:, 0]
     near = (cells.place[:, 0] - span <= s) & (s <= cells.place[:, 1] + span)
     if knots is not None:
-        k = int(np.clip(np.searchsorted(knots, s), 1, len(knots) - 1))
+        k = _later(knots, s)
         near |= (knots[k - 1] <= cells.place[:, 0]) & (cells.place[:, 1] <= knots[k])
     for k in np.flatnonzero(near).tolist():
         cell = cells.take(np.array([k]))
@@ -235,19 +248,23 @@ def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> flo
     return None
 
 
-def _on_curve(
-    engine: Engine, cells: Cells, events: list[LocatedEvent], places: list[float | None]
-) -> list[float | None]:
+def _later(knots: Array, s: float) -> int:
+    """The end of the step between two of the arclengths."""
+    return int(np.clip(np.searchsorted(knots, s), 1, len(knots) - 1))
+
+
+def _on_curve(engine: Engine, cells: Cells, path: Path, places: list[float | None]) -> list[float | None]:
     """The places of events next to which there is a point of the curve; None for others, in a wide tube."""
     known = [k for k, place in enumerate(places) if place is not None]
     if not known:
         return places
     owner = np.clip(np.array([int(places[k] or 0.0) for k in known]), 0, len(cells) - 1)
-    own = cells.take(owner)
-    at = nodes(engine, evolve(own, begin=np.array([events[k].u for k in known])), np.zeros(len(known)))
-    round_off = 8.0 * NODE_ULPS * EPS * np.abs([events[k].u for k in known])
+    own, u = cells.take(owner), np.array([path.events[k].u for k in known])
+    at = nodes(engine, evolve(own, begin=u), np.zeros(len(known)))
+    later = [_later(path.arclength, path.events[k].arclength) for k in known]
+    size = np.maximum(sizes(own), np.abs(np.diff(path.u, axis=0))[np.array(later) - 1])
     # Of what stands still a cell knows no size but the tube's.
-    allowed = np.where(own.begin == own.end, own.radius, EVENT_DISTANCE * sizes(own)) + round_off
+    allowed = np.where(own.begin == own.end, own.radius, EVENT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
     near = np.asarray((at.radius <= allowed).all(axis=1))
     lost = {k for k, good in zip(known, near) if not good}
     return [None if k in lost else place for k, place in enumerate(places)]

@@ -58,8 +58,8 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    sign, inside = math.copysign(1.0, ga), arc.segment.inside
-    along = _of_coordinate(event, arc.segment, position(arc, arc.b.u))
+    sign, inside = math.copysign(1.0, ga), arc.guide.inside
+    along = _of_coordinate(event, arc.guide, position(arc, arc.b.u))
     found = [event.monitor(u, v) for u, v in arc.samples] if along is None else map(along, inside)
     values = [sign * ga, *[sign * g for g in found], sign * gb]
     return _least((0.0, *inside, 1.0), values) < 0.5 * min(abs(ga), abs(gb))
@@ -99,7 +99,7 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
     """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
-    along = _along(event, arc.segment, position(arc, arc.b.u))
+    along = _along(event, arc.guide, position(arc, arc.b.u))
 
     def g(t: float) -> float:
         return sign * along(t)
@@ -163,7 +163,7 @@ def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> 
         if gr == 0.0:
             found.append(right)
         else:
-            series = None if divided else arc.segment
+            series = None if divided else arc.guide
             part = Arc(left, right, arc.border, arc.segment)
             root = _root(solver, event, part, series, gl, gr)
             found += [] if root is None else [root]
@@ -176,7 +176,7 @@ def _dividing(arc: Arc, along: list[float]) -> list[float]:
     All samples of a cubic, which is a rough guide. Of the many samples of a series, which is a good one, those on
     either side of a sign change, and the lowest if there is none.
     """
-    inside = arc.segment.inside
+    inside = arc.guide.inside
     if len(inside) <= CUBIC:
         return list(inside)
     wanted = {k for k, (p, q) in enumerate(itertools.pairwise(along)) if p * q < 0.0}
@@ -186,7 +186,7 @@ def _dividing(arc: Arc, along: list[float]) -> list[float]:
 
 
 def _knot(solver: PathSolver, event: Event, arc: Arc, t: float) -> tuple[Linearization, float]:
-    segment = arc.segment
+    segment = arc.guide
     point = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, segment.at(t), arc.border, segment.derivative(t))
     return point, event.monitor(point.u, point.tangent)
 
@@ -245,7 +245,9 @@ def _root(
             t = 0.5 if guess is None else min(max(guess, 1e-12), 1.0 - 1e-12)
             near = ua if t < 0.5 else ub
         series = None
-        point = solver.project_and_linearize(near, segment.at(t), arc.border, segment.derivative(t))
+        # The ends of a narrow bracket differ by round-off in part, and so does the interpolant's direction.
+        along = near.tangent if fine else segment.derivative(t)
+        point = solver.project_and_linearize(near, segment.at(t), arc.border, along)
         last = point, event.monitor(point.u, point.tangent)
         slow = abs(last[1]) > HALVING * abs(best[1])
         bisect, stalled = slow and ahead is None, stalled + 1 if slow else 0

@@ -252,7 +252,9 @@ def branch_point_near(
 
     def done(size: float) -> bool:
         lost = norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
-        return lost or size <= POLISHED or (size < POLISHED_NEARLY and newton.ratio >= HALVING)
+        # From so near a regular zero increments no longer halve at round-off only; if they grow, several ranks are lost.
+        near = size < POLISHED_NEARLY * max(newton.ratio, 1.0)
+        return lost or size <= POLISHED or (near and newton.ratio >= HALVING)
 
     try:
         # A matrix that is nearly singular may give what is not finite: no number of it is believed unchecked.
@@ -264,11 +266,12 @@ def branch_point_near(
             if not np.abs(here.left[-2:]).max() <= RANK or abs(float(newton.x[-1])) > IMPERFECT:
                 return None
             # Where Newton's method came to a halt early the point is known to its last increment only, and so is H'.
-            accuracy = max(RANK, HALTED[1] * newton.size) if newton.size > HALTED[0] else RANK
-            if (here.weak or accuracy > RANK) and kernels(here.matrix, accuracy)[0].shape[1] > 2:
+            halted = newton.size > HALTED[0]
+            accuracy = max(RANK, HALTED[1] * newton.size) if halted else RANK
+            if (here.weak or halted) and kernels(here.matrix, accuracy)[0].shape[1] > 2:
                 # Several ranks are lost: no border of one column and two rows makes that regular.
                 return None
-            if newton.size > HALTED[0]:
+            if halted:
                 # A regular zero, from so near that the first increments did not halve: the next one is round-off.
                 before = newton.size
                 newton.run(increment, measure, lambda size: True)

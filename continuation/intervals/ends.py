@@ -64,12 +64,18 @@ class Ends:
 
     def __mul__(self, other: Ends) -> Ends:
         a, b = self.lo * other.lo, self.lo * other.hi
-        c, d = self.hi * other.lo, self.hi * other.hi
-        lo, hi = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
+        if self.lo is self.hi:
+            lo, hi = np.minimum(a, b), np.maximum(a, b)
+        else:
+            c, d = self.hi * other.lo, self.hi * other.hi
+            lo, hi = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
+        below, above = down(lo), up(hi)
         # A product that is zero may have underflown, unless a factor is zero.
-        zero = ((self.lo == 0.0) & (self.hi == 0.0)) | ((other.lo == 0.0) & (other.hi == 0.0))
-        zero &= ~np.isnan(lo)
-        return Ends(np.where(zero, 0.0, down(lo)), np.where(zero, 0.0, up(hi)))
+        zero = (lo == 0.0) & (hi == 0.0)
+        if zero.any():
+            zero &= ((self.lo == 0.0) & (self.hi == 0.0)) | ((other.lo == 0.0) & (other.hi == 0.0))
+            below, above = np.where(zero, 0.0, below), np.where(zero, 0.0, above)
+        return Ends(below, above)
 
     def __truediv__(self, other: Ends) -> Ends:
         with np.errstate(all="ignore"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -12,9 +12,11 @@ from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, EvaluationError, Evaluator
 from continuation.metric import norm
-from continuation.point.arc import Arc
+from continuation.point.arc import Arc, guided
 from continuation.point.linearization import Anchor, Linearization, relinearize
 from continuation.point.segment import CUBIC
+from continuation.predictors import Knot
+from continuation.predictors.base import history_in_pseudo_arclength
 from continuation.tolerance import Tolerance
 
 MaxStep = Callable[[Array, Array], float]
@@ -35,9 +37,9 @@ extrapolated by its own length. An S inside the step puts both off alike. What i
 arc, is not looked at: S-bends of a thousandth of the path are seen with it, of steps of a third (measured on 900)."""
 
 ALIKE = 0.5
-"""What a cubic misses of a smooth path has one factor at both places, about. Where these differ by more than this, as
-behind every jump, the middle of the arc must be as they say: one solve in four thousand (record of behaviour), and one
-S-bend in 7,500 that was overlooked."""
+"""What a cubic misses of a smooth path has one factor at both places, about, and the quintic through the point before
+says which. Where these differ by more than this, as behind every jump, or no point lies before, the middle of the arc
+must be as they say: a solve in every fourth arc (record of behaviour), and two S-bends in 7,500 were overlooked."""
 
 ARC_NOISE = 1e2
 """The same in tolerances: on a step as short as the noise of the residual an arc cannot do better than that."""
@@ -123,8 +125,10 @@ class PathSolver:
 
         if chord.run(lambda: solve(-residual(chord.x)), measure, lambda size: size <= NO_CHANGE):
             return chord.x
+        # The increment at which they stalled leads from one point that is off by round-off to another.
+        last = chord.size * min(chord.ratio, 1.0)
         if chord.size <= enough or (
-            chord.size <= WITHIN_TOLERANCE and chord.size <= self.noise(near) / self.tolerance.relative
+            last <= WITHIN_TOLERANCE and last <= 2.0 * self.noise(near) / self.tolerance.relative
         ):
             return chord.x
         return None
@@ -166,11 +170,11 @@ def _approximate(system: CountedSystem, r: Array) -> Array:
     return system.approximate(r, 0.0)
 
 
-def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> bool:
-    """Whether the segment lies near the path: two points of different branches, or of an S, are joined by no arc.
+def arc_on_path(solver: PathSolver, arc: Arc, distance: float, history: Sequence[Knot]) -> Arc | None:
+    """The arc if it lies near the path: two points of different branches, or of an S, are joined by none.
 
-    One residual and one solve with the factorisation at hand estimate how far the segment is off at a place. The
-    distance is how far the prediction of its end was off, in the metric.
+    One residual and one solve with the factorisation at hand estimate how far the segment is off at a place. What that
+    tells of a cubic is its arc's guide. The distance is how far the prediction of the end was off, in the metric.
     """
     weights = arc.a.weights
     length = norm(weights, arc.b.u - arc.a.u)
@@ -181,14 +185,38 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> bool:
         off.append(arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
         size = norm(weights, off[-1])
         if size > allowed and size > ARC_NOISE * solver.tolerance.relative:
-            return False
+            return None
+    if not cubic:
+        return arc
     even = max(EVEN * length, ARC_NOISE * solver.tolerance.relative)
-    if not cubic or max(norm(weights, one) for one in off) <= even:
-        return True
-    # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t), with a small d; an S, wherever it is, otherwise.
+    # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t), with a small d, as it does at the point before.
     first, second = (one / (t * (1.0 - t)) ** 2 for t, one in zip(ARC_PLACES, off))
-    if norm(weights, first - second) <= ALIKE * max(norm(weights, first), norm(weights, second)):
-        return True
-    expected = (first + (0.5 - ARC_PLACES[0]) / (ARC_PLACES[1] - ARC_PLACES[0]) * (second - first)) / 16.0
+    d = (second - first) / (ARC_PLACES[1] - ARC_PLACES[0])
+    c = first - ARC_PLACES[0] * d
+    arc = guided(arc, c, d)
+    if max(distance, *(norm(weights, one) for one in off)) <= even:
+        return arc
+    before = _missed_before(arc, history)
+    pairs = [(first, second), *zip((first, second), before)]
+    if before and all(norm(weights, p - q) <= ALIKE * max(norm(weights, p), norm(weights, q)) for p, q in pairs):
+        return arc
+    # From the cubic, as the others: what a factorisation of another place makes of them has one error.
     middle = arc.a.approximate(-solver.evaluator.residual(arc.segment.at(0.5)))
-    return norm(weights, middle - expected) <= even
+    return arc if norm(weights, middle - (c + 0.5 * d) / 16.0) <= even else None
+
+
+def _missed_before(arc: Arc, history: Sequence[Knot]) -> list[Array]:
+    """What c + d t is at the places if the arc's cubic and s^2 (c + d t) meet the point before, with its tangent.
+
+    Empty where no point lies before.
+    """
+    knots = history_in_pseudo_arclength(arc.a, history)
+    if len(knots) < 2:
+        return []
+    sigma, u, slope = knots[1]
+    length = dot(arc.border, arc.b.u - arc.a.u)
+    t = sigma / length
+    s = t * (1.0 - t)
+    missed = (u - arc.segment.at(t)) / s**2
+    d = (length * slope - arc.segment.derivative(t)) / s**2 - 2.0 * (1.0 - 2.0 * t) / s * missed
+    return [missed + (place - t) * d for place in ARC_PLACES]

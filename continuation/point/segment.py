@@ -103,6 +103,44 @@ class HermiteSegment:
         return hermite(self.u0, self.d0, end, v, border)
 
 
+@frozen(eq=False)
+class QuinticSegment(HermiteSegment):
+    """That cubic and s^2 (c + d t), s = t (1 - t), which leaves the ends and the tangents there as they are."""
+
+    c: Array
+    d: Array
+
+    def at(self, t: float) -> Array:
+        """The point at t."""
+        s = t * (1.0 - t)
+        return add_multiple(super().at(t), s * s, self.c + t * self.d)
+
+    def derivative(self, t: float) -> Array:
+        """Its derivative at t."""
+        s = t * (1.0 - t)
+        return add_multiple(
+            add_multiple(super().derivative(t), 2.0 * s * (1.0 - 2.0 * t), self.c + t * self.d), s * s, self.d
+        )
+
+    def coordinate(self, i: int) -> tuple[Callable[[float], float], Callable[[float], float]]:
+        """The same for one coordinate."""
+        (at, slope), c, d = super().coordinate(i), self.c.item(i), self.d.item(i)
+
+        def higher(t: float) -> float:
+            s = t * (1.0 - t)
+            return at(t) + s * s * (c + t * d)
+
+        def steeper(t: float) -> float:
+            s = t * (1.0 - t)
+            return slope(t) + s * (2.0 * (1.0 - 2.0 * t) * (c + t * d) + s * d)
+
+        return higher, steeper
+
+    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
+        """One by one."""
+        return [self.at(t) for t in _QUARTERS], [self.derivative(t) for t in _QUARTERS]
+
+
 _SIXTEENTHS = tuple(k / 16 for k in range(1, 16))
 
 

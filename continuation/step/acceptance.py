@@ -100,8 +100,10 @@ class Examiner:
             if kink is not None:
                 arrival, landed = kink[0], False
                 arc = cut(arc, arrival)
-            if not arc_on_path(self.solver, arc, missed):
+            looked_at = arc_on_path(self.solver, arc, missed, state.history)
+            if looked_at is None:
                 return _rejected(attempt, Rejection.MIDPOINT)
+            arc = looked_at
             ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
             index, flipped = self.branch_index, arrival.orientation not in (0, orientation)
             if ending.limit is not None:

@@ -34,7 +34,7 @@ CORRECTING = BorderedNewton(max_iterations=20)
 STEEP = 1e-8
 """The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
 
-RESOLVED_ULPS = 4.0
+RESOLVED_ULPS = 2.0
 """Units in the last place that a correction at the tolerance is to be: fewer, and round-off keeps it from being met."""
 
 PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)

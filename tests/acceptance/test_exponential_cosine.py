@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import Status, trace
+from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
 from continuation.auditing import audit
 from continuation.controllers import Bounds, Geometric
 from continuation.length import arclength
@@ -28,10 +28,14 @@ TABLE = {
 }  # fmt: skip
 
 
-@every_preset
-@pytest.mark.parametrize("longest", [inf, 1.0, 0.1])
 @pytest.mark.parametrize("n", TABLE)
+@pytest.mark.parametrize(
+    ("preset", "longest"),
+    [*((preset, longest) for preset in (FAST, DEFAULT, CONSERVATIVE) for longest in (inf, 1.0)), (DEFAULT, 0.1)],
+    ids=lambda value: getattr(value, "name", str(value)),
+)
 def test_the_right_end_and_every_turning_point(n, preset, longest):
+    """Steps of a tenth are those of the ceiling, whatever the preset."""
     path = trace(
         ExponentialCosine(n), preset=preset, controller=evolve(preset.controller, bounds=Bounds(maximum=longest))
     )
@@ -68,7 +72,7 @@ def test_the_audit_agrees(n, backwards):
 @pytest.fixture
 def unguarded(monkeypatch):
     """The engine without the guards of arcs, their middle and their crossings: with either, little jumps here."""
-    monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance: True)
+    monkeypatch.setattr(acceptance, "arc_on_path", lambda solver, arc, distance, history: arc)
     monkeypatch.setattr(Crossings, "on_arc", lambda *_: None)
 
 

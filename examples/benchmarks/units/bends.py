@@ -8,6 +8,7 @@ lam = g(y) - a s((y - y0) / w) for y from 0 to 1, with a smooth step s of width 
 import sys
 from collections import Counter
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
@@ -30,6 +31,7 @@ KINDS: dict[str, tuple[Function, Function, Function, Function]] = {
 }
 
 
+@cache
 def bend(kind: str, width: float, seed: int) -> tuple[object, int]:
     """A homotopy with one S-bend, and the number of its turning points before the target."""
     g, slope, step, rise = KINDS[kind]

@@ -6,10 +6,13 @@ import math
 from collections.abc import Sequence
 from fractions import Fraction
 
+import scipy.sparse as sp
 from attrs import frozen
 
-from problems.lcp.classes.exact import Indices, IntRow, consistent, solve
+from continuation.arrays import Array
+from problems.lcp.classes.exact import Indices, IntRow, consistent, over_common_denominator, solve
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point
+from problems.lcp.data.problem import MixedLCP
 
 Bound = tuple[int | None, int | None]
 """The lower and the upper bound of an unknown, None where there is none."""
@@ -161,3 +164,11 @@ def bounds_over(values: Sequence[tuple[float, float]]) -> tuple[list[Bound], int
     unit = math.lcm(*(v.denominator for pair in exact for v in pair if v is not None))
     whole = [[None if v is None else int(v * unit) for v in pair] for pair in exact]
     return [(low, high) for low, high in whole], unit
+
+
+def whole_numbers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
+    """The entries of A, those of q, and the scale over which these are integers."""
+    n = problem.n
+    dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
+    flat, scale = over_common_denominator([Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())])
+    return [flat[i * n : (i + 1) * n] for i in range(n)], flat[n * n :], scale

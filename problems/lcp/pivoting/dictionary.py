@@ -5,6 +5,8 @@ Ties are broken as if the constants of the first dictionary were raised by eps, 
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 from attrs import define, field
 from numpy.typing import NDArray
@@ -65,6 +67,13 @@ class Dictionary:
         self.basic, self.nonbasic = self.rows.copy(), self.columns.copy()
         self.places = np.full(1 + max(int(one.max(initial=0)) for one in (self.rows, self.columns)), -1)
         self.places[self.nonbasic] = np.arange(self.nonbasic.size)
+
+    def copied(self) -> Dictionary:
+        """Another one that is the same now."""
+        other = copy(self)
+        other._table, other._left, other._right = self.table.copy(order="F"), self._left.copy(), self._right.copy()
+        other.basic, other.nonbasic, other.places = self.basic.copy(), self.nonbasic.copy(), self.places.copy()
+        return other
 
     @property
     def compilable(self) -> bool:

@@ -9,13 +9,13 @@ from fractions import Fraction
 from itertools import product
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
 
 from continuation.arrays import Array
-from problems.lcp.classes.exact import Indices, indices, over_common_denominator
-from problems.lcp.classes.faces import FacePoint, bounds_over, face_point, piece_point
+from problems.lcp.classes.exact import Indices, indices
+from problems.lcp.classes.faces import FacePoint, bounds_over, face_point, piece_point, whole_numbers
 from problems.lcp.data.problem import LCP, MixedLCP, require_lcp
+from problems.lcp.proof.groups import Groups
 from problems.lcp.proof.pieces import doubtful
 
 LARGEST_FACES = 14
@@ -113,10 +113,13 @@ class Exhaustion:
         A solution, exactly; None proves that there is none, every face having been tried.
     faces : int
         How many were tried.
+    groups : Groups, optional
+        Where they were excluded in groups: these, with a multiplier each, which `Groups.holds` checks again.
     """
 
     x: tuple[Fraction, ...] | None
     faces: int
+    groups: Groups | None = None
 
     @property
     def solvable(self) -> bool:
@@ -175,12 +178,9 @@ def _all_states(problem: MixedLCP) -> Iterator[tuple[int, ...]]:
 
 def _integers(problem: MixedLCP) -> tuple[list[list[int]], list[int], int]:
     """The entries of A and of q as integers over one scale; ValueError where the faces are too many."""
-    n = problem.n
     if not decidable(problem):
-        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {n}")
-    dense: Array = problem.A.toarray() if sp.issparse(problem.A) else problem.A
-    flat, scale = over_common_denominator([Fraction(v) for v in (*dense.ravel().tolist(), *problem.q.tolist())])
-    return [flat[i * n : (i + 1) * n] for i in range(n)], flat[n * n :], scale
+        raise ValueError(f"problem: expected n <= {LARGEST_FACES} for 2^n faces, found n = {problem.n}")
+    return whole_numbers(problem)
 
 
 def _solution(point: FacePoint, scale: int, wide: list[int]) -> ExactSolution:

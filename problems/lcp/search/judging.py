@@ -96,6 +96,9 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
             message = f"{Outcome.NOT_FOUND} A Farkas vector fails for the digits that scaling lost. {found.message}"
             return evolve(found, outcome=Outcome.NOT_FOUND, certificate=None, message=message, farkas=None)
         found = evolve(found, farkas=moved)
+    tried = found.exhaustion
+    if tried is not None and tried.groups is not None:
+        found = evolve(found, exhaustion=evolve(tried, groups=tried.groups.in_units(scaled.rows)))
     if nearly is not None:
         found = evolve(found, float_farkas=nearly.in_units(scaled.rows))
     if found.x is None:

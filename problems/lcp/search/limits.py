@@ -50,10 +50,16 @@ LARGEST_MADE_DENSE = 500
 """A sparse matrix of at most this order is made dense for pivots and paths, whose matrices of order n or 2n fill: with
 5 % entries and n = 200 a path takes a tenth of the time then."""
 
-LARGEST_EARLY_FACES = 10
-"""Up to this order trying all faces takes less than two paths: 0.1 ms (n = 3), 0.3 to 7 ms (9), where the paths of
-feasible problems without solution take 25 ms (n = 3) to 170 ms (10); 15 to 50 ms (12), where Wang's path alone takes
-25 on solvable ones."""
+SMALL_TREE = 40, 1000
+"""Largest order, and linear programs of a small tree that enumerates faces in groups, before any path: 0.1 ms each at
+n = 20, 0.2 at 40. Feasible Gaussian problems take 5 to 150 up to n = 20, 40 to 1,000 at 30 and 1,200 at 40."""
+
+LARGE_TREE = 60, 20_000
+"""The same after the first paths: 2 s at n = 20, 7 at n = 60, where 300 to 8,000 are enough for most."""
+
+LARGEST_DESCENT, SOME_DESCENTS, BETWEEN_RESTARTS = 150, 2000, 500
+"""Largest order, and linear programs of descents before the first path and between any two restarts, each of which
+takes about as long (0.1 to 0.2 s at n = 100). At n = 300 none of 3 Gaussian problems was solved by them in 75 s."""
 
 LARGEST_TINY = 6
 """Up to this order they come right after Lemke's method, before units of the problem's own, which take 0.4 ms: 0.1 ms

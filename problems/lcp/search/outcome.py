@@ -81,6 +81,8 @@ _PROOFS_WITH_BOUNDS = {
 _PROOFS = {
     "farkas": "A Farkas vector, verified exactly, proves that no x >= 0 has w >= 0.",
     "exhaustion": "None of the 2^n complementary faces holds a solution: all were tried, with error bounds or exactly.",
+    "groups": "None of the 2^n complementary faces holds a solution: Farkas vectors, verified with error bounds or "
+    "exactly, exclude them in groups.",
     "unrepresented": "In exact arithmetic there is one (`exhaustion.x`), which rounded to floats is none: q drowns.",
 }
 
@@ -136,9 +138,9 @@ class Solution:
             return _PROOFS["unrepresented"]
         if self.outcome is not Outcome.UNSOLVABLE:
             return ""
-        return (_PROOFS if self.problem.standard else _PROOFS_WITH_BOUNDS)[
-            "farkas" if self._farkas is not None else "exhaustion"
-        ]
+        grouped = self.exhaustion is not None and self.exhaustion.groups is not None
+        kind = "farkas" if self._farkas is not None else "groups" if grouped else "exhaustion"
+        return (_PROOFS if self.problem.standard else _PROOFS_WITH_BOUNDS)[kind]
 
     @property
     def farkas(self) -> Farkas | None:

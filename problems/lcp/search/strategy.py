@@ -14,7 +14,6 @@ import numpy as np
 from attrs import frozen
 
 from continuation.presets import FAST
-from problems.lcp.active_set.finish import below_zero
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.problem import LCP
@@ -29,10 +28,11 @@ from problems.lcp.search import said
 from problems.lcp.search.case import Case
 from problems.lcp.search.limits import (
     AT_GUESS,
+    BETWEEN_RESTARTS,
     FEW_PIECES,
     FIRST,
     FROM_ZERO,
-    LARGEST_EARLY_FACES,
+    LARGE_TREE,
     LARGEST_EARLY_PROOF,
     LARGEST_MADE_DENSE,
     LARGEST_PROOF,
@@ -41,6 +41,8 @@ from problems.lcp.search.limits import (
     MOST_AUGMENTED,
     MOST_Z_STEPS,
     PROOF_SHARE,
+    SMALL_TREE,
+    SOME_DESCENTS,
     WHILE_REGULAR,
 )
 from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, by_lemke, by_lemke_howson, convex
@@ -131,12 +133,6 @@ def _descent(case: Case) -> bool:
     return case.search.descend(case.first_state)
 
 
-def _augmented(case: Case) -> bool:
-    n = case.problem.primal
-    below = 0.0 if case.semidefinite else below_zero(case.problem.A[:n][:, :n])
-    return case.search.augment(below, MOST_AUGMENTED)
-
-
 def _by_lemke_howson(case: Case) -> bool:
     return by_lemke_howson(case.search, case.seed)
 
@@ -194,7 +190,8 @@ def _path(name: str = "", patient: bool = False, **options: Any) -> Callable[[Ca
 def _restarts(case: Case) -> bool:
     # Of a matrix that a homotopy by name was chosen for nothing was found out.
     bands = NEAR_STARTS if case.facts is not None and case.facts.nonnegative else FAR_STARTS
-    case.tried = case.search.restart(case.asked, case.seed, case.restarts, case.executor, bands)
+    between = (lambda: case.descend(BETWEEN_RESTARTS)) if case.descents is not None else None
+    case.tried = case.search.restart(case.asked, case.seed, case.restarts, case.executor, bands, between)
     return case.search.solved
 
 
@@ -270,10 +267,8 @@ def _with_rows(case: Case) -> bool:
     return case.problem.primal > 0 and case.in_budget and not _in_a_box(case)
 
 
-def _has_few_faces(case: Case) -> bool:
-    if case.problem.standard:
-        return _pivotable(case) and case.problem.n <= LARGEST_EARLY_FACES
-    return decidable(case.problem, FEW_PIECES)
+def _has_few_pieces(case: Case) -> bool:
+    return not case.problem.standard and decidable(case.problem, FEW_PIECES)
 
 
 def _tiny(case: Case) -> bool:
@@ -308,8 +303,10 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("Lemke and Howson", _scaled(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
-    Attempt("few faces", _has_few_faces, _all_faces, said.TRIED),
-    Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
+    Attempt("some groups of faces", lambda c: c.groupable(SMALL_TREE), lambda c: c.branch(SMALL_TREE), said.BRANCHED),
+    Attempt("descents", lambda c: c.descendable, lambda c: c.descend(SOME_DESCENTS), said.DESCENDED_TO),
+    Attempt("few pieces", _has_few_pieces, _all_faces, said.TRIED),
+    Attempt("augmented Lagrangian", _with_rows, lambda c: c.augment(MOST_AUGMENTED), said.AUGMENTED),
 )
 """What is cheap and cannot mislead."""
 
@@ -319,6 +316,7 @@ PATHS: tuple[Attempt, ...] = (
     Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", True, preset=FAST), said.FOLLOWED),
     Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, said.PROVED),
     Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
+    Attempt("groups of faces", lambda c: c.groupable(LARGE_TREE), lambda c: c.branch(LARGE_TREE), said.BRANCHED),
     Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, said.TRIED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),
 )

@@ -166,8 +166,10 @@ def test_nothing_is_executed(tmp_path, half, place, tree):
     for ended in (True, False):
         if not ended:
             unended(made)
-        # Where opening alone reads the checkpoint, what begins by opening is refused there.
-        for name in OPERATIONS if ended else ("open", "recover", "resume"):
+        # Where opening alone reads the checkpoint, what begins by opening is refused there. What reads no checkpoint
+        # meets each tree in the problem, and one of them in each place of a checkpoint.
+        whole = place is in_problem or tree is TREES["a function"]
+        for name in OPERATIONS if ended and whole else ("open", "checkpoint", "recover", "resume"):
             operation = OPERATIONS[name]
             file = tmp_path / f"{name}{ended}.h5"
             shutil.copy(made, file)

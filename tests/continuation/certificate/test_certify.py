@@ -39,11 +39,11 @@ def test_the_ten_examples_are_proved_with_a_box_a_step(k):
     proof = certify(path, homotopy)
     assert proof.complete, str(proof)
     assert len(proof.turning_points) == len(path.turning_points)
+    assert proof.boxes <= 1.3 * len(path)
     if k == 6:  # its end is singular: proved up to there, and the solution by rational arithmetic
         assert "rational" in proof.end
         assert 0.0 < proof.cells.end[-1, -1] <= 1.001e-6
     else:
-        assert proof.boxes <= 1.3 * len(path)
         assert "exactly at lam = 0" in proof.end
         assert (proof.end_radius < 1e-9).all()
 
@@ -111,16 +111,18 @@ def test_units_do_not_matter(seed):
 
 
 def test_in_random_units_what_is_complete_has_all_its_turning_points_and_no_jump():
-    found = benchmark("proof/units.py").campaign("cusp", 4)
-    assert sum(found.values()) == 8
-    assert found["complete", "all turns"] == 4
+    """Of two units; `units.py` does this for each problem forty times."""
+    found = benchmark("proof/units.py").campaign("cusp", 2)
+    assert sum(found.values()) == 4
+    assert found["complete", "all turns"] == 2
     wrong = ("careless, jumped", "careless, turns missed", "TURNS MISSED")
     assert sum(found["gap", kind] for kind in wrong) > 0
     assert sum(found["complete", kind] for kind in wrong) == 0
 
 
-def test_a_careless_path_may_go_round_a_closed_curve_twice_but_not_back():
+def test_a_careless_path_may_go_round_a_closed_curve_twice_but_not_back(monkeypatch):
     units = benchmark("proof/units.py")
+    monkeypatch.setattr(units, "FINE", 100)
     reference = trace(circle := units.plain(Circle()))
     for far, jumped in ([*np.arange(0.0, 12.6, 0.4)], False), ([0.0, 0.4, 0.8, 1.2, 0.8], True):
         points = np.column_stack([np.cos(far), np.sin(far)])
@@ -132,13 +134,14 @@ def test_a_careless_path_may_go_round_a_closed_curve_twice_but_not_back():
 
 
 def test_no_corrupted_path_is_proved():
-    found = corrupted.campaign(28, seed=3)
-    assert sum(found.values()) == 28
+    """Fourteen of them; `corrupted.py` makes ten thousand."""
+    found = corrupted.campaign(14, seed=3)
+    assert sum(found.values()) == 14
     assert {verdict for kind, verdict in found if (kind, verdict) != ("left_out", "proved")} == {"refused"}
 
 
 def _accepting(fault, subject=0, seeds=6):
-    homotopy, path, proof = corrupted.subjects()[subject]
+    homotopy, path, proof = corrupted.subjects(3)[subject]
     for seed in range(seeds):
         wrong = fault(path, proof, np.random.default_rng(seed))
         if wrong is not None and certify(wrong, homotopy).complete:
@@ -169,7 +172,7 @@ def test_without_the_direction_at_nodes_a_reversed_run_would_pass(monkeypatch):
 
 
 def test_without_the_spread_of_derivatives_wide_tubes_would_pass(monkeypatch):
-    homotopy, _, proof = corrupted.subjects()[0]
+    homotopy, _, proof = corrupted.subjects(3)[0]
     engine = engine_of(homotopy)
     wide = proof.cells.with_tubes(30.0 * proof.cells.radius, proof.cells.slabs)
     assert tubes.check(engine, proof.cells)[0].all()

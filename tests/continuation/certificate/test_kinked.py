@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import Path, certify, trace
+from continuation import Budget, Path, certify, trace
 from continuation.certificate.certifying import recheck
 from continuation.certificate.inverse import inverted
 from continuation.status import Kind
@@ -140,3 +140,13 @@ def test_small_pivots_are_not_trusted():
     Y, off, _ = inverted(matrices, *pairs, radius)
     np.testing.assert_allclose(Y, np.linalg.inv(matrices), rtol=1e-9)
     assert (off < 1e-9).all()
+
+
+@pytest.mark.parametrize("seed", [20, 29])
+def test_a_switch_that_comes_near_to_zero_or_back_to_it_is_told(seed):
+    # One vanishes at both ends of a step; the other is 8.5e-4, with tubes as wide as that, where an arc ends.
+    homotopy = benchmark("proof/subjects.py").cubic(seed)
+    path = trace(homotopy, budget=Budget(steps=60))
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    assert len(proof.kinks) == len(path.kinks)

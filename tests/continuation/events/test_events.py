@@ -4,11 +4,12 @@ from math import pi
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
 from continuation import Kind, Monitor, Status, TargetValue, TurningPoint, trace
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
-from continuation.point.segment import HermiteSegment
+from continuation.point.segment import HermiteSegment, QuinticSegment
 from problems.bifurcation import Circle, Cusp, ExponentialCosine, FreudensteinRoth
 
 from ..util import scalar
@@ -202,9 +203,32 @@ def test_no_false_turning_point_on_a_path_of_constant_parameter_rate():
     assert trace(flat, events=[TurningPoint(0)]).events == []
 
 
+def test_a_pair_that_the_cubic_between_two_points_does_not_show():
+    """lam' = (y - 0.65) (y - 0.7) (1 + y^2) / 5: a quintic, which the looks between the points tell."""
+    slope = 0.2 * Polynomial.fromroots([0.65, 0.7]) * Polynomial([1.0, 0.0, 1.0])
+    lam = slope.integ()
+    homotopy = scalar(lambda y, at: lam(y) - at, lambda y, at: (slope(y), -1.0), target=None)
+    path = trace(homotopy, metric=Euclidean(), controller=giant_steps(), events=[TargetValue(1.4, component=0)])
+    assert path.u[1, 0] == pytest.approx(0.75, abs=2e-3)
+    np.testing.assert_allclose([event.y[0] for event in path.turning_points], [0.65, 0.7], rtol=1e-12)
+
+
+@pytest.mark.parametrize("kind", [HermiteSegment, QuinticSegment])
+def test_a_segment_has_the_derivative_of_its_points(kind):
+    segment = kind(*np.random.default_rng(7).standard_normal((4 + 2 * (kind is QuinticSegment), 3)))
+    points, slopes = segment.sampled()
+    for t, point, slope in zip(segment.inside, points, slopes):
+        np.testing.assert_allclose(point, segment.at(t), rtol=1e-13, atol=1e-14)
+        np.testing.assert_allclose(slope, segment.derivative(t), rtol=1e-13, atol=1e-14)
+        np.testing.assert_allclose((segment.at(t + 1e-6) - segment.at(t - 1e-6)) / 2e-6, slope, rtol=1e-8, atol=1e-9)
+    ends = [segment.at(0.0), segment.at(1.0), segment.derivative(0.0), segment.derivative(1.0)]
+    np.testing.assert_allclose(ends, [segment.u0, segment.u1, segment.d0, segment.d1], rtol=1e-13, atol=1e-14)
+
+
+@pytest.mark.parametrize("kind", [HermiteSegment, QuinticSegment])
 @pytest.mark.parametrize("i", [0, 2, -1])
-def test_one_coordinate_of_a_cubic_is_that_of_all(i):
-    segment = HermiteSegment(*np.random.default_rng(5).standard_normal((4, 4)))
+def test_one_coordinate_of_a_segment_is_that_of_all(i, kind):
+    segment = kind(*np.random.default_rng(5).standard_normal((4 + 2 * (kind is QuinticSegment), 4)))
     at, slope = segment.coordinate(i)
     for t in (0.0, 0.3, 0.77, 1.0, 1.4):
         assert at(t) == pytest.approx(segment.at(t)[i], rel=1e-14)

@@ -138,7 +138,7 @@ def test_every_part_crosses_a_kink_and_resumes_there(options, tmp_path):
     whole = trace(Cubic(), **options)
     assert [event.name for event in whole.events] == ["turning point", "turning kink"]
     kink = whole.kinks[0].step
-    for steps in {max(kink - 1, 1), kink, kink + 1}:
+    for steps in {max(kink - 1, 1), kink, kink + 1} if options is OPTIONS[0] else {kink}:
         if steps >= len(whole) - 1:
             continue
         file = tmp_path / f"{steps}.h5"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.sparse import csc_array, csr_array
@@ -13,6 +13,7 @@ from scipy.sparse.linalg import aslinearoperator
 from continuation.linear import Banded, Operator, SingularError, Symmetric, factor_bordered, permutation_sign
 
 from ...exact import gauss_jordan
+from ...util import share
 
 EPS = np.finfo(float).eps
 
@@ -84,20 +85,20 @@ def check(structure, system, rows=1.0, columns=1.0):
 
 
 @given(systems(), st.sampled_from(sorted(GENERAL)))
-@settings(max_examples=60, deadline=None)
+@share(60)
 def test_general_structures_are_exact_to_round_off(system, name):
     check(GENERAL[name], system)
 
 
 @pytest.mark.parametrize("singular", [None, True], ids=["any", "singular H_y"])
 @given(data=st.data(), name=st.sampled_from(sorted(EVERY)))
-@settings(max_examples=60, deadline=None)
+@share(60)
 def test_symmetric_systems_are_solved_by_every_structure(singular, data, name):
     check(EVERY[name], data.draw(systems(symmetric=True, singular=singular)))
 
 
 @given(systems(), st.sampled_from(sorted(GENERAL)), st.data())
-@settings(max_examples=60, deadline=None)
+@share(60)
 def test_the_units_of_the_rows_do_not_matter(system, name, data):
     exponents = data.draw(arrays(np.int64, (len(system[3]),), elements=st.integers(-27, 27)))
     check(GENERAL[name], system, rows=2.0**exponents)
@@ -113,7 +114,7 @@ def test_a_large_row_does_not_become_the_pivot(name):
 
 
 @given(systems(symmetric=True), st.sampled_from(sorted(SYMMETRIC)), st.data())
-@settings(max_examples=60, deadline=None)
+@share(60)
 def test_the_units_of_a_symmetric_system_do_not_matter(system, name, data):
     """Rows and columns scaled alike: the residual is at round-off in each row."""
     exponents = data.draw(arrays(np.int64, (len(system[3]),), elements=st.integers(-13, 13)))
@@ -207,7 +208,6 @@ def test_a_matrix_wrongly_called_symmetric_is_still_solved():
 
 
 @given(st.integers(1, 7).flatmap(lambda n: st.permutations(range(n))))
-@settings(deadline=None)
 def test_permutation_sign_counts_inversions(permutation):
     n = len(permutation)
     inversions = sum(permutation[i] > permutation[j] for i in range(n) for j in range(i + 1, n))
@@ -215,7 +215,6 @@ def test_permutation_sign_counts_inversions(permutation):
 
 
 @given(st.integers(1, 9), st.data())
-@settings(deadline=None)
 def test_banded_is_the_matrix_that_it_stores(n, data):
     lower, upper = data.draw(st.integers(0, n + 1)), data.draw(st.integers(0, n + 1))
     offset = np.subtract.outer(np.arange(n), np.arange(n))

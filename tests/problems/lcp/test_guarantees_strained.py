@@ -12,8 +12,8 @@ from continuation import Kind, Status, trace
 from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, solve, solve_by_enumeration
 from problems.lcp.strategies import badly_scaled_lcps, feasible_lcps, near_singular_lcps, planted_lcps
 
-from ...util import for_interior_paths
-from .util import share, x_at_end
+from ...util import for_interior_paths, share
+from .util import x_at_end
 
 MERGE = 3.9121535
 """Where the two turning points of the family below merge, from their distance at eight values of a beyond."""

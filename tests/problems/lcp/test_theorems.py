@@ -15,7 +15,7 @@ from problems.lcp.strategies import feasible_lcps, lcps
 from problems.paper import COUNTEREXAMPLES
 
 from ...exact import determinant
-from .util import share
+from ...util import share
 
 SMALL = 1e-7
 """Relative size below which a number at the end of a path counts as zero; most ends are good to 1e-12."""

@@ -10,7 +10,8 @@ from problems.lcp import LCP, KKTHomotopy, Outcome, WangHomotopy, certify, rando
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.strategies import feasible_lcps, lcps, planted_lcps
 
-from .util import share, x_at_end
+from ...util import share
+from .util import x_at_end
 
 SMALL_ORDERS = st.integers(1, 3)
 TWO_VECTOR = [homotopy.make for name, homotopy in HOMOTOPIES.items() if name != "kkt"]

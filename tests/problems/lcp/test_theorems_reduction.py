@@ -14,7 +14,7 @@ from problems.lcp.strategies import feasible_lcps
 from problems.paper import EXAMPLES
 
 from ...exact import determinant, fractions
-from .util import share
+from ...util import share
 
 TWO_TURNS = (EXAMPLES[9].problem, EXAMPLES[9].x0)
 

@@ -215,9 +215,9 @@ def test_the_preset_factors_anew_only_where_that_is_cheap():
 def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):
     """Whatever it is; where it has no limit there is one to their number."""
     monkeypatch.setattr("problems.lcp.search.solver.MOST_RESTARTS", 3)
-    A = np.eye(13)
+    A = np.eye(61)
     A[:2, :2] = [[0.0, 1.0], [0.0, 0.0]]
-    problem = lcp.LCP(A, np.append([-1.0, 1.0], -np.ones(11)))
+    problem = lcp.LCP(A, np.append([-1.0, 1.0], -np.ones(59)))
     endless = lcp.solve(problem, budget=continuation.Budget(steps=math.inf))
     assert "Restarts from random starts: 3" in endless.message
     assert not endless.solved

@@ -23,10 +23,10 @@ def test_the_archive_holds_the_path(tmp_path):
 BIMATRIX = lcp.LCP([[0, 0, 1, 2], [0, 0, 3, 1], [1, 3, 0, 0], [2, 1, 0, 0]], [-1.0, -1.0, -1.0, -1.0])
 
 
-# Feasible, without a solution, and too large for all faces to be tried: one block of two, and ones.
+# Feasible, without a solution, and too large for groups of faces to be tried: one block of two, and ones.
 RESTARTED = lcp.LCP(
-    np.block([[np.array([[0.0, 1.0], [0.0, 0.0]]), np.zeros((2, 11))], [np.zeros((11, 2)), np.eye(11)]]),
-    np.append([-1.0, 1.0], -np.ones(11)),
+    np.block([[np.array([[0.0, 1.0], [0.0, 0.0]]), np.zeros((2, 59))], [np.zeros((59, 2)), np.eye(59)]]),
+    np.append([-1.0, 1.0], -np.ones(59)),
 )
 
 

@@ -16,6 +16,7 @@ from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, Case,
 
 INFEASIBLE = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
 ZERO = "active sets, from x = 0"
+FACES = "groups of faces", "all faces"
 
 
 def case(problem, **changes):
@@ -39,11 +40,12 @@ def tried(one, order):
 def test_the_order_depends_on_the_matrix():
     skew = np.array([[1.0, 2.0, 0.0], [-2.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     q = [-1.0, 1.0, 0.0]
-    expected = [ZERO, "active sets of A + shift I, from the last", "Lemke", "proof, early", "few faces"]
-    expected += ["Wang's path", "proof", "KKT path", "all faces", "restarts"]
+    expected = [ZERO, "active sets of A + shift I, from the last", "Lemke", "proof, early", "some groups of faces"]
+    expected += ["Wang's path", "proof", "KKT path", "groups of faces", "all faces", "restarts"]
     assert tried(case(lcp.LCP(skew, q)), AUTOMATIC) == expected
     negative = lcp.LCP(-np.eye(3) + np.ones((3, 3)) * [[0.0], [-3.0], [1.0]], q)
-    expected = [ZERO, "Lemke", "proof, early", "few faces", "KKT path, first", "proof", "all faces", "restarts"]
+    expected = [ZERO, "Lemke", "proof, early", "some groups of faces", "descents", "KKT path, first"]
+    expected += ["proof", "groups of faces", "all faces", "restarts"]
     assert tried(case(negative), AUTOMATIC) == expected
     definite = lcp.LCP(np.full((3, 3), 1.0) + np.eye(3), q)
     assert tried(case(definite), AUTOMATIC)[:2] == ["active sets of A + shift I, from x = 0", ZERO]
@@ -70,7 +72,7 @@ def test_a_sparse_matrix_is_dense_for_pivots_and_paths():
 
 
 def test_a_path_that_is_wanted_comes_first():
-    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", "all faces", "restarts"]
+    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", *FACES, "restarts"]
 
 
 def test_what_is_dear_is_left_out_when_the_budget_is_spent():
@@ -90,8 +92,13 @@ def test_a_large_proof_is_looked_for_only_within_a_limit_of_seconds():
 
 def test_all_faces_are_tried_where_they_are_few():
     assert "all faces" in tried(case(lcp.LCP(np.eye(12), -np.ones(12))), AUTOMATIC)
-    assert "few faces" in tried(case(lcp.LCP(np.eye(10), -np.ones(10))), AUTOMATIC)
-    assert "few faces" not in tried(case(lcp.LCP(np.eye(11), -np.ones(11))), AUTOMATIC)
+    assert "some groups of faces" in tried(case(lcp.LCP(np.eye(40), -np.ones(40))), AUTOMATIC)
+    assert "some groups of faces" not in tried(case(lcp.LCP(np.eye(41), -np.ones(41))), AUTOMATIC)
+    assert "groups of faces" in tried(case(lcp.LCP(np.eye(60), -np.ones(60))), AUTOMATIC)
+    assert "groups of faces" not in tried(case(lcp.LCP(np.eye(61), -np.ones(61))), AUTOMATIC)
+    indefinite = -np.eye(151) + np.ones((151, 151))
+    assert "descents" in tried(case(lcp.LCP(indefinite[1:, 1:], -np.ones(150))), AUTOMATIC)
+    assert "descents" not in tried(case(lcp.LCP(indefinite, -np.ones(151))), AUTOMATIC)
     assert "all faces" not in tried(case(lcp.LCP(np.eye(13), -np.ones(13))), AUTOMATIC)
     assert "all faces" not in tried(case(INFEASIBLE), NAMED)
 

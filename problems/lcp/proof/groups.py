@@ -1,0 +1,185 @@
+"""Complementary faces excluded in groups, each by one multiplier: what proves that a feasible LCP has no solution.
+
+A group fixes x_i = 0 for some i, w_i = 0 for others, and leaves open what the rest are. For y with y_i >= 0 but where
+w_i is fixed, and (A'y)_j <= 0 but where x_j is, every point of it has 0 <= y'w - (A'y)'x = q'y. So q'y < 0 proves that
+none of its faces holds a solution (Farkas), and groups that are all faces together prove it of the problem.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from attrs import evolve, field, frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+from problems.lcp.classes.exact import IntRow, indices, solve
+from problems.lcp.classes.faces import face_point, whole_numbers
+from problems.lcp.data.problem import LCP
+from problems.lcp.proof.inequalities import Conditions, conditions_of
+from problems.lcp.proof.pieces import SMALLEST_NORMAL, SUM_OF_TERMS_ROUNDING
+from problems.lcp.proof.rational import integers
+
+Fixed = NDArray[np.bool_]
+"""Which of x and then w are fixed at zero, shape (2n,)."""
+
+
+@frozen(eq=False)
+class Group:
+    """Faces that share what is fixed, and why none of them holds a solution.
+
+    `fixed`, of shape (2n,): Which of x and then of w. `y`, of length n: The multiplier, in floats, which are taken as
+    the rationals that they are, or in integers; None for a single face, which was decided in rationals.
+    """
+
+    fixed: Fixed
+    y: Array | tuple[int, ...] | None
+
+
+@frozen(eq=False)
+class Groups:
+    """Groups of faces, none of which holds a solution, and which together are all."""
+
+    groups: tuple[Group, ...]
+
+    def __len__(self) -> int:
+        return len(self.groups)
+
+    def in_units(self, rows: NDArray[np.int64]) -> Groups:
+        """The multipliers for a problem, where these are for that whose rows are 2^rows times those of it.
+
+        Parameters
+        ----------
+        rows : ndarray of int, shape (n,)
+        """
+
+        def moved(group: Group) -> Group:
+            if group.y is None:
+                return group
+            whole, least = _whole(group.y), int(rows.min())
+            return evolve(group, y=tuple(value << (int(power) - least) for value, power in zip(whole, rows)))
+
+        return Groups(tuple(moved(group) for group in self.groups))
+
+    def holds(self, problem: LCP) -> bool:
+        """Whether they prove, in exact arithmetic, that the problem has no solution.
+
+        Parameters
+        ----------
+        problem : LCP
+        """
+        check = Excluding(problem)
+        return _all_of_them([group.fixed for group in self.groups]) and all(map(check.exactly, self.groups))
+
+
+def _whole(y: Array | Sequence[int]) -> list[int]:
+    return integers(y)[0] if isinstance(y, np.ndarray) else list(y)
+
+
+def _all_of_them(groups: list[Fixed]) -> bool:
+    """Whether every face is in one of these groups: a pair that all of them fix divides them, as it divided a tree."""
+    if any(not fixed.any() for fixed in groups):
+        return True
+    n = groups[0].size // 2 if groups else 0
+    for i in range(n):
+        zero, active = ([fixed for fixed in groups if fixed[k]] for k in (i, i + n))
+        if len(zero) + len(active) == len(groups):
+            return all(_all_of_them([_without(fixed, i) for fixed in part]) for part in (zero, active))
+    return False
+
+
+def _without(fixed: Fixed, i: int) -> Fixed:
+    n = fixed.size // 2
+    return np.delete(fixed, [i, i + n])
+
+
+@frozen(eq=False)
+class Excluding:
+    """Finds and checks the multipliers of groups of one problem.
+
+    `problem`: Dense.
+    """
+
+    problem: LCP
+    slopes: Array = field(init=False)
+    _sizes: Array = field(init=False)
+    _exact: list[tuple[list[list[int]], list[int], Conditions]] = field(init=False, factory=list)
+
+    @slopes.default
+    def _slopes(self) -> Array:
+        """The rows by which y gives what multiplies x and w in 0 = q'y - y'w + (A'y)'x, shape (2n, n)."""
+        return np.vstack([-self.problem.A.T, np.eye(self.problem.n)])
+
+    @_sizes.default
+    def _absolute(self) -> Array:
+        return np.abs(self.slopes)
+
+    @property
+    def exact(self) -> tuple[list[list[int]], list[int], Conditions]:
+        """A and q in integers over one scale, and the conditions on multipliers."""
+        if not self._exact:
+            self._exact.append((*whole_numbers(self.problem)[:2], conditions_of(self.problem)))
+        return self._exact[0]
+
+    def group(self, fixed: Fixed, basic: NDArray[np.intp], row: int, sign: float) -> Group | None:
+        """The group, if a dictionary's row excludes it: its basic variable, times the sign, would have to be negative.
+
+        With a little of the other rows what rounding may hide is no longer zero; where that is not enough, as where
+        zeros come from small integers, the multiplier is solved for in integers.
+
+        `fixed`, of shape (2n,). `basic`, of shape (n,): The basic variables. `row`: Of one of them. `sign`: 1 or -1.
+        """
+        right = np.zeros((basic.size, 2))
+        right[:, 1] = ~fixed[basic]
+        right[row] = sign, 0.0
+        try:
+            solved = np.linalg.solve(self.slopes[basic], right)
+        except np.linalg.LinAlgError:
+            return None
+        terms, gaps = self.slopes @ solved, self.problem.q @ solved
+        terms[basic] = right
+        falling = ~fixed & (terms[:, 1] < 0.0)
+        falling[basic] = False
+        share = 0.5 * float((terms[falling, 0] / -terms[falling, 1]).min(initial=2.0))
+        if gaps[1] > 0.0:
+            share = min(share, -0.5 * gaps[0] / gaps[1])
+        y = solved[:, 0] + max(share, 0.0) * solved[:, 1]
+        y = np.where(fixed[y.size :], y, np.maximum(y, 0.0))
+        if self._clearly(fixed, y):
+            return Group(fixed, y)
+        found = self._solved(basic, row, int(sign))
+        group = None if found is None else Group(fixed, tuple(found))
+        return group if group is not None and self.exactly(group) else None
+
+    def _clearly(self, fixed: Fixed, y: Array) -> bool:
+        """Whether floats prove it, whatever they round."""
+        n, q = y.size, self.problem.q
+        unit, size = (n + 4) * SUM_OF_TERMS_ROUNDING, np.abs(y)
+        terms = self._sizes[:n] @ size
+        below = self.slopes[:n] @ y >= unit * terms + SMALLEST_NORMAL
+        if not (below | fixed[:n] | (terms == 0.0)).all():
+            return False
+        return bool(q @ y + unit * (np.abs(q) @ size) + SMALLEST_NORMAL < 0.0)
+
+    def _solved(self, basic: NDArray[np.intp], row: int, sign: int) -> list[int] | None:
+        """The multiplier of the row alone, in integers."""
+        entries, q, _ = self.exact
+        n = len(q)
+        rows: list[IntRow] = [
+            [-line[k] for line in entries] if k < n else [int(i == k - n) for i in range(n)] for k in basic.tolist()
+        ]
+        found = solve(rows, [[sign * (i == row)] for i in range(n)])
+        return None if found is None else [value[0] for value in found[0]]
+
+    def exactly(self, group: Group) -> bool:
+        """Whether the group holds no solution, in exact arithmetic."""
+        entries, q, conditions = self.exact
+        n, fixed = len(q), group.fixed.tolist()
+        if group.y is None:
+            face = sum(1 << i for i in range(n) if not fixed[i])
+            single = all(a != b for a, b in zip(fixed[:n], fixed[n:]))
+            return single and face_point(entries, q, indices(face)) is None
+        upper = [0.0 if here else np.inf for here in fixed[:n]]
+        gap = evolve(conditions, upper=upper, signs=[(True, here) for here in fixed[n:]]).gap(_whole(group.y))
+        return gap is not None and gap < 0

@@ -1,0 +1,197 @@
+"""Implicit enumeration of the complementary faces: linear programs exclude most of them in groups.
+
+A node fixes some x_i and some w_i at zero. Where no point x >= 0, w >= 0 has these zeros, the row of the dictionary
+that says so is a multiplier, which is checked (`proof.groups`). Else there is a point that is least in c'x: a solution,
+if it is complementary, and if not one of its pairs with x_i > 0 and w_i > 0 is fixed either way.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+from attrs import define, field, frozen
+from numpy.typing import NDArray
+
+from continuation.arrays import largest
+from problems.lcp.classes.exact import indices
+from problems.lcp.classes.faces import face_point
+from problems.lcp.data.problem import LCP
+from problems.lcp.pivoting.dictionary import Dictionary
+from problems.lcp.pivoting.programs import ROUNDED_TO_ZERO, infeasible_row, point_of, vertex_at_zero
+from problems.lcp.proof.groups import Excluding, Fixed, Group, Groups
+from problems.lcp.reference.enumeration import Exhaustion
+
+Active = NDArray[np.bool_]
+
+NODES_PER_LOOK = 64
+"""At the clock."""
+
+LARGEST_FACE = 40
+"""Up to this order a complementary point whose face is not accepted in floats is decided in rationals: 0.2 s."""
+
+UNLIKELY = 1e6
+"""Gains beyond this are alike: the child has no feasible point."""
+
+
+@frozen(eq=False)
+class Node:
+    """What is fixed at zero, of x, w and the cost, which is last, and the dictionary that its parent left."""
+
+    fixed: Fixed
+    dictionary: Dictionary
+
+
+@define(eq=False)
+class Branching:
+    """The tree of one problem.
+
+    Attributes
+    ----------
+    problem : LCP
+        Dense, and in units in which its entries are about 1.
+    accepts : callable
+        Whether the face with these w_i = 0 holds a solution as far as the caller is concerned.
+    nodes : int
+        How many have been looked at.
+    accepted : bool
+        Whether it did.
+    exact : tuple of Fraction, or None
+        A solution in rationals where none was accepted.
+    """
+
+    problem: LCP
+    accepts: Callable[[Active], bool]
+    nodes: int = field(default=0, init=False)
+    accepted: bool = field(default=False, init=False)
+    _waiting: list[Node] = field(factory=list, init=False)
+    _groups: list[Group] = field(factory=list, init=False)
+    _excluding: Excluding = field(init=False)
+    _found: Exhaustion | None = field(default=None, init=False)
+
+    def __attrs_post_init__(self) -> None:
+        problem, n = self.problem, self.problem.n
+        self._excluding = Excluding(problem)
+        # Any positive cost will do. No two should be alike, so that few pivots are tied.
+        costs = 1.0 + np.modf(np.arange(1.0, n + 1.0) * (0.5 + math.sqrt(1.25)))[0]
+        self._waiting.append(Node(np.zeros(2 * n + 1, dtype=bool), vertex_at_zero(problem, costs)))
+
+    def run(self, most: int, seconds: float = math.inf) -> Exhaustion | None:
+        """Go on until there is a solution or a proof; None where there is neither, or a face was accepted.
+
+        Parameters
+        ----------
+        most : int
+            Nodes.
+        seconds : float
+        """
+        end = time.perf_counter() + seconds
+        while self._waiting:
+            if self.nodes >= most or (self.nodes % NODES_PER_LOOK == 0 and time.perf_counter() > end):
+                return None
+            self.nodes += 1
+            if not self._look(self._waiting.pop()):
+                return self._found
+        return Exhaustion(None, 1 << self.problem.n, Groups(tuple(self._groups)))
+
+    def _look(self, node: Node) -> bool:
+        """Exclude a node or put its children into the waiting list; whether to go on."""
+        dictionary, fixed, n = node.dictionary, node.fixed, self.problem.n
+        row = infeasible_row(dictionary, fixed)
+        if row is None:
+            return False
+        if row >= 0:
+            if not self._excluded(node, row):
+                # Rounding has led it off, or it is a matter of digits: its children show.
+                dictionary.rebuilt()
+                return self._divided(node, fixed[:n] | fixed[n : 2 * n])
+            return True
+        constants, free = dictionary.entries(-1)[:n], ~fixed[dictionary.nonbasic]
+        zero = ROUNDED_TO_ZERO * largest(constants)
+        rising = (dictionary.table[:n, :n] >= 0.0) | ~free
+        never = (constants > zero) & np.logical_and.reduce(rising, axis=1)
+        if never.any() and self._implied(node, never):
+            return True
+        x, w = point_of(dictionary)
+        between = np.minimum(x, w) > zero
+        if between.any():
+            self._branch(node, between.nonzero()[0])
+            return True
+        if self.accepts(x > w):
+            self.accepted = True
+            return False
+        if n > LARGEST_FACE:
+            return False
+        entries, q, _ = self._excluding.exact
+        point = face_point(entries, q, indices(sum(1 << int(i) for i in (x > w).nonzero()[0])))
+        if point is not None:
+            self._found = Exhaustion(point.x, self.nodes)
+            return False
+        return self._divided(node, node.fixed[:n] | node.fixed[n : 2 * n])
+
+    def _excluded(self, node: Node, row: int, sign: float | None = None) -> bool:
+        """Whether a row was proved to exclude the node."""
+        dictionary, n = node.dictionary, self.problem.n
+        if sign is None:
+            sign = 1.0 if dictionary.entries(-1)[row] < 0.0 else -1.0
+        group = self._excluding.group(node.fixed[: 2 * n], dictionary.basic[:n], row, sign)
+        if group is not None:
+            self._groups.append(group)
+        return group is not None
+
+    def _implied(self, node: Node, never: Active) -> bool:
+        """Fix what is opposite to variables that are positive at each point of a node; whether it is another one now.
+
+        It waits again then, unless one of them is fixed, so that there is no point.
+        """
+        dictionary, n, fixed = node.dictionary, self.problem.n, node.fixed.copy()
+        for row in never.nonzero()[0]:
+            variable = int(dictionary.basic[row])
+            opposite = (variable + n) % (2 * n)
+            if fixed[opposite]:
+                continue
+            without = fixed.copy()
+            without[variable] = True
+            if self._excluded(Node(without, dictionary), int(row), -1.0):
+                if fixed[variable]:
+                    return True
+                fixed[opposite] = True
+        if (fixed == node.fixed).all():
+            return False
+        self._waiting.append(Node(fixed, dictionary))
+        return True
+
+    def _branch(self, node: Node, between: NDArray[np.intp]) -> None:
+        """Fix the pair whose two children differ most in what they cost at least; the cheaper child is next."""
+        dictionary, n = node.dictionary, self.problem.n
+        places = np.empty(2 * n + 1, dtype=np.intp)
+        places[dictionary.basic] = np.arange(n + 1)
+        table = dictionary.table
+        rows = places[np.concatenate([between, between + n])]
+        falling, costs = -table[rows, :n], np.maximum(table[n, :n], 0.0)
+        possible = ~node.fixed[dictionary.nonbasic] & (falling > ROUNDED_TO_ZERO)
+        least = np.where(possible, costs / np.where(possible, falling, 1.0), np.inf).min(axis=1)
+        of_x, of_w = np.minimum(least * table[rows, n], UNLIKELY).reshape(2, -1)
+        k = int(np.abs(of_x - of_w).argmax())
+        self._put(node, int(between[k]), bool(of_x[k] < of_w[k]))
+
+    def _put(self, node: Node, i: int, x_first: bool) -> None:
+        n = self.problem.n
+        for variable in (i + n, i) if x_first else (i, i + n):
+            fixed = node.fixed.copy()
+            fixed[variable] = True
+            last = (variable < n) is x_first
+            self._waiting.append(Node(fixed, node.dictionary if last else node.dictionary.copied()))
+
+    def _divided(self, node: Node, closed: Active) -> bool:
+        """Fix any pair that is open; a face alone is decided in rationals."""
+        if not closed.all():
+            self._put(node, int(closed.argmin()), x_first=True)
+            return True
+        group = Group(node.fixed[: 2 * closed.size], None)
+        if not self._excluding.exactly(group):
+            return False
+        self._groups.append(group)
+        return True

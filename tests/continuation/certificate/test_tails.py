@@ -1,0 +1,43 @@
+"""Proofs up to next to a singular end: few nodes, and none that a step was taken for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from continuation import certify, trace
+from problems.lcp import LCP
+from problems.lcp.homotopies import KKTHomotopy
+
+
+def degenerate(n, seed):
+    """In a third of the indices x and w are both zero at the solution; data of few digits, so that it is exact."""
+    rng = np.random.default_rng([seed, n])
+    B, K = (rng.integers(-4, 5, size=(n, n)).astype(float) for _ in range(2))
+    A = B @ B.T + K - K.T
+    kind = np.arange(n) % 3
+    x, w = (np.where(kind == k, rng.integers(1, 5, size=n), 0.0) for k in (0, 1))
+    return LCP(A, w - A @ x)
+
+
+@pytest.mark.parametrize(("n", "seed"), [(3, 0), (3, 1), (6, 0), (6, 1), (9, 0), (9, 1), (15, 0), (15, 1)])
+def test_a_singular_end_takes_few_boxes(n, seed):
+    homotopy = KKTHomotopy(degenerate(n, seed))
+    path = trace(homotopy)
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    tail = proof.cells.take(proof.cells.place[:, 0] >= path.arclength[-2])
+    assert len(tail) <= 8  # with a tracer's steps 7 to 17
+    assert 0.0 < tail.end[-1, -1] <= 1e-6
+    assert "rational" in proof.end
+
+
+def test_nodes_that_tubes_tell_too_wide_are_tested_on_their_own():
+    # Bounds of a whole tube tell its curve's end to within more than the next one, which is shorter, has room for.
+    rng = np.random.default_rng([3, 8, 7])
+    B, x, w = rng.normal(size=(8, 8)), rng.random(8) + 0.3, rng.random(8) + 0.3
+    kind = rng.integers(0, 3, size=8)
+    A = B @ B.T / 8
+    homotopy = KKTHomotopy(LCP(A, np.where(kind == 1, w, 0.0) - A @ np.where(kind == 0, x, 0.0)))
+    proof = certify(trace(homotopy), homotopy)
+    assert proof.complete, str(proof)

@@ -1,0 +1,37 @@
+"""Where a turning point is listed, the parameter turns."""
+
+from __future__ import annotations
+
+from attrs import evolve
+
+import continuation
+from continuation import certify
+from continuation.certificate.certifying import recheck
+from continuation.status import Status
+from problems.bifurcation import ExponentialCosine, FreudensteinRoth
+
+
+def test_a_turning_point_that_is_listed_elsewhere_on_the_curve_is_a_gap():
+    # A range of two cells holds it: at any point of the path in there it was taken for the one that is listed.
+    path = continuation.trace(FreudensteinRoth())
+    assert all(end - begin < 0.01 for begin, end in certify(path, FreudensteinRoth()).turning_points)
+    first, *others = path.events
+    for step in path.steps[first.step - 2 : first.step + 3]:
+        like = evolve(first, u=step.u, arclength=step.arclength, step=step.index)
+        proof = certify(evolve(path, events=[like, *others]), FreudensteinRoth())
+        assert "a turning point that the path does not list" in str(proof)
+        assert "a turning point is listed where there is none" in str(proof)
+
+
+def test_two_turning_points_next_to_each_other_are_told_apart():
+    # Within 3e-8 of the parameter, where cells of 1/256 of the step are the shortest.
+    homotopy = ExponentialCosine(10)
+    whole = continuation.trace(homotopy)
+    k = next(a.step for a, b in zip(whole.turning_points, whole.turning_points[1:]) if abs(a.lam - b.lam) < 1e-7)
+    steps = [evolve(step, index=j) for j, step in enumerate(whole.steps[k - 1 : k + 1])]
+    events = [evolve(event, step=1) for event in whole.events if event.step == k]
+    path = evolve(whole, steps=steps, events=events, status=Status.STOPPED_AT_EVENT)
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    assert len(proof.turning_points) == 2
+    assert recheck(proof.cells, path, homotopy).turning_points == proof.turning_points

@@ -1,0 +1,98 @@
+"""Groups of faces that multipliers exclude: against enumeration in exact arithmetic, and what is forged is refused."""
+
+import numpy as np
+import pytest
+from attrs import evolve
+
+from continuation import Budget
+from problems import lcp
+from problems.lcp import Outcome
+from problems.lcp.proof.groups import Group, Groups
+from problems.lcp.reference.branching import Branching
+from problems.lcp.reference.enumeration import exhaust
+
+
+def random(seed):
+    """Small integers, sparse ones, semidefinite of low rank and normal numbers, in turn."""
+    r = np.random.default_rng([77, seed])
+    n = int(r.integers(1, 8))
+    A, q = r.integers(-1, 2, (n, n)).astype(float), r.integers(-1, 2, n).astype(float)
+    if seed % 4 == 1:
+        A *= r.random((n, n)) < 0.5
+    elif seed % 4 == 2:
+        B = r.integers(-1, 2, (n, max(1, n // 2))).astype(float)
+        A = B @ B.T * r.choice([-1, 1])
+    elif seed % 4 == 3:
+        A, q = r.standard_normal((n, n)), r.standard_normal(n)
+    return lcp.LCP(A, q)
+
+
+def feasible_without_solution(n, seed):
+    """Normal entries; q such that x = 1 is feasible, and no face holds a solution."""
+    r = np.random.default_rng([78, n])
+    A = r.standard_normal((n, n))
+    A[:2] = 0.0
+    A[0, 1], x = 1.0, np.ones(n)
+    order = np.random.default_rng(seed).permutation(n)
+    q = np.append([-1.0, 1.0], r.random(n - 2) + 1e-3 - A[2:] @ x)
+    return lcp.LCP(A[np.ix_(order, order)], q[order])
+
+
+def test_they_agree_with_enumeration_and_hold_exactly():
+    for seed in range(60):
+        problem = random(seed)
+        # No face is accepted in floats, so that every claim is one of exact arithmetic.
+        found = Branching(problem, lambda active: False).run(1000)
+        assert found is not None
+        assert found.solvable is exhaust(problem).solvable
+        if not found.solvable:
+            assert found.groups.holds(problem)
+        else:
+            x = found.point
+            assert np.abs(np.minimum(x, problem.w(x))).max() <= 1e-9
+
+
+@pytest.mark.parametrize("n", [13, 20, 30])
+def test_feasible_problems_without_a_solution_are_decided(n):
+    problem = feasible_without_solution(n, n)
+    found = lcp.solve(problem)
+    assert found.outcome is Outcome.UNSOLVABLE
+    assert found.farkas is None
+    assert not found.paths
+    assert "in groups" in found.proof
+    assert f"by {len(found.exhaustion.groups)}" not in found.proof
+    assert found.exhaustion.faces == 2**n
+    assert found.exhaustion.groups.holds(problem)
+
+
+def test_in_other_units_they_hold_for_the_data_as_given():
+    problem = feasible_without_solution(14, 3)
+    rows, columns = 2.0 ** np.random.default_rng(5).integers(-30, 31, (2, 14))
+    scaled = lcp.LCP(rows[:, None] * problem.A * columns, rows * problem.q)
+    found = lcp.solve(scaled)
+    assert found.outcome is Outcome.UNSOLVABLE
+    assert found.exhaustion.groups.holds(scaled)
+    assert not found.exhaustion.groups.holds(lcp.LCP(np.eye(14), -np.ones(14)))
+
+
+def test_what_is_forged_does_not_hold():
+    problem = feasible_without_solution(13, 1)
+    groups = lcp.solve(problem).exhaustion.groups
+    assert groups.holds(problem)
+    assert not Groups(groups.groups[:-1]).holds(problem)
+    one = next(group for group in groups.groups if group.y is not None)
+    rest = tuple(group for group in groups.groups if group is not one)
+    forged = (evolve(one, y=-np.asarray(one.y, dtype=float)), evolve(one, y=None), Group(np.zeros(26, bool), one.y))
+    for other in forged:
+        assert not Groups((*rest, other)).holds(problem)
+    assert not Groups(()).holds(problem)
+
+
+def test_nodes_and_the_clock_end_it_and_it_goes_on():
+    problem = feasible_without_solution(20, 2)
+    tree = Branching(problem, lambda active: False)
+    assert tree.run(1) is None
+    assert tree.nodes == 1
+    assert tree.run(1000, seconds=-1.0) is None or tree.nodes > 1
+    assert tree.run(1000).groups.holds(problem)
+    assert lcp.solve(problem, finish=False, restarts=0, budget=Budget(steps=5)).outcome is not Outcome.UNSOLVABLE
