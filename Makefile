@@ -68,3 +68,4 @@ docs: $(VENV)/.docs
 
 clean:
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find continuation problems tests examples docs -name __pycache__ -prune -exec rm -rf {} +
