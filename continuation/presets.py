@@ -23,7 +23,7 @@ class Preset:
 FAST = Preset(
     "FAST",
     "steps that aim at a turn of 26 degrees and one factorisation for several increments; for smooth paths: an S-bend "
-    "of a few thousandths of the path may lie inside a step (28 of 600 did)",
+    "of less than a thousandth of the path may lie inside a step (0 of 3,000 from 0.001, 44 of 180 at 0.0001)",
     Hermite(),
     BorderedNewton(reuse=0.5),
     AllgowerGeorg(contraction=0.5, distance=0.2, angle=0.45, deceleration=2.0),

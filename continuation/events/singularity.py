@@ -252,7 +252,7 @@ def branch_point_near(
 
     def done(size: float) -> bool:
         lost = norm(weights, newton.x[:-1] - guess) > norm(weights, heading)
-        # From so near a regular zero increments no longer halve at round-off only; if they grow, several ranks are lost.
+        # So near to a regular zero increments that no longer halve are round-off; if they grow, several ranks are lost.
         near = size < POLISHED_NEARLY * max(newton.ratio, 1.0)
         return lost or size <= POLISHED or (near and newton.ratio >= HALVING)
 

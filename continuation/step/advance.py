@@ -147,6 +147,9 @@ class Advance:
                 found = self.examiner.examine(point, state, landing, prediction, landed=True)
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
+                if found.reason is Rejection.MIDPOINT:
+                    # What was seen before the target would lie in a longer step, too, where less shows it.
+                    h = min(h, found.factor * landing.h)
             state = evolve(state, last_failed_landing=point.lam)
         rejected: tuple[Rejected, ...] = ()
         while True:

@@ -145,6 +145,14 @@ def test_an_s_bend_where_a_landing_is_looked_at(width, seed):
     assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, turns)
 
 
+@pytest.mark.parametrize("seed", [90644, 90821])
+def test_an_s_bend_before_a_target_is_not_stepped_over(seed):
+    """A landing that met it was followed by a step three times as long, whose looks allow three times as much."""
+    homotopy, turns = bends.bend("curved", 0.001, seed)
+    path = trace(homotopy, preset=FAST)
+    assert (path.status, len(path.turning_points)) == (Status.REACHED_TARGET, turns)
+
+
 @pytest.mark.parametrize(("width", "seed"), [(0.001, 6344), (0.001, 6479)])
 def test_an_s_bend_that_a_smooth_error_hides_at_both_places(width, seed):
     """What the cubic misses of the curve makes up for the S at 0.31 and 0.77, for most of it and for all."""
