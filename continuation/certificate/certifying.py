@@ -286,7 +286,11 @@ def _weights(homotopy: Any, path: Path) -> list[Array]:
     points, tangents = path.u, path.tangents
     own: Metric | None = getattr(homotopy, "metric", None)
     if own is None:
-        extent = np.maximum.accumulate(np.abs(points - points[0]), axis=0)
+        # Where a component turns within a step, it has gone farther than the points tell.
+        rates = np.diff(tangents, axis=0) * np.diff(path.arclength)[:, None]
+        middles = 0.5 * (points[1:] + points[:-1]) - 0.125 * rates
+        far = np.fmax(np.abs(points[1:] - points[0]), np.abs(middles - points[0]))
+        extent = np.maximum.accumulate(np.vstack([np.zeros_like(points[:1]), far]), axis=0)
         return [_by_extent(row) for row in np.vstack([extent[1:], extent[-1:]])]
     out: list[Array] = []
     for u, tangent in zip(points, tangents):

@@ -83,6 +83,7 @@ def subjects(seed: int = 0) -> list[tuple[Any, Path, Proof]]:
         *kinked(),
         *([TwoSheets(10.0 ** rng.uniform(-4.0, -1.0))] if seed else []),
         *map(KKTHomotopy, drawn_ones),
+        *([cubic(int(rng.integers(1000)))] if seed else []),
     ]
     out = []
     for homotopy in homotopies:

@@ -142,9 +142,10 @@ def test_small_pivots_are_not_trusted():
     assert (off < 1e-9).all()
 
 
-@pytest.mark.parametrize("seed", [20, 29])
-def test_a_switch_that_comes_near_to_zero_or_back_to_it_is_told(seed):
-    # One vanishes at both ends of a step; the other is 8.5e-4, with tubes as wide as that, where an arc ends.
+@pytest.mark.parametrize("seed", [9, 18, 20, 21, 29])
+def test_random_paths_with_kinks_are_proved(seed):
+    # In 20 a switch vanishes at both ends of a step; in 29 one is 8.5e-4, with tubes as wide, where an arc ends;
+    # in the others the parameter turns within the first step behind a kink, and moves by next to nothing in all.
     homotopy = benchmark("proof/subjects.py").cubic(seed)
     path = trace(homotopy, budget=Budget(steps=60))
     proof = certify(path, homotopy)
