@@ -76,6 +76,7 @@ class Branching:
     _groups: list[Group] = field(factory=list, init=False)
     _excluding: Excluding = field(init=False)
     _found: Exhaustion | None = field(default=None, init=False)
+    _given_up: bool = field(default=False, init=False)
 
     def __attrs_post_init__(self) -> None:
         problem, n = self.problem, self.problem.n
@@ -96,13 +97,16 @@ class Branching:
         seconds : float
         """
         end = time.perf_counter() + seconds
-        while self._waiting:
+        while self._waiting and not self._given_up:
             if self.nodes >= most or (self.nodes % NODES_PER_LOOK == 0 and time.perf_counter() > end):
                 return None
             self.nodes += 1
             if not self._look(self._waiting.pop()):
+                # Of this node nothing is known, so that the others prove nothing.
+                self._given_up = True
                 return self._found
-        return Exhaustion(None, 1 << self.problem.n, Groups(tuple(self._groups)))
+        groups = Groups(tuple(self._groups))
+        return Exhaustion(None, 1 << self.problem.n, groups) if not self._given_up and groups.complete else None
 
     def _look(self, node: Node) -> bool:
         """Exclude a node or put its children into the waiting list; whether to go on."""
