@@ -93,7 +93,7 @@ def _all_of_them(groups: NDArray[np.bool_]) -> bool:
         return bool(len(groups))
     if not groups.any(axis=(1, 2)).all():
         return True
-    dividing = (groups[:, 0] ^ groups[:, 1]).all(axis=0).nonzero()[0]
+    dividing = np.flatnonzero(np.logical_and.reduce(groups[:, 0] ^ groups[:, 1], axis=0))
     if not dividing.size:
         return False
     i = int(dividing[0])
