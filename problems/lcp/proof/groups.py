@@ -69,29 +69,36 @@ class Groups:
         ----------
         problem : LCP
         """
-        check = Excluding(problem)
-        return _all_of_them([group.fixed for group in self.groups]) and all(map(check.exactly, self.groups))
+        return self.complete and all(map(Excluding(problem).exactly, self.groups))
+
+    @property
+    def complete(self) -> bool:
+        """Whether every face is in one of them."""
+        if not self.groups:
+            return False
+        fixed = np.array([group.fixed for group in self.groups])
+        return _all_of_them(fixed.reshape(len(fixed), 2, -1))
 
 
 def _whole(y: Array | Sequence[int]) -> list[int]:
     return integers(y)[0] if isinstance(y, np.ndarray) else list(y)
 
 
-def _all_of_them(groups: list[Fixed]) -> bool:
-    """Whether every face is in one of these groups: a pair that all of them fix divides them, as it divided a tree."""
-    if any(not fixed.any() for fixed in groups):
+def _all_of_them(groups: NDArray[np.bool_]) -> bool:
+    """Whether every face is in one of these groups: a pair that all of them fix divides them, as it divided a tree.
+
+    `groups` of shape (number, 2, n): What they fix, of x and of w.
+    """
+    if not groups.size:
+        return bool(len(groups))
+    if not groups.any(axis=(1, 2)).all():
         return True
-    n = groups[0].size // 2 if groups else 0
-    for i in range(n):
-        zero, active = ([fixed for fixed in groups if fixed[k]] for k in (i, i + n))
-        if len(zero) + len(active) == len(groups):
-            return all(_all_of_them([_without(fixed, i) for fixed in part]) for part in (zero, active))
-    return False
-
-
-def _without(fixed: Fixed, i: int) -> Fixed:
-    n = fixed.size // 2
-    return np.delete(fixed, [i, i + n])
+    dividing = np.flatnonzero(np.logical_and.reduce(groups[:, 0] ^ groups[:, 1], axis=0))
+    if not dividing.size:
+        return False
+    i = int(dividing[0])
+    rest = np.delete(groups, i, axis=2)
+    return all(_all_of_them(rest[groups[:, side, i]]) for side in (0, 1))
 
 
 @frozen(eq=False)

@@ -15,16 +15,22 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-from continuation.arrays import largest
+from continuation.arrays import Array, largest
 from problems.lcp.classes.exact import indices
 from problems.lcp.classes.faces import face_point
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.dictionary import Dictionary
-from problems.lcp.pivoting.programs import ROUNDED_TO_ZERO, infeasible_row, point_of, vertex_at_zero
 from problems.lcp.proof.groups import Excluding, Fixed, Group, Groups
 from problems.lcp.reference.enumeration import Exhaustion
 
 Active = NDArray[np.bool_]
+
+ROUNDED_TO_ZERO = 1e-9
+"""An entry below this, and a value, relative to the largest, is no reason for a pivot: the linear programs only guide,
+and what they claim is checked."""
+
+PIVOTS_PER_NODE = 50
+"""Times the order: of 600 nodes of order 20 to 60 none took more than the order itself; without end is none."""
 
 NODES_PER_LOOK = 64
 """At the clock."""
@@ -70,13 +76,16 @@ class Branching:
     _groups: list[Group] = field(factory=list, init=False)
     _excluding: Excluding = field(init=False)
     _found: Exhaustion | None = field(default=None, init=False)
+    _given_up: bool = field(default=False, init=False)
 
     def __attrs_post_init__(self) -> None:
         problem, n = self.problem, self.problem.n
         self._excluding = Excluding(problem)
         # Any positive cost will do. No two should be alike, so that few pivots are tied.
         costs = 1.0 + np.modf(np.arange(1.0, n + 1.0) * (0.5 + math.sqrt(1.25)))[0]
-        self._waiting.append(Node(np.zeros(2 * n + 1, dtype=bool), vertex_at_zero(problem, costs)))
+        table = np.vstack([np.column_stack([problem.A, problem.q]), np.append(costs, 0.0)])
+        root = Dictionary(table, np.arange(n, 2 * n + 1), np.arange(n))
+        self._waiting.append(Node(np.zeros(2 * n + 1, dtype=bool), root))
 
     def run(self, most: int, seconds: float = math.inf) -> Exhaustion | None:
         """Go on until there is a solution or a proof; None where there is neither, or a face was accepted.
@@ -88,13 +97,16 @@ class Branching:
         seconds : float
         """
         end = time.perf_counter() + seconds
-        while self._waiting:
+        while self._waiting and not self._given_up:
             if self.nodes >= most or (self.nodes % NODES_PER_LOOK == 0 and time.perf_counter() > end):
                 return None
             self.nodes += 1
             if not self._look(self._waiting.pop()):
+                # Of this node nothing is known, so that the others prove nothing.
+                self._given_up = True
                 return self._found
-        return Exhaustion(None, 1 << self.problem.n, Groups(tuple(self._groups)))
+        groups = Groups(tuple(self._groups))
+        return Exhaustion(None, 1 << self.problem.n, groups) if not self._given_up and groups.complete else None
 
     def _look(self, node: Node) -> bool:
         """Exclude a node or put its children into the waiting list; whether to go on."""
@@ -108,13 +120,15 @@ class Branching:
                 dictionary.rebuilt()
                 return self._divided(node, fixed[:n] | fixed[n : 2 * n])
             return True
-        constants, free = dictionary.entries(-1)[:n], ~fixed[dictionary.nonbasic]
+        values = np.zeros(2 * n)
+        basic, constants, free = dictionary.basic[:n], dictionary.entries(-1)[:n], ~fixed[dictionary.nonbasic]
+        values[basic] = constants
         zero = ROUNDED_TO_ZERO * largest(constants)
         rising = (dictionary.table[:n, :n] >= 0.0) | ~free
         never = (constants > zero) & np.logical_and.reduce(rising, axis=1)
         if never.any() and self._implied(node, never):
             return True
-        x, w = point_of(dictionary)
+        x, w = values[:n], values[n:]
         between = np.minimum(x, w) > zero
         if between.any():
             self._branch(node, between.nonzero()[0])
@@ -195,3 +209,25 @@ class Branching:
             return False
         self._groups.append(group)
         return True
+
+
+def infeasible_row(dictionary: Dictionary, fixed: Fixed) -> int | None:
+    """Make what is fixed zero and the rest nonnegative, by the dual simplex method; the row that forbids it.
+
+    -1 where there is such a point, None where there is no end. `dictionary`: Dually feasible, the cost last; is
+    changed.
+    """
+    n = dictionary.nonbasic.size
+    for _ in range(PIVOTS_PER_NODE * n):
+        constants = dictionary.entries(-1)[:n]
+        wrong: Array = np.where(fixed[dictionary.basic[:n]], np.abs(constants), -constants)
+        row = int(wrong.argmax())
+        if wrong[row] <= ROUNDED_TO_ZERO * largest(constants):
+            return -1
+        slopes = dictionary.table[row, :n] if constants[row] < 0.0 else -dictionary.table[row, :n]
+        rising = ((slopes > ROUNDED_TO_ZERO) & ~fixed[dictionary.nonbasic]).nonzero()[0]
+        if not rising.size:
+            return row
+        ratios = np.maximum(dictionary.table[n, rising], 0.0) / slopes[rising]
+        dictionary.pivot(row, int(rising[ratios.argmin()]))
+    return None

@@ -6,19 +6,15 @@ from concurrent.futures import Executor
 
 import numpy as np
 from attrs import define, field
-from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.linear.factoring import Factoring
-from problems.lcp.active_set.finish import below_zero
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.matrix_facts import MatrixFacts, entry_facts, matrix_facts
 from problems.lcp.data.problem import LCP, MixedLCP, State, active_state
-from problems.lcp.pivoting.descents import Descents
 from problems.lcp.proof.certificate import certify
 from problems.lcp.reference.branching import Branching
-from problems.lcp.search import said
-from problems.lcp.search.limits import LARGEST_DESCENT, LARGEST_SINGULAR, LEAST_REGULAR, LEAST_SINGULAR
+from problems.lcp.search.limits import LARGEST_SINGULAR, LEAST_REGULAR, LEAST_SINGULAR
 from problems.lcp.search.pivots import AT_END, Nearby, independent
 from problems.lcp.search.search import Search
 
@@ -51,8 +47,6 @@ class Case:
         How many restarts were begun.
     branching : Branching or None
         The tree of the implicit enumeration, once that has begun.
-    descents : Descents or None
-        Likewise.
     reason : str
         Why there is no start.
     """
@@ -70,7 +64,6 @@ class Case:
     followed: str = field(default="", init=False)
     tried: int = field(default=0, init=False)
     branching: Branching | None = field(default=None, init=False)
-    descents: Descents | None = field(default=None, init=False)
     reason: str = field(default="", init=False)
 
     @property
@@ -130,13 +123,6 @@ class Case:
         return bool(self.known.semidefinite)
 
     @property
-    def restarted(self) -> str:
-        """What is said where one of the restarts, or descents between them, led to a solution."""
-        if self.search.paths and self.search.ends[-1].path < 0:
-            return said.DESCENDED_TO.format(case=self)
-        return f"Solved by a path of the {self.asked} homotopy from random start {self.tried} (seed {self.seed})."
-
-    @property
     def compiled(self) -> str:
         """What is said of pivots that numba has compiled."""
         return " (pivots compiled by numba)" if self.search.compiled else ""
@@ -151,44 +137,6 @@ class Case:
         """Whether some of the budget is left."""
         return not self.search.exhausted
 
-    def augment(self, most: int) -> bool:
-        """Whether the augmented Lagrangian of a program led to a solution, if only to working precision.
-
-        Parameters
-        ----------
-        most : int
-            Factorisations.
-        """
-        n = self.problem.primal
-        below = 0.0 if self.semidefinite else below_zero(self.problem.A[:n][:, :n])
-        return self.search.augment(below, most)
-
-    def _dense(self, largest: int) -> bool:
-        """Whether vertices of x >= 0, w >= 0 may be gone through: of a dense LCP of at most this order."""
-        standard = isinstance(self.problem, LCP) and not self.problem.sparse and self.problem.n <= largest
-        return standard and self.search.finish is not None and self.in_budget
-
-    def _settles(self, active: NDArray[np.bool_]) -> bool:
-        return self.search.settle(active_state(active), AT_END)
-
-    @property
-    def descendable(self) -> bool:
-        """Whether descents are worth their time: not where A is known to be semidefinite, which paths solve."""
-        return self._dense(LARGEST_DESCENT) and not self.known.semidefinite
-
-    def descend(self, most: int) -> bool:
-        """Begin descents, or go on with them; whether they led to a solution.
-
-        Parameters
-        ----------
-        most : int
-            Further linear programs.
-        """
-        if self.descents is None:
-            assert isinstance(self.problem, LCP)
-            self.descents = Descents(self.problem, self._settles, self.seed)
-        return self.descents.run(self.descents.programs + most, self.search.seconds_left)
-
     def groupable(self, tree: tuple[int, int]) -> bool:
         """Whether faces can be enumerated in groups: of an LCP no entry of which was rounded.
 
@@ -197,8 +145,10 @@ class Case:
         tree : tuple of int
             Its largest order, and how many linear programs it may take.
         """
-        scaled = self.search.scaled
-        return self._dense(tree[0]) and (scaled is None or scaled.exact)
+        search, problem = self.search, self.problem
+        if search.finish is None or not isinstance(problem, LCP) or problem.sparse or problem.n > tree[0]:
+            return False
+        return (search.scaled is None or search.scaled.exact) and self.in_budget
 
     def branch(self, tree: tuple[int, int]) -> bool:
         """Begin that enumeration, or go on with it; whether it decided the problem.
@@ -210,7 +160,7 @@ class Case:
         search, problem = self.search, self.problem
         if self.branching is None:
             assert isinstance(problem, LCP)
-            self.branching = Branching(problem, self._settles)
+            self.branching = Branching(problem, lambda active: search.settle(active_state(active), AT_END))
         found = self.branching.run(tree[1], search.seconds_left)
         if found is None:
             return self.branching.accepted

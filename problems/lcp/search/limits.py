@@ -57,10 +57,6 @@ n = 20, 0.2 at 40. Feasible Gaussian problems take 5 to 150 up to n = 20, 40 to 
 LARGE_TREE = 60, 20_000
 """The same after the first paths: 2 s at n = 20, 7 at n = 60, where 300 to 8,000 are enough for most."""
 
-LARGEST_DESCENT, SOME_DESCENTS, BETWEEN_RESTARTS = 150, 2000, 500
-"""Largest order, and linear programs of descents before the first path and between any two restarts, each of which
-takes about as long (0.1 to 0.2 s at n = 100). At n = 300 none of 3 Gaussian problems was solved by them in 75 s."""
-
 LARGEST_TINY = 6
 """Up to this order they come right after Lemke's method, before units of the problem's own, which take 0.4 ms: 0.1 ms
 (n = 3, 4) to 0.8 ms (6)."""

@@ -9,8 +9,5 @@ LEMKE = "By Lemke's method{case.compiled}, before any path."
 SETTLED_SHIFTED = "Solved by active sets of A + shift I, before any path."
 DESCENDED = "Solved by descent of the quadratic function in the box: a point that satisfies its optimality conditions."
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
-RESTARTED = "{case.restarted}"
+RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 BRANCHED = "The complementary faces were enumerated in groups, by {case.branching.nodes} linear programs."
-DESCENDED_TO = (
-    "By descent of weighted minima of x and w from vertex to vertex, in {case.descents.programs} linear programs."
-)

@@ -202,20 +202,13 @@ class Search:
         return self.finish.certificate if polished is not None and self.finish.certificate is not None else end
 
     def restart(
-        self,
-        name: str,
-        seed: int,
-        count: int,
-        executor: Executor | None,
-        bands: tuple[Band, ...] = FAR_STARTS,
-        between: Callable[[], bool] | None = None,
+        self, name: str, seed: int, count: int, executor: Executor | None, bands: tuple[Band, ...] = FAR_STARTS
     ) -> int:
         """Trace restarts until one solves the problem, or the budget or the count is used up; how many were begun.
 
         Over an executor the first solution in the order of the restarts is taken among those that are there.
 
-        `name`: Of the homotopy. `bands`: How far out they begin, in turn. `between`: What else is tried after each,
-        unless there is an executor; whether that solved the problem.
+        `name`: Of the homotopy. `bands`: How far out they begin, in turn.
         """
         tolerance = None if self.finish is None else self.tolerance
 
@@ -230,7 +223,7 @@ class Search:
                 return k
             path = task(k, weights).trace(self._left(), self._observers())
             self.add(path, weights is not None)
-            if self.solved or (between is not None and between()):
+            if self.solved:
                 return k + 1
             weights = reweighted(self.problem, weights, path)
         return count

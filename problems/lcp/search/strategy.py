@@ -14,6 +14,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.presets import FAST
+from problems.lcp.active_set.finish import below_zero
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.data.problem import LCP
@@ -28,7 +29,6 @@ from problems.lcp.search import said
 from problems.lcp.search.case import Case
 from problems.lcp.search.limits import (
     AT_GUESS,
-    BETWEEN_RESTARTS,
     FEW_PIECES,
     FIRST,
     FROM_ZERO,
@@ -42,7 +42,6 @@ from problems.lcp.search.limits import (
     MOST_Z_STEPS,
     PROOF_SHARE,
     SMALL_TREE,
-    SOME_DESCENTS,
     WHILE_REGULAR,
 )
 from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, by_lemke, by_lemke_howson, convex
@@ -133,6 +132,12 @@ def _descent(case: Case) -> bool:
     return case.search.descend(case.first_state)
 
 
+def _augmented(case: Case) -> bool:
+    n = case.problem.primal
+    below = 0.0 if case.semidefinite else below_zero(case.problem.A[:n][:, :n])
+    return case.search.augment(below, MOST_AUGMENTED)
+
+
 def _by_lemke_howson(case: Case) -> bool:
     return by_lemke_howson(case.search, case.seed)
 
@@ -190,8 +195,7 @@ def _path(name: str = "", patient: bool = False, **options: Any) -> Callable[[Ca
 def _restarts(case: Case) -> bool:
     # Of a matrix that a homotopy by name was chosen for nothing was found out.
     bands = NEAR_STARTS if case.facts is not None and case.facts.nonnegative else FAR_STARTS
-    between = (lambda: case.descend(BETWEEN_RESTARTS)) if case.descents is not None else None
-    case.tried = case.search.restart(case.asked, case.seed, case.restarts, case.executor, bands, between)
+    case.tried = case.search.restart(case.asked, case.seed, case.restarts, case.executor, bands)
     return case.search.solved
 
 
@@ -304,9 +308,8 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
     Attempt("some groups of faces", lambda c: c.groupable(SMALL_TREE), lambda c: c.branch(SMALL_TREE), said.BRANCHED),
-    Attempt("descents", lambda c: c.descendable, lambda c: c.descend(SOME_DESCENTS), said.DESCENDED_TO),
     Attempt("few pieces", _has_few_pieces, _all_faces, said.TRIED),
-    Attempt("augmented Lagrangian", _with_rows, lambda c: c.augment(MOST_AUGMENTED), said.AUGMENTED),
+    Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
 )
 """What is cheap and cannot mislead."""
 

@@ -96,3 +96,16 @@ def test_nodes_and_the_clock_end_it_and_it_goes_on():
     assert tree.run(1000, seconds=-1.0) is None or tree.nodes > 1
     assert tree.run(1000).groups.holds(problem)
     assert lcp.solve(problem, finish=False, restarts=0, budget=Budget(steps=5)).outcome is not Outcome.UNSOLVABLE
+
+
+def test_a_tree_that_was_given_up_proves_nothing():
+    """Entries from 1e-282 to 1: no group of some faces is found to hold none, and the rest is not all."""
+    A = np.zeros((4, 4))
+    A[0, 2:], A[1, 2:] = [1.66463445e-175, 0.979055238], [1.27498055, 2.46082704e-175]
+    A[2, :2], A[3, :2] = [1.07903001, 1.63501523e-45], [1.78075078e-45, 1.01617793]
+    problem = lcp.LCP(A, [-1.0692575, -2.57651505e-158, -0.758187060, -1.32468759e-282])
+    tree = Branching(problem, lambda active: False)
+    for _ in range(3):
+        found = tree.run(1000)
+        assert found is None or found.solvable is lcp.solve_by_enumeration(problem).solvable
+    assert tree.run(1000) is None or not lcp.solve_by_enumeration(problem).solvable

@@ -44,8 +44,8 @@ def test_the_order_depends_on_the_matrix():
     expected += ["Wang's path", "proof", "KKT path", "groups of faces", "all faces", "restarts"]
     assert tried(case(lcp.LCP(skew, q)), AUTOMATIC) == expected
     negative = lcp.LCP(-np.eye(3) + np.ones((3, 3)) * [[0.0], [-3.0], [1.0]], q)
-    expected = [ZERO, "Lemke", "proof, early", "some groups of faces", "descents", "KKT path, first"]
-    expected += ["proof", "groups of faces", "all faces", "restarts"]
+    expected = [ZERO, "Lemke", "proof, early", "some groups of faces", "KKT path, first", "proof"]
+    expected += ["groups of faces", "all faces", "restarts"]
     assert tried(case(negative), AUTOMATIC) == expected
     definite = lcp.LCP(np.full((3, 3), 1.0) + np.eye(3), q)
     assert tried(case(definite), AUTOMATIC)[:2] == ["active sets of A + shift I, from x = 0", ZERO]
@@ -96,9 +96,6 @@ def test_all_faces_are_tried_where_they_are_few():
     assert "some groups of faces" not in tried(case(lcp.LCP(np.eye(41), -np.ones(41))), AUTOMATIC)
     assert "groups of faces" in tried(case(lcp.LCP(np.eye(60), -np.ones(60))), AUTOMATIC)
     assert "groups of faces" not in tried(case(lcp.LCP(np.eye(61), -np.ones(61))), AUTOMATIC)
-    indefinite = -np.eye(151) + np.ones((151, 151))
-    assert "descents" in tried(case(lcp.LCP(indefinite[1:, 1:], -np.ones(150))), AUTOMATIC)
-    assert "descents" not in tried(case(lcp.LCP(indefinite, -np.ones(151))), AUTOMATIC)
     assert "all faces" not in tried(case(lcp.LCP(np.eye(13), -np.ones(13))), AUTOMATIC)
     assert "all faces" not in tried(case(INFEASIBLE), NAMED)
 
