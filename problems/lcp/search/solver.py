@@ -84,7 +84,7 @@ def solve(
     problem : LCP, MixedLCP or Program
     homotopy : str
         "auto": what is cheap and cannot mislead first (active sets, pivots, some groups of faces), then Wang's path,
-        then the KKT path, then more groups of faces up to order 60, then restarts (`search.strategy` has the order). Or
+        then the KKT path, then more groups of faces up to order 40, then restarts (`search.strategy` has the order). Or
         one of "kkt", "wang", "yu", "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
         A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start. For

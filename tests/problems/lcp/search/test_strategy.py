@@ -94,8 +94,8 @@ def test_all_faces_are_tried_where_they_are_few():
     assert "all faces" in tried(case(lcp.LCP(np.eye(12), -np.ones(12))), AUTOMATIC)
     assert "some groups of faces" in tried(case(lcp.LCP(np.eye(40), -np.ones(40))), AUTOMATIC)
     assert "some groups of faces" not in tried(case(lcp.LCP(np.eye(41), -np.ones(41))), AUTOMATIC)
-    assert "groups of faces" in tried(case(lcp.LCP(np.eye(60), -np.ones(60))), AUTOMATIC)
-    assert "groups of faces" not in tried(case(lcp.LCP(np.eye(61), -np.ones(61))), AUTOMATIC)
+    assert "groups of faces" in tried(case(lcp.LCP(np.eye(40), -np.ones(40))), AUTOMATIC)
+    assert "groups of faces" not in tried(case(lcp.LCP(np.eye(41), -np.ones(41))), AUTOMATIC)
     assert "all faces" not in tried(case(lcp.LCP(np.eye(13), -np.ones(13))), AUTOMATIC)
     assert "all faces" not in tried(case(INFEASIBLE), NAMED)
 
