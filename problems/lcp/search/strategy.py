@@ -271,10 +271,6 @@ def _with_rows(case: Case) -> bool:
     return case.problem.primal > 0 and case.in_budget and not _in_a_box(case)
 
 
-def _has_few_pieces(case: Case) -> bool:
-    return not case.problem.standard and decidable(case.problem, FEW_PIECES)
-
-
 def _tiny(case: Case) -> bool:
     return case.pivoted and case.problem.n <= LARGEST_TINY
 
@@ -308,7 +304,9 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
     Attempt("some groups of faces", lambda c: c.groupable(SMALL_TREE), lambda c: c.branch(SMALL_TREE), said.BRANCHED),
-    Attempt("few pieces", _has_few_pieces, _all_faces, said.TRIED),
+    Attempt(
+        "few pieces", lambda c: not c.problem.standard and decidable(c.problem, FEW_PIECES), _all_faces, said.TRIED
+    ),
     Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
 )
 """What is cheap and cannot mislead."""
