@@ -17,7 +17,7 @@ from continuation.events import Event, TargetValue, TurningPoint
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
-from continuation.point.segment import CUBIC, HermiteSegment, Segment, hermite
+from continuation.point.segment import CUBIC, HermiteSegment, QuinticSegment, Segment, hermite
 from continuation.roots import zero_between
 
 JUMP = 1e-3
@@ -67,7 +67,7 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
 
 def _of_coordinate(event: Event, segment: Segment, length: float) -> Callable[[float], float] | None:
     """The monitor along a cubic of that length, as a function of t, where it looks at one coordinate; else None."""
-    if not (isinstance(segment, HermiteSegment) and isinstance(event, TurningPoint | TargetValue)):
+    if not (isinstance(segment, HermiteSegment | QuinticSegment) and isinstance(event, TurningPoint | TargetValue)):
         return None
     at, slope = segment.coordinate(event.component)
     if isinstance(event, TurningPoint):

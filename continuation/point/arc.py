@@ -47,7 +47,7 @@ def guided(arc: Arc, c: Array, d: Array) -> Arc:
     """The same arc, of which the cubic is known to be off by about s^2 (c + d t), s = t (1 - t)."""
     cubic = arc.segment
     assert isinstance(cubic, HermiteSegment)
-    return Arc(arc.a, arc.b, arc.border, cubic, guide=QuinticSegment(cubic.u0, cubic.u1, cubic.d0, cubic.d1, c, d))
+    return Arc(arc.a, arc.b, arc.border, cubic, guide=QuinticSegment(cubic, c, d))
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:

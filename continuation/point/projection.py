@@ -181,10 +181,10 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float, history: Sequence
     length = norm(weights, arc.b.u - arc.a.u)
     allowed = min(SLACK * length, max(EVEN * length, MISSED * distance))
     cubic = len(arc.segment.inside) <= CUBIC
-    off = []
+    off, sizes = [], []
     for t in ARC_PLACES if cubic else (*ARC_PLACES, LATE):
         off.append(arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
-        size = norm(weights, off[-1])
+        sizes.append(size := norm(weights, off[-1]))
         if size > allowed and size > ARC_NOISE * solver.tolerance.relative:
             return None
     if not cubic:
@@ -195,7 +195,7 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float, history: Sequence
     d = (second - first) / (ARC_PLACES[1] - ARC_PLACES[0])
     c = first - ARC_PLACES[0] * d
     arc = guided(arc, c, d)
-    if max(distance, *(norm(weights, one) for one in off)) <= even:
+    if max(distance, *sizes) <= even:
         return arc
 
     def alike(p: Array, q: Array) -> bool:
