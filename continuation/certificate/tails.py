@@ -52,7 +52,7 @@ def tail(solver: PathSolver, before: Node, end: Node, near: float) -> list[Node]
     Returns
     -------
     list of Node
-        None where the corrector does not find them.
+        Empty where the corrector does not find them.
     """
     out: list[Node] = []
     a, goal = before, float(end.u[-1])

@@ -147,9 +147,25 @@ def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
 def exhaust(problem: MixedLCP, seconds: float = math.inf, *, filtered: bool = False) -> Exhaustion | None:
     """Whether the problem has a solution, decided like `solve_by_enumeration`, which goes on to find all of them.
 
-    It has to be `decidable`; after `seconds` it is given up, and None comes back. With `filtered` pieces that floats,
-    with bounds on their rounding, prove to hold no solution are passed over: quicker by the more the larger n is, and
-    the outcome is the same. Raises `ValueError` if n is too large.
+    Parameters
+    ----------
+    problem : MixedLCP
+        Dense or sparse, `decidable`: for an LCP, n at most `LARGEST_FACES`.
+    seconds : float
+        After so long it is given up.
+    filtered : bool
+        Whether pieces that floats, with bounds on their rounding, prove to hold no solution are passed over; quicker by
+        the more the larger n is, and the outcome is the same.
+
+    Returns
+    -------
+    Exhaustion or None
+        None if time was up before the question was decided.
+
+    Raises
+    ------
+    ValueError
+        If n is larger.
     """
     entries, q, _ = _integers(problem)
     bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
