@@ -329,3 +329,14 @@ def test_an_event_that_is_not_on_the_curve_is_a_gap_however_wide_the_tube():
             events = list(path.events)
             events[k] = evolve(event, u=event.u + 0.02 * np.array(way) * np.ptp(path.u, axis=0))
             assert not continuation.certify(Path(steps=path.steps, events=events, status=path.status), Cusp()).complete
+
+
+def test_a_start_that_is_not_on_the_curve_is_a_gap_however_wide_its_tube():
+    # Two of 10,000 corrupted paths were proved: between the moved start and the next point is room for one curve.
+    sheets, lemke = corrupted.TwoSheets(5.1e-4), corrupted.subjects(0)[5][0]
+    for homotopy, off in ((sheets, [0.0173, 0.0173]), (lemke, [-0.068, 0.025, -0.025, -0.068])):
+        path = trace(homotopy)
+        first, *others = path.steps
+        proof = certify(evolve(path, steps=[evolve(first, u=first.u + off), *others]), homotopy)
+        assert [gap.reason for gap in proof.gaps] == [verify.BESIDE]
+        assert certify(path, homotopy).complete
