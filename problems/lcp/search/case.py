@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from concurrent.futures import Executor
 
 import numpy as np
@@ -16,6 +17,7 @@ from problems.lcp.proof.certificate import certify
 from problems.lcp.reference.branching import Branching
 from problems.lcp.search.limits import LARGEST_SINGULAR, LEAST_REGULAR, LEAST_SINGULAR
 from problems.lcp.search.pivots import AT_END, Nearby, independent
+from problems.lcp.search.reflections import Reflections
 from problems.lcp.search.search import Search
 
 
@@ -47,6 +49,8 @@ class Case:
         How many restarts were begun.
     branching : Branching or None
         The tree of the implicit enumeration, once that has begun.
+    reflections : iterator or None
+        The search by reflections, once that has begun.
     reason : str
         Why there is no start.
     """
@@ -64,6 +68,7 @@ class Case:
     followed: str = field(default="", init=False)
     tried: int = field(default=0, init=False)
     branching: Branching | None = field(default=None, init=False)
+    reflections: Iterator[tuple[int, list[State]]] | None = field(default=None, init=False)
     reason: str = field(default="", init=False)
 
     @property
@@ -168,3 +173,25 @@ class Case:
         if found.point is not None and np.isfinite(found.point).all():
             search.accept(certify(problem, found.point))
         return True
+
+    def reflect(self, rounds: int, share: float) -> bool:
+        """Begin the search by reflections, or go on with it; whether it solved the problem.
+
+        Parameters
+        ----------
+        rounds : int
+            Of runs, from the first on.
+        share : float
+            Of the time left.
+        """
+        search = self.search
+        end = search.seconds + share * search.seconds_left
+        if self.reflections is None:
+            sets = Reflections.of(self.problem)
+            self.reflections = iter(()) if sets is None else sets.rounds(np.random.default_rng(self.seed))
+        for over, faces in self.reflections:
+            if any(search.settle(face, AT_END) for face in faces):
+                return True
+            if over >= rounds or search.exhausted or search.seconds > end:
+                return False
+        return False

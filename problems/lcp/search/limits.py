@@ -70,3 +70,14 @@ MOST_AUGMENTED = 2000
 
 LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
+
+FIRST_ROUND, FIRST_ROUNDS = 1, 4
+"""Rounds of reflections before any path, where faces can be enumerated in groups, which decide more, and else."""
+
+FIRST_WORK, MOST_WORK, MOST_ROUNDS = 1.5e9, 6e9, 40
+"""Iterations times n^2 of reflections before any path, and before restarts; of the second at most so many rounds. The
+first is 5 s at n = 300, where nothing is found, and one round at n = 600 (16 s) and 1000 (a minute, of which Gaussian
+problems need 5 to 17 s); together with the second 20 to 30 s."""
+
+FIRST_SHARE, REFLECTED_SHARE = 0.25, 0.5
+"""Of the time left, where that is limited, for the first and for the others: what they do not solve paths may."""

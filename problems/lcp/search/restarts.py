@@ -1,8 +1,7 @@
 """Paths from random starts: where they begin, the parts that make them quick, and when one is given up.
 
 A path of the KKT homotopy may end at a stationary point of x'w that does not solve the problem; another start leads
-elsewhere (`homotopies.starts.random_start` has what was measured). Where a path ended at one, its large products
-x_i w_i get more weight in the objective of the next, which then has other stationary points, while the solutions stay.
+elsewhere (`homotopies.starts.random_start` has what was measured).
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array
 from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg
 from continuation.correctors import BorderedNewton
@@ -26,11 +24,9 @@ from continuation.tolerance import Tolerance
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.on_path import smallest_parameter
-from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy
-from problems.lcp.homotopies.starts import START_DISTANCES, Start, random_start
-from problems.lcp.proof.farkas import scaled_data
+from problems.lcp.homotopies.starts import START_DISTANCES, random_start
 from problems.lcp.search.route import Patience, follow
 
 Band = tuple[float, float]
@@ -38,17 +34,6 @@ Band = tuple[float, float]
 FAR_STARTS: tuple[Band, ...] = (START_DISTANCES,)
 NEAR_STARTS: tuple[Band, ...] = ((-0.5, 0.0), (0.0, 0.5))
 """The distances of starts, in turn; see `random_start`. For A >= 0 (bimatrix games) only near ones do well."""
-
-WEIGHT_GAIN = 1.0
-"""How much weight the largest product x_i w_i at the end of a path that failed gains; others by the root of theirs."""
-
-HEAVIEST = 100.0
-"""Weights stay below this, and above its inverse, however often the same product is the largest."""
-
-NEAR_THE_END = 1e-3
-"""A path that failed below this parameter is near a stationary point, and its products tell which; of others they tell
-nothing, and with weights from these few paths arrive. Of 25 Gaussian problems (n = 100) 10 were not solved by 25 paths
-with weights from every path, none of them dropped; with weights from the ends alone 2 or 3, as without any."""
 
 SETTLED_PRODUCT = 5e-5
 """Products x z1 below this, in natural units: what the active set is then, it remains."""
@@ -82,34 +67,12 @@ def search_preset(n: int) -> Preset:
     )
 
 
-def reweighted(problem: MixedLCP, weights: Array | None, path: Path) -> Array | None:
-    """Weights of the x_i w_i in the objective after a path that failed: those that are not zero at its end gain.
-
-    `weights`: Those of the path, shape (n,); None for ones. `path`: The one that failed; its first n unknowns are x.
-    None where that was on its way: another objective may be easier to follow.
-    """
-    if not path.steps or not problem.standard:
-        return weights
-    if path.endpoint.lam >= NEAR_THE_END:
-        return None
-    x = np.maximum(path.endpoint.y[: problem.n], 0.0)
-    products = x * np.maximum(problem.w(x), 0.0)
-    largest = float(products.max())
-    if not 0.0 < largest < np.inf:
-        return weights
-    gained = (1.0 if weights is None else weights) * (1.0 + WEIGHT_GAIN * np.sqrt(products / largest))
-    balanced: Array = np.clip(gained / np.exp(np.log(gained).mean()), 1.0 / HEAVIEST, HEAVIEST)
-    return balanced
-
-
 @frozen(eq=False)
 class Restart:
     """The k-th restart: it depends on what is here alone, and can be sent to another process.
 
     `structure`: Of the problem. `name`: "kkt", or that of a homotopy in (x, y). `bands`: How far out it may begin.
     `tolerance`: Of the finish; None to go without it. `options`: For the tracer, over those of `search_preset`.
-    `weights`: Of the x_i w_i in the objective of "kkt", shape (n,); None for ones. The path is then that of the problem
-    whose rows are multiplied by them.
     """
 
     structure: Structure
@@ -119,17 +82,12 @@ class Restart:
     k: int
     tolerance: float | None
     options: Mapping[str, Any]
-    weights: Array | None = None
 
     def homotopy(self) -> LCPHomotopy:
         """The homotopy at its start; with the finish its solves are not refined, which a loose tolerance allows."""
         problem, structure, k = self.structure.problem, self.structure, self.k
         start = random_start(problem, np.random.default_rng([self.seed, k]), self.bands[k % len(self.bands)])
-        if self.name == "kkt" and self.weights is not None:
-            e = self.weights
-            structure = Structure(LCP(*scaled_data(problem, 1.0 / e, np.ones(problem.n))))
-            start = Start(start.x0, start.z1, start.z2 / e, e * start.w0)
-        return HOMOTOPIES[self.name].at(structure.problem, start, structure, refine=self.tolerance is None)
+        return HOMOTOPIES[self.name].at(problem, start, structure, refine=self.tolerance is None)
 
     def trace(self, budget: Budget, observers: tuple[Observer, ...] = ()) -> Path:
         """The path, to its end or until it is given up."""

@@ -11,3 +11,4 @@ DESCENDED = "Solved by descent of the quadratic function in the box: a point tha
 AUGMENTED = "By the augmented Lagrangian of the program, before any path."
 RESTARTED = "Solved by a path of the {case.asked} homotopy from random start {case.tried} (seed {case.seed})."
 BRANCHED = "The complementary faces were enumerated in groups, by {case.branching.nodes} linear programs."
+REFLECTED = "Solved by reflections between w = A x + q and the complementary pairs (seed {case.seed})."

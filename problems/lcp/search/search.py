@@ -28,14 +28,11 @@ from problems.lcp.proof.farkas import Farkas, FloatFarkas
 from problems.lcp.proof.verdict import confirmed, stationary, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
 from problems.lcp.search.padded import Padded, show
-from problems.lcp.search.restarts import FAR_STARTS, Band, Restart, light, reweighted, trace_light
+from problems.lcp.search.restarts import FAR_STARTS, Band, Restart, light, trace_light
 from problems.lcp.search.route import follow
 
 IN_FLIGHT = 64
-"""Restarts handed to an executor before the first of them has come back: more than one machine has workers.
-
-A constant, since restart k goes on from restart k - IN_FLIGHT: the answer must not depend on the number of workers.
-"""
+"""Restarts handed to an executor before the first of them has come back: more than one machine has workers."""
 
 LARGEST_KEPT = 4_000_000
 """Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
@@ -173,12 +170,12 @@ class Search:
         self.add(follow(homotopy, self.finish, self._left(), observers=self._observers(), **given))
         return self.solved
 
-    def add(self, path: Path, weighted: bool = False) -> None:
-        """Take a traced path into account; one with weights in its objective ends where those of x'w need not hold."""
+    def add(self, path: Path) -> None:
+        """Take a traced path into account."""
         self.counts = self.counts + path.counts
         if path.steps:
             arrived = path.status is Status.REACHED_TARGET
-            at_stationary = arrived and not weighted and stationary(self.problem, path.endpoint.y)
+            at_stationary = arrived and stationary(self.problem, path.endpoint.y)
             self.ends.append(Candidate(self._certified(path, arrived), len(self.paths), at_stationary))
             self._kept += len(path) * path.endpoint.u.size
         if self._kept > LARGEST_KEPT:
@@ -212,47 +209,43 @@ class Search:
         """
         tolerance = None if self.finish is None else self.tolerance
 
-        def task(k: int, weights: Array | None) -> Restart:
-            return Restart(self.structure, name, bands, seed, k, tolerance, self.options, weights)
+        def task(k: int) -> Restart:
+            return Restart(self.structure, name, bands, seed, k, tolerance, self.options)
 
         if executor is not None:
             return self._distributed(executor, task, count)
-        weights = None
         for k in range(count):
             if self.exhausted:
                 return k
-            path = task(k, weights).trace(self._left(), self._observers())
-            self.add(path, weights is not None)
+            self.add(task(k).trace(self._left(), self._observers()))
             if self.solved:
                 return k + 1
-            weights = reweighted(self.problem, weights, path)
         return count
 
-    def _distributed(self, executor: Executor, task: Callable[[int, Array | None], Restart], count: int) -> int:
-        """Restart k goes on with the weights that restart k - IN_FLIGHT left: what it does depends on no timing."""
+    def _distributed(self, executor: Executor, task: Callable[[int], Restart], count: int) -> int:
         waiting: dict[Future[Path], Restart] = {}
         begun = 0
 
-        def submit(k: int, weights: Array | None) -> int:
-            if k >= count or self.exhausted:
-                return 0
-            one = task(k, weights)
-            waiting[executor.submit(trace_light, one, self._left())] = one
-            return 1
+        def submit() -> None:
+            nonlocal begun
+            if begun < count and not self.exhausted:
+                one = task(begun)
+                waiting[executor.submit(trace_light, one, self._left())] = one
+                begun += 1
 
         try:
-            for k in range(min(IN_FLIGHT, count)):
-                begun += submit(k, None)
+            for _ in range(IN_FLIGHT):
+                submit()
             while waiting:
                 done, _ = wait(waiting, return_when=FIRST_COMPLETED)
                 for future in sorted(done, key=lambda one: waiting[one].k):
                     restart, path = waiting.pop(future), future.result()
                     if self.log is not None:
                         self.record(path, restart.homotopy())
-                    self.add(path, restart.weights is not None)
+                    self.add(path)
                     if self.solved:
                         return begun
-                    begun += submit(restart.k + IN_FLIGHT, reweighted(self.problem, restart.weights, path))
+                    submit()
             return begun
         finally:
             for future in waiting:

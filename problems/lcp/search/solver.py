@@ -83,8 +83,9 @@ def solve(
     ----------
     problem : LCP, MixedLCP or Program
     homotopy : str
-        "auto": what is cheap and cannot mislead first (active sets, pivots, some groups of faces), then Wang's path,
-        then the KKT path, then more groups of faces up to order 40, then restarts (`search.strategy` has the order). Or
+        "auto": what is cheap and cannot mislead first (active sets, pivots, reflections, some groups of faces), then
+        Wang's path, then the KKT path, then more groups of faces up to order 40, more reflections, then restarts
+        (`search.strategy` has the order). Or
         one of "kkt", "wang", "yu", "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
         A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start. For
@@ -100,8 +101,9 @@ def solve(
         Paths from random starts after the first has failed. Default: 0 for a named homotopy, and as many as the budget
         allows for "auto" (1000 where it has no limit).
     seed : int
-        Of the random starts; the k-th one depends on `seed` and k alone, the weights of its objective on where the
-        restarts before it ended (over an executor: every 64th before it). The same call gives the same answer.
+        Of the random starts, of reflections and of restarts; the k-th restart depends on `seed` and k alone. The same
+        call gives the same answer on the same machine; elsewhere sums may be rounded otherwise, and reflections of a
+        problem with several solutions come to another one.
     budget : continuation.Budget, optional
         Of everything together. By default as many factorisations as take about a minute, which depends on n alone
         (`default_budget`), so that the same call gives the same answer on every machine; ``Budget(seconds=60)`` ends

@@ -31,6 +31,10 @@ from problems.lcp.search.limits import (
     AT_GUESS,
     FEW_PIECES,
     FIRST,
+    FIRST_ROUND,
+    FIRST_ROUNDS,
+    FIRST_SHARE,
+    FIRST_WORK,
     FROM_ZERO,
     LARGE_TREE,
     LARGEST_EARLY_PROOF,
@@ -39,12 +43,16 @@ from problems.lcp.search.limits import (
     LARGEST_TINY,
     LEAST_START,
     MOST_AUGMENTED,
+    MOST_ROUNDS,
+    MOST_WORK,
     MOST_Z_STEPS,
     PROOF_SHARE,
+    REFLECTED_SHARE,
     SMALL_TREE,
     WHILE_REGULAR,
 )
 from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, by_lemke, by_lemke_howson, convex
+from problems.lcp.search.reflections import rounds_within
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, first_patience
 
 
@@ -230,6 +238,21 @@ def _pivotable(case: Case) -> bool:
     return case.problem.n <= LARGEST_TABLE or convex(case.search.structure)
 
 
+def _reflected(case: Case) -> bool:
+    most = FIRST_ROUND if case.groupable(SMALL_TREE) else FIRST_ROUNDS
+    return case.reflect(rounds_within(case.problem.n, FIRST_WORK, most), FIRST_SHARE)
+
+
+def _reflected_further(case: Case) -> bool:
+    return case.reflect(rounds_within(case.problem.n, MOST_WORK, MOST_ROUNDS), REFLECTED_SHARE)
+
+
+def _reflectable(case: Case) -> bool:
+    """Where projections are no burden, and nothing is known to end pivots at a solution or a proof."""
+    usable = case.in_budget and case.search.finish is not None and case.problem.n <= LARGEST_TABLE
+    return usable and not case.known.semidefinite
+
+
 def _game_perhaps(case: Case) -> bool:
     return _pivotable(case) and case.known.nonnegative
 
@@ -303,6 +326,7 @@ WITHOUT_PATH: tuple[Attempt, ...] = (
     Attempt("Lemke and Howson", _scaled(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
     Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
+    Attempt("reflections", _reflectable, _reflected, said.REFLECTED),
     Attempt("some groups of faces", lambda c: c.groupable(SMALL_TREE), lambda c: c.branch(SMALL_TREE), said.BRANCHED),
     Attempt(
         "few pieces", lambda c: not c.problem.standard and decidable(c.problem, FEW_PIECES), _all_faces, said.TRIED
@@ -319,6 +343,7 @@ PATHS: tuple[Attempt, ...] = (
     Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
     Attempt("groups of faces", lambda c: c.groupable(LARGE_TREE), lambda c: c.branch(LARGE_TREE), said.BRANCHED),
     Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, said.TRIED),
+    Attempt("reflections, further", _reflectable, _reflected_further, said.REFLECTED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),
 )
 """Any of these may cost the whole budget."""

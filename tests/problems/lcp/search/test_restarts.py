@@ -5,12 +5,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from attrs import evolve
 
 import continuation
 from problems import lcp
 from problems.lcp.homotopies.starts import LOG_DEVIATION, natural_units, typical_units
-from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, Restart, light, reweighted, search_preset, trace_light
+from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, Restart, light, search_preset, trace_light
 
 PLANTED = 30
 
@@ -58,43 +57,9 @@ def test_a_restart_depends_on_seed_and_number_alone():
     assert not np.array_equal(reseeded.origin.x0, restart(problem, 3).homotopy().origin.x0)
 
 
-def test_large_products_at_a_failed_end_gain_weight():
-    problem = next(p for p in map(planted, range(50)) if not lcp.solve(p, "kkt", restarts=0).solved)
-    path = lcp.solve(problem, "kkt", restarts=0).path
-    x = path.endpoint.y[:PLANTED]
-    products = np.maximum(x, 0.0) * np.maximum(problem.w(x), 0.0)
-    weights = reweighted(problem, None, path)
-    np.testing.assert_allclose(np.log(weights).mean(), 0.0, atol=1e-14)
-    gains = 1.0 + np.sqrt(products / products.max())
-    np.testing.assert_allclose(weights, gains / np.exp(np.log(gains).mean()), rtol=1e-6)
-    twice = reweighted(problem, weights, path)
-    np.testing.assert_allclose(twice, weights**2, rtol=1e-5)
-    for _ in range(30):
-        weights = reweighted(problem, weights, path)
-    assert weights.max() == 100.0
-    assert weights.min() >= 0.01
-
-
-def test_a_solution_gains_nothing():
-    problem = lcp.LCP(np.eye(2), [-1.0, 1.0])
-    path = lcp.solve(problem, "kkt", finish=False).path
-    path.steps[-1] = evolve(path.endpoint, u=np.array([1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))
-    assert reweighted(problem, None, path) is None
-    weights = np.array([2.0, 0.5])
-    assert reweighted(problem, weights, path) is weights
-    del path.steps[:]
-    assert reweighted(problem, weights, path) is weights
-
-
-def test_a_path_that_failed_on_its_way_says_nothing_of_stationary_points():
-    problem = planted(2)
-    path = restart(problem, 3).trace(continuation.Budget(steps=2))
-    assert path.endpoint.lam > 1e-3
-    assert reweighted(problem, np.full(PLANTED, 2.0), path) is None
-
-
 def test_the_first_path_leaves_time_for_others(monkeypatch):
     monkeypatch.setattr("problems.lcp.search.restarts.FIRST_PATH", 0.1)
+    monkeypatch.setattr("problems.lcp.search.reflections.Reflections.of", lambda problem: None)
     problem = next(p for p in map(planted, range(50)) if lcp.solve(p, restarts=0).paths)
     first = lcp.solve(problem, restarts=1).paths[0]
     assert "it has not ended after 9 steps" in first.message
@@ -112,35 +77,6 @@ def test_one_row_in_other_units_hardly_moves_the_starts():
     other = lcp.LCP(units[:, None] * problem.A, units * problem.q)
     assert natural_units(other)[0] < 0.5 * natural_units(problem)[0]
     assert typical_units(other)[0] > 0.75 * typical_units(problem)[0]
-
-
-def test_weights_move_the_path_and_not_the_solutions():
-    problem = planted(5)
-    weights = np.exp(np.random.default_rng(1).normal(0.0, 0.2, PLANTED))
-    solved = 0
-    for k in range(5):
-        even, weighted = restart(problem, k), restart(problem, k, weights=weights)
-        np.testing.assert_array_equal(weighted.homotopy().origin.x0, even.homotopy().origin.x0)
-        np.testing.assert_allclose(weighted.homotopy().problem.A, weights[:, None] * problem.A, rtol=1e-15)
-        np.testing.assert_allclose(weighted.homotopy().origin.w0, weights * even.homotopy().origin.w0, rtol=1e-15)
-        for one in (even, weighted):
-            homotopy = one.homotopy()
-            np.testing.assert_allclose(homotopy.c2, homotopy.c2[0], rtol=1e-12)
-        path = weighted.trace(continuation.Budget())
-        if path.status is continuation.Status.REACHED_TARGET:
-            solved += 1
-            assert lcp.certify(problem, path.endpoint.y[:PLANTED]).solves(1e-10)
-    assert solved
-
-
-def test_the_end_of_a_weighted_path_is_not_called_stationary(monkeypatch):
-    problem = lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0])
-    search_ends = []
-    monkeypatch.setattr("problems.lcp.search.search.Search.best", lambda self: search_ends.extend(self.ends))
-    lcp.solve(problem, "kkt", finish=False, restarts=3)
-    assert len(search_ends) == 4
-    assert search_ends[0].stationary
-    assert not any(end.stationary for end in search_ends[2:])
 
 
 def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
@@ -177,7 +113,7 @@ def test_an_executor_finds_what_one_process_finds():
     assert all(len(path) <= 2 for path in solution.paths[1:])
 
 
-def test_over_an_executor_a_restart_goes_on_from_one_before_it(monkeypatch):
+def test_over_an_executor_restarts_are_the_same(monkeypatch):
     monkeypatch.setattr("problems.lcp.search.search.IN_FLIGHT", 1)
     problem = planted(17)
     alone = lcp.solve(problem, "kkt", restarts=300, seed=2)

@@ -44,8 +44,8 @@ def test_the_order_depends_on_the_matrix():
     expected += ["Wang's path", "proof", "KKT path", "groups of faces", "all faces", "restarts"]
     assert tried(case(lcp.LCP(skew, q)), AUTOMATIC) == expected
     negative = lcp.LCP(-np.eye(3) + np.ones((3, 3)) * [[0.0], [-3.0], [1.0]], q)
-    expected = [ZERO, "Lemke", "proof, early", "some groups of faces", "KKT path, first", "proof"]
-    expected += ["groups of faces", "all faces", "restarts"]
+    expected = [ZERO, "Lemke", "proof, early", "reflections", "some groups of faces", "KKT path, first", "proof"]
+    expected += ["groups of faces", "all faces", "reflections, further", "restarts"]
     assert tried(case(negative), AUTOMATIC) == expected
     definite = lcp.LCP(np.full((3, 3), 1.0) + np.eye(3), q)
     assert tried(case(definite), AUTOMATIC)[:2] == ["active sets of A + shift I, from x = 0", ZERO]
@@ -72,7 +72,8 @@ def test_a_sparse_matrix_is_dense_for_pivots_and_paths():
 
 
 def test_a_path_that_is_wanted_comes_first():
-    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", *FACES, "restarts"]
+    last = [*FACES, "reflections, further", "restarts"]
+    assert tried(case(INFEASIBLE), PATHS) == ["Wang's path", "proof", "KKT path", *last]
 
 
 def test_what_is_dear_is_left_out_when_the_budget_is_spent():
