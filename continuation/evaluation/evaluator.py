@@ -5,13 +5,14 @@ from __future__ import annotations
 import dis
 import math
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cached_property, lru_cache, partial
+from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
 from attrs import field, frozen
+from scipy.linalg.blas import dasum
 
 from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import instance_with, real_vector
@@ -21,6 +22,7 @@ from continuation.evaluation.pieces import WholeMap
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces, offers
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
+from continuation.silence import Silence, silent
 
 POINT_ULPS = 4.0
 """Units in the last place by which round-off moves a point, about."""
@@ -126,7 +128,6 @@ class Evaluator:
         self.counts = counts
         self.methods: set[str] = set()
         self.keeping = False
-        self._quiet = False
         self.bind(homotopy)
         if offers(homotopy, SupportsPieces):
             self.bind(WholeMap(homotopy, self.start()))
@@ -150,16 +151,6 @@ class Evaluator:
         self._derivative: Derivative | None = None
         if offers(homotopy, SupportsJacobian):
             self._derivative = Derivative(homotopy.jacobian, source="jacobian")
-
-    @contextmanager
-    def quiet(self) -> Iterator[None]:
-        """No numpy warning within: entered once for many evaluations, since each entry takes as long as a solve."""
-        before, self._quiet = self._quiet, True
-        try:
-            with np.errstate(all="ignore"):
-                yield
-        finally:
-            self._quiet = before
 
     def _given(self) -> Array:
         """The start as one vector (y0, lam0), of real numbers."""
@@ -198,16 +189,17 @@ class Evaluator:
 
     def residual(self, u: Array) -> Array:
         """H(u), shape (N,); EvaluationError where it is not finite."""
-        if not self._quiet:
-            with self.quiet():
+        if not silent():
+            with Silence():
                 return self.residual(u)
+        self.counts.residuals += 1
         # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
         try:
             # A copy: a plug-in may well return the same array every time.
-            r: Array = np.array(self.called(u[:-1], float(u[-1])), dtype=float)
+            r: Array = np.array(self.homotopy.residual(u[:-1], float(u[-1])), dtype=float)
         except (ArithmeticError, ValueError) as error:
             raise _unevaluated("residual", error) from error
-        if not finite(r):
+        if not isfinite(dasum(r)):
             raise NotFiniteError("the residual is not finite")
         return r
 
@@ -263,11 +255,11 @@ class Evaluator:
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
-        if not self._quiet:
-            with self.quiet():
+        if not silent():
+            with Silence():
                 return self._evaluated(u)
         try:
-            answer = self.derivative(u[:-1], float(u[-1]))
+            answer = (self._derivative or self.derivative).function(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
             raise _unevaluated("derivative", error) from error
         if not self._checked:
@@ -297,7 +289,7 @@ class Evaluator:
         u = u.copy()
         try:
             if self._bordered is not None:
-                with self.quiet():
+                with Silence():
                     system = self._bordered(u[:-1], float(u[-1]), border)
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:
