@@ -36,7 +36,7 @@ class Silence:
 
 
 def without_warnings(**ignored: Any) -> Callable[[Callable[Given, Found]], Callable[Given, Found]]:
-    """Decorates a function within which numpy is not to warn, as `numpy.errstate` does; it costs nothing in a `Silence`.
+    """Decorates a function within which numpy is not to warn, as `numpy.errstate` does; free of charge in a `Silence`.
 
     Parameters
     ----------

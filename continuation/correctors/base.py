@@ -162,11 +162,11 @@ class _Terms:
 
     def level(self, r: Array, most: float = np.inf) -> float:
         """That of a residual beside them; one above `most`, as one look shows it, needs no second."""
-        found = level(r, self.terms)
+        found = largest(r / self.terms)
         if not self.twice and RESIDUAL_NOISE < found <= most:
             self.twice = True
             self.terms = np.maximum(self.terms, self.evaluator.look(self.u, self.residual, -1))
-            found = level(r, self.terms)
+            found = largest(r / self.terms)
         return found
 
 
@@ -204,7 +204,7 @@ def iterate(
         r = evaluator.residual(predicted)
         while not done and iteration.count < max_iterations:
             step = direction(iteration.count, iteration.x, r, iteration.worst)
-            size = tolerance.measure(step, weights)
+            size = norm(weights, step) / tolerance.relative
             if not iteration.add(step, size):
                 break
             r, found = evaluator.residual(iteration.x), True
@@ -219,7 +219,7 @@ def iterate(
             for fresh in range(POLISHING_ROUNDS):
                 u = iteration.x
                 terms = evaluator.round_off(u, r) if fresh else evaluator.look(u, r)
-                beside = _Terms(evaluator, u, r, terms, twice=fresh > 0)
+                beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0)
                 # What is far from round-off is polished, what is at round-off needs no second look.
                 left = beside.level(r, FAR_FROM_ROUND_OFF)
                 if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:

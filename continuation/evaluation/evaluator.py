@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from attrs import field, frozen
-from scipy.linalg.blas import dasum
+from scipy.linalg.blas import dasum, dscal
 
 from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import instance_with, real_vector
@@ -196,7 +196,7 @@ class Evaluator:
         # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
         try:
             # A copy: a plug-in may well return the same array every time.
-            r: Array = np.array(self.homotopy.residual(u[:-1], float(u[-1])), dtype=float)
+            r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
         except (ArithmeticError, ValueError) as error:
             raise _unevaluated("residual", error) from error
         if not isfinite(dasum(r)):
@@ -223,7 +223,7 @@ class Evaluator:
         """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
         change = self.residual(u + np.spacing(np.abs(u)) * _moves(u.size)[::order])
         change -= residual
-        change *= POINT_ULPS / LOOK
+        dscal(POINT_ULPS / LOOK, change)
         return np.abs(change, out=change)
 
     @property
@@ -286,7 +286,7 @@ class Evaluator:
         self.counts.jacobians += 1
         self.counts.factorizations += 1
         # A factorisation may keep views of the point, and correctors move theirs in place.
-        u = u.copy()
+        u, dense = u.copy(), False
         try:
             if self._bordered is not None:
                 with Silence():
@@ -294,13 +294,17 @@ class Evaluator:
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:
                 H_y, H_lam = self._evaluated(u)
-                column = np.asarray(H_lam, dtype=float)
-                if not finite(column) or (isinstance(H_y, np.ndarray) and not finite(H_y.ravel("K"))):
+                column = np.asarray(H_lam, float)
+                dense = isinstance(H_y, np.ndarray)
+                if not (dense or finite(column)):
                     raise NotFiniteError("the derivative is not finite")
                 system = factor_bordered(H_y, column, border)
         except EvaluationError:
             raise
         except ArithmeticError as error:
+            # A dense factorisation looks at all entries itself.
+            if dense and not (finite(column) and finite(H_y.ravel("K"))):
+                raise NotFiniteError("the derivative is not finite") from error
             raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error
         return CountedSystem(system, self.counts)
 

@@ -223,7 +223,7 @@ def _missed_before(arc: Arc, history: Sequence[Knot]) -> list[Array]:
     if len(knots) < 2:
         return []
     sigma, u, slope = knots[1]
-    length = dot(arc.border, arc.b.u - arc.a.u)
+    length = arc.length
     t = sigma / length
     s = t * (1.0 - t)
     missed = (u - arc.segment.at(t)) / s**2
