@@ -22,11 +22,15 @@ def warned(call):
 
 
 def test_it_ends_with_the_block_and_with_an_error():
+    def fail():
+        with Silence(), Silence():
+            assert silent()
+            assert set(np.geterr().values()) == {"ignore"}
+            raise KeyError
+
     outer = np.geterr()
-    with pytest.raises(KeyError), Silence(), Silence():
-        assert silent()
-        assert set(np.geterr().values()) == {"ignore"}
-        raise KeyError
+    with pytest.raises(KeyError):
+        fail()
     assert not silent()
     assert np.geterr() == outer
 
