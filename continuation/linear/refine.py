@@ -63,7 +63,7 @@ class BorderedMatrix:
         gap = rhs.copy()
         gap[:-1] -= self.matrix @ z[:-1]
         gap[:-1] -= self.column * z[-1]
-        gap[-1] -= self.row @ z
+        gap[-1] -= self.row.dot(z)
         return gap
 
     def negligible(self, gap: Array, z: Array, rhs: Array) -> bool:
@@ -130,7 +130,7 @@ class BlockElimination:
 
     def _eliminate(self, rhs: Array) -> Array:
         x = self.factor.solve(rhs[:-1])
-        lam: float = (rhs[-1] - self.bordered.row[:-1] @ x) / self.schur
+        lam: float = (rhs[-1] - self.bordered.row[:-1].dot(x)) / self.schur
         return join(x - lam * self.w, lam)
 
     @cached_property

@@ -161,7 +161,7 @@ class Full:
 
     def residual(self, z: Array, r: Array, rho: float) -> tuple[Array, float]:
         """``(r, rho) - M z``."""
-        return r - self.apply(z), rho - float(self.border @ z)
+        return r - self.apply(z), rho - float(self.border.dot(z))
 
 
 @frozen(eq=False)
