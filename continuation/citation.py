@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import Any
 
 from continuation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
@@ -62,6 +63,7 @@ def unique(found: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(by_key[name] for name in dict.fromkeys(map(key, found)))
 
 
+@lru_cache(maxsize=256)
 def key(entry: str) -> str:
     """The name by which an entry is cited; the entry itself where it has none."""
     found = _KEY.search(entry)

@@ -59,31 +59,36 @@ class Iteration:
     count: int = 0
     stalled: bool = False
 
+    def add(self, step: Array, size: float) -> bool:
+        """Add an increment of a size; False, and nothing is added, if the iteration is given up for it."""
+        rule, k, before = self.rule, self.count, self.size
+        self.count = k + 1
+        if k:
+            self.ratio = ratio = size / before if before > 0.0 else np.inf
+            if size > rule.noise:
+                if ratio > self.worst:
+                    self.worst = ratio
+                if ratio > (rule.ratio if k > 1 or rule.first is None else rule.first):
+                    self.stalled = True
+                    return False
+        self.x = self.x + step
+        self.size = size
+        return True
+
     def run(
         self, increment: Callable[[], Array], measure: Callable[[Array], float], done: Callable[[float], bool]
     ) -> bool:
-        """Add increments; whether it is done.
+        """Add increments; whether it is done. What every step does is a loop of its own over `add`, for its time.
 
         `increment`: The next increment at `x`. `measure`: Its size. `done`: Whether an increment of that size, which
         has been added, was the last.
         """
-        rule, before = self.rule, self.size
-        limit = rule.ratio if rule.first is None else rule.first
-        for k in range(rule.iterations):
+        self.count = 0
+        while self.count < self.rule.iterations:
             step = increment()
             size = measure(step)
-            self.count = k + 1
-            if k:
-                self.ratio = ratio = size / before if before > 0.0 else np.inf
-                if size > rule.noise:
-                    if ratio > self.worst:
-                        self.worst = ratio
-                    if ratio > limit:
-                        self.stalled = True
-                        return False
-                limit = rule.ratio
-            self.x = self.x + step
-            self.size = before = size
+            if not self.add(step, size):
+                return False
             if done(size):
                 return True
         return False

@@ -7,6 +7,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 from attrs import field, frozen
+from scipy.linalg.blas import dscal
 
 from continuation.arrays import Array, dot
 from continuation.checks import FRACTION, POSITIVE_FINITE
@@ -141,8 +142,9 @@ class Automatic:
         extent : ndarray, shape (N + 1,)
         """
         weights: Array = extent**-2.0
-        weights[:-1] *= (1.0 - self.share) / (extent.size - 1)
-        weights[-1] *= self.share
+        last = self.share * weights.item(-1)
+        dscal((1.0 - self.share) / (extent.size - 1), weights)
+        weights[-1] = last
         return weights
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:

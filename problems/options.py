@@ -14,8 +14,9 @@ from continuation.arrays import Array
 from continuation.arrays import finite as finite_sum
 from continuation.budget import Budget
 from continuation.checks import FINITE, integer
+from continuation.silence import without_warnings
 
-quiet = np.errstate(over="ignore", invalid="ignore")
+quiet = without_warnings(over="ignore", invalid="ignore")
 """Decorates an evaluation whose overflow is to give inf or nan without a warning: the tracer handles these."""
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from attrs import frozen
+from attrs import define, frozen
 
 from continuation.arrays import Array, largest
 from continuation.contraction import Contraction, Iteration
@@ -150,6 +150,31 @@ def _alike(u: Array, v: Array) -> bool:
     return bool((np.abs(u - v) <= SAME_TERMS * np.abs(u)).all())
 
 
+@define(eq=False)
+class _Terms:
+    """What round-off makes of the terms of H at a point: seen in one direction, in two where that might matter."""
+
+    evaluator: Evaluator
+    u: Array
+    residual: Array
+    terms: Array
+    twice: bool
+
+    def level(self, r: Array, most: float = np.inf) -> float:
+        """That of a residual beside them; one above `most`, as one look shows it, needs no second."""
+        found = largest(r / self.terms)
+        if not self.twice and RESIDUAL_NOISE < found <= most:
+            self.twice = True
+            self.terms = np.maximum(self.terms, self.evaluator.look(self.u, self.residual, -1))
+            found = largest(r / self.terms)
+        return found
+
+
+@lru_cache(maxsize=8)
+def _rule(iterations: int, ratio: float) -> Contraction:
+    return Contraction(iterations, ratio, noise=1.0)
+
+
 Direction = Callable[[int, Array, Array, float], Array]
 """(iteration, u, residual, contraction so far) -> increment."""
 
@@ -171,46 +196,19 @@ def iterate(
     there only the iteration limit counts. `direction` may add the factorisations that it makes to `anchors`: the last
     goes with the outcome.
     """
-    iteration = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0))
-    r, found, left, once = predicted, False, np.inf, False
-    terms = looked = there = r
-
-    def small(size: float) -> bool:
-        nonlocal r, found
-        r, found = evaluator.residual(iteration.x), True
-        return size <= 1.0 and largest(r) <= tolerance.residual
-
-    def polished(k: int, ratio: float) -> Array:
-        return direction(k, iteration.x, r, ratio)
-
-    def leftover(_: Array) -> float:
-        return left
-
-    def settled(_: float) -> bool:
-        nonlocal r, left
-        r = evaluator.residual(iteration.x)
-        left = level(r, terms)
-        if once and left > RESIDUAL_NOISE:
-            look_again()
-        return left <= RESIDUAL_NOISE
-
-    def look_again() -> None:
-        nonlocal left, once, terms
-        once, terms = False, np.maximum(terms, evaluator.look(looked, there, -1))
-        left = level(r, terms)
-
-    def measure(step: Array) -> float:
-        return tolerance.measure(step, point.weights)
-
+    iteration, weights = Iteration(predicted, _rule(max_iterations, max_contraction)), point.weights
+    r, found, done = predicted, False, False
     rejection: Rejection | None = None
     detail, count, worst = "", 0, 0.0
     try:
         r = evaluator.residual(predicted)
-        done = iteration.run(
-            lambda: direction(iteration.count, iteration.x, r, iteration.worst),
-            measure,
-            small,
-        )
+        while not done and iteration.count < max_iterations:
+            step = direction(iteration.count, iteration.x, r, iteration.worst)
+            size = norm(weights, step) / tolerance.relative
+            if not iteration.add(step, size):
+                break
+            r, found = evaluator.residual(iteration.x), True
+            done = size <= 1.0 and largest(r) <= tolerance.residual
         count, worst = iteration.count, iteration.worst
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
             # Judged by the residual itself: an increment may be small beside the path and large beside what is left of
@@ -219,18 +217,22 @@ def iterate(
             # was another.
             before = np.inf
             for fresh in range(POLISHING_ROUNDS):
-                once, looked, there = not fresh, iteration.x, r
-                terms = evaluator.look(looked, there) if once else evaluator.round_off(looked, there)
-                left = level(r, terms)
-                if once and RESIDUAL_NOISE < left <= FAR_FROM_ROUND_OFF:
-                    # What is far from round-off is polished, what is at round-off needs no second look.
-                    look_again()
+                u = iteration.x
+                terms = evaluator.round_off(u, r) if fresh else evaluator.look(u, r)
+                beside = _Terms(evaluator, u, r, np.maximum(terms, TINY), twice=fresh > 0)
+                # What is far from round-off is polished, what is at round-off needs no second look.
+                left = beside.level(r, FAR_FROM_ROUND_OFF)
                 if left <= (FAR_FROM_ROUND_OFF if fresh else RESIDUAL_NOISE) or left > before:
                     break
                 before = left if fresh else np.inf
                 k, ratio = (count + 2 * fresh, 1.0) if fresh else (count, worst)
-                iteration = Iteration(looked, POLISHING)
-                if iteration.run(partial(polished, k, ratio), leftover, settled) and _alike(looked, iteration.x):
+                iteration = Iteration(u, POLISHING)
+                while left > RESIDUAL_NOISE and iteration.count < POLISHING.iterations:
+                    if not iteration.add(direction(k, iteration.x, r, ratio), left):
+                        break
+                    r = evaluator.residual(iteration.x)
+                    left = beside.level(r)
+                if left <= RESIDUAL_NOISE and _alike(u, iteration.x):
                     break
         elif iteration.stalled:
             rejection, detail = Rejection.NOT_CONTRACTING, f"ratio {iteration.ratio:.2g}"
@@ -239,5 +241,5 @@ def iterate(
     except EvaluationError as error:
         rejection, detail = error.rejection, str(error)
     u, anchor = iteration.x, anchors[-1] if anchors else None
-    distance, residual_norm = norm(point.weights, u - predicted), largest(r) if found else np.nan
+    distance, residual_norm = norm(weights, u - predicted), largest(r) if found else np.nan
     return Correction(u, count, residual_norm, worst, distance, rejection, detail, anchor)

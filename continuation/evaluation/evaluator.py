@@ -5,13 +5,14 @@ from __future__ import annotations
 import dis
 import math
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cached_property, lru_cache, partial
+from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
 from attrs import field, frozen
+from scipy.linalg.blas import dasum, dscal
 
 from continuation.arrays import Array, Matrix, finite, generic_vector, largest
 from continuation.checks import instance_with, real_vector
@@ -21,6 +22,7 @@ from continuation.evaluation.pieces import WholeMap
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces, offers
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.rejection import Rejection
+from continuation.silence import Silence, silent
 
 POINT_ULPS = 4.0
 """Units in the last place by which round-off moves a point, about."""
@@ -126,7 +128,6 @@ class Evaluator:
         self.counts = counts
         self.methods: set[str] = set()
         self.keeping = False
-        self._quiet = False
         self.bind(homotopy)
         if offers(homotopy, SupportsPieces):
             self.bind(WholeMap(homotopy, self.start()))
@@ -150,16 +151,6 @@ class Evaluator:
         self._derivative: Derivative | None = None
         if offers(homotopy, SupportsJacobian):
             self._derivative = Derivative(homotopy.jacobian, source="jacobian")
-
-    @contextmanager
-    def quiet(self) -> Iterator[None]:
-        """No numpy warning within: entered once for many evaluations, since each entry takes as long as a solve."""
-        before, self._quiet = self._quiet, True
-        try:
-            with np.errstate(all="ignore"):
-                yield
-        finally:
-            self._quiet = before
 
     def _given(self) -> Array:
         """The start as one vector (y0, lam0), of real numbers."""
@@ -198,16 +189,17 @@ class Evaluator:
 
     def residual(self, u: Array) -> Array:
         """H(u), shape (N,); EvaluationError where it is not finite."""
-        if not self._quiet:
-            with self.quiet():
+        if not silent():
+            with Silence():
                 return self.residual(u)
+        self.counts.residuals += 1
         # A trial point may lie outside the domain: numpy then answers inf or nan, `math` raises ValueError.
         try:
             # A copy: a plug-in may well return the same array every time.
-            r: Array = np.array(self.called(u[:-1], float(u[-1])), dtype=float)
+            r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
         except (ArithmeticError, ValueError) as error:
             raise _unevaluated("residual", error) from error
-        if not finite(r):
+        if not isfinite(dasum(r)):
             raise NotFiniteError("the residual is not finite")
         return r
 
@@ -231,7 +223,7 @@ class Evaluator:
         """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
         change = self.residual(u + np.spacing(np.abs(u)) * _moves(u.size)[::order])
         change -= residual
-        change *= POINT_ULPS / LOOK
+        dscal(POINT_ULPS / LOOK, change)
         return np.abs(change, out=change)
 
     @property
@@ -263,11 +255,11 @@ class Evaluator:
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at u; EvaluationError where the homotopy cannot evaluate them."""
-        if not self._quiet:
-            with self.quiet():
+        if not silent():
+            with Silence():
                 return self._evaluated(u)
         try:
-            answer = self.derivative(u[:-1], float(u[-1]))
+            answer = (self._derivative or self.derivative).function(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
             raise _unevaluated("derivative", error) from error
         if not self._checked:
@@ -294,21 +286,25 @@ class Evaluator:
         self.counts.jacobians += 1
         self.counts.factorizations += 1
         # A factorisation may keep views of the point, and correctors move theirs in place.
-        u = u.copy()
+        u, dense = u.copy(), False
         try:
             if self._bordered is not None:
-                with self.quiet():
+                with Silence():
                     system = self._bordered(u[:-1], float(u[-1]), border)
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:
                 H_y, H_lam = self._evaluated(u)
-                column = np.asarray(H_lam, dtype=float)
-                if not finite(column) or (isinstance(H_y, np.ndarray) and not finite(H_y.ravel("K"))):
+                column = np.asarray(H_lam, float)
+                dense = isinstance(H_y, np.ndarray)
+                if not (dense or finite(column)):
                     raise NotFiniteError("the derivative is not finite")
                 system = factor_bordered(H_y, column, border)
         except EvaluationError:
             raise
         except ArithmeticError as error:
+            # A dense factorisation looks at all entries itself.
+            if dense and not (finite(column) and finite(H_y.ravel("K"))):
+                raise NotFiniteError("the derivative is not finite") from error
             raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error
         return CountedSystem(system, self.counts)
 

@@ -14,7 +14,7 @@ from continuation.arrays import Array, dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue, TurningPoint
-from continuation.point.arc import Arc, position
+from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC, HermiteSegment, QuinticSegment, Segment, hermite
@@ -59,7 +59,7 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
     if gb == 0.0 or ga * gb < 0.0:
         return True
     sign, inside = math.copysign(1.0, ga), arc.guide.inside
-    along = _of_coordinate(event, arc.guide, position(arc, arc.b.u))
+    along = _of_coordinate(event, arc.guide, arc.length)
     found = [event.monitor(u, v) for u, v in arc.samples] if along is None else map(along, inside)
     values = [sign * ga, *[sign * g for g in found], sign * gb]
     return _least((0.0, *inside, 1.0), values) < 0.5 * min(abs(ga), abs(gb))
@@ -99,7 +99,7 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
     """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
-    along = _along(event, arc.guide, position(arc, arc.b.u))
+    along = _along(event, arc.guide, arc.length)
 
     def g(t: float) -> float:
         return sign * along(t)
@@ -212,7 +212,7 @@ def _continued(
     if not 0.0 < abs(way) < room or g == before:
         return None
     segment, until = hermite(old.u, old.tangent, point.u, point.tangent, arc.border), 1.0 + min(room / abs(way), 1.0)
-    narrow = abs(way) <= NARROW_BRACKET * position(arc, arc.b.u)
+    narrow = abs(way) <= NARROW_BRACKET * arc.length
     t = 1.0 + g / (before - g) if narrow else _guess(event, segment, 1.0, until)
     return None if t is None or not 1.0 < t < until else (segment, t)
 
@@ -230,7 +230,7 @@ def _root(
     a, b = (arc.a, ga), (arc.b, gb)
     last = best = min(a, b, key=lambda end: abs(end[1]))
     scale = max(abs(ga), abs(gb))
-    width = first = position(arc, arc.b.u)
+    width = first = arc.length
     bisect, stalled, noise, replaced = False, 0, None, last
     for _ in range(PASSES):
         fine = width <= NARROW_BRACKET * first

@@ -67,7 +67,7 @@ def scan_events(
             if noise is None:
                 noise = solver.noise_by_component(arc.a)
             # Signs of round-off are no crossings: a component that is zero all along, to the last digits.
-            if max(abs(first), abs(g)) <= resolution(noise, position(arc, arc.b.u)):
+            if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue
         try:
             points = locate(solver, event, arc, first, g)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import isfinite
 from typing import ClassVar
 
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
-from scipy.linalg.blas import dtbmv
+from scipy.linalg.blas import dasum, dtbmv
 from scipy.linalg.lapack import dgeequb, dgetrf, dgetrs
 
-from continuation.arrays import Array, finite
+from continuation.arrays import Array
 from continuation.linear.system import SingularError
 
 EQUILIBRATED = 0.1
@@ -47,6 +48,9 @@ class LU:
         x: Array = dgetrs(self.lu, self.pivots, rhs)[0].ravel()
         return x
 
+
+FIRST, IN_PLACE = slice(None, -1), 1
+"""All components but the last; and that LAPACK may write over what it is given."""
 
 HIDDEN = 1e-10
 """An entry smaller than this part of the largest, once rows and columns are scaled, may be all that matters to its row,
@@ -86,18 +90,19 @@ class Dense:
         """
         factor = self.factor
         z = np.empty(r.size + 1)
-        z[:-1] = r
+        z[FIRST] = r
         z[-1] = rho
+        # Arguments of LAPACK and BLAS by position: by name they take as long as the work itself, for a few unknowns.
         if self.scale is not None:
             # By BLAS, which does not warn of overflow.
-            z = dtbmv(0, self.scale, z, overwrite_x=1)
+            z = dtbmv(0, self.scale, z, 1, 0, 0, 0, 0, IN_PLACE)
         if self.whole is None:
-            dgetrs(factor.lu, factor.pivots, z, overwrite_b=1)
+            dgetrs(factor.lu, factor.pivots, z, 0, IN_PLACE)
         else:
             z = self._corrected(self.whole, z)
         if self.columns is not None:
-            z = dtbmv(0, self.columns, z, overwrite_x=1)
-        if not finite(z):
+            z = dtbmv(0, self.columns, z, 1, 0, 0, 0, 0, IN_PLACE)
+        if not isfinite(dasum(z)):
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z
 
@@ -128,7 +133,7 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     whole[:n, :n] = matrix
     whole[:n, n] = column
     whole[n] = row
-    if not finite(whole.ravel("K")):
+    if not isfinite(dasum(whole.ravel("K"))):
         raise SingularError("The bordered matrix cannot be factored: it has an entry that is not finite.")
     scale, columns, ratio, column_ratio, _, info = dgeequb(whole)
     if info > 0:
@@ -143,11 +148,12 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
         columns = None
     sizes = None if scale is None and columns is None else np.abs(whole)
     kept = None if sizes is None or sizes.min(where=sizes > 0.0, initial=1.0) >= HIDDEN else whole.copy()
-    lu, pivots, info = dgetrf(whole, overwrite_a=1)
+    lu, pivots, info = dgetrf(whole, IN_PLACE)
     if info > 0:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: pivot {info - 1} is zero.")
-    scale, columns = (None if by is None else by[None] for by in (scale, columns))
-    return Dense(LU(lu, pivots), scale, columns, kept)
+    return Dense(
+        LU(lu, pivots), None if scale is None else scale[None], None if columns is None else columns[None], kept
+    )
 
 
 def factor_lu(matrix: Array) -> LU | None:

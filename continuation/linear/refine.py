@@ -11,6 +11,7 @@ from attrs import frozen
 
 from continuation.arrays import Array, Matrix
 from continuation.linear.system import BorderedSystem, SingularError
+from continuation.silence import without_warnings
 
 REFINEMENTS = 2
 """Corrections that a solve may take before its answer is called inaccurate: each gains the digits of TRUSTED. Here no
@@ -62,7 +63,7 @@ class BorderedMatrix:
         gap = rhs.copy()
         gap[:-1] -= self.matrix @ z[:-1]
         gap[:-1] -= self.column * z[-1]
-        gap[-1] -= self.row @ z
+        gap[-1] -= self.row.dot(z)
         return gap
 
     def negligible(self, gap: Array, z: Array, rhs: Array) -> bool:
@@ -86,19 +87,19 @@ def join(r: Array, rho: float) -> Array:
     return rhs
 
 
+@without_warnings(all="ignore")
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
     """M z = rhs by `solve`, an approximate inverse, corrected at most `REFINEMENTS` times.
 
     Returns z, and whether its residual is round-off.
     """
-    with np.errstate(all="ignore"):
-        z = solve(rhs)
-        for _ in range(REFINEMENTS):
-            gap = bordered.residual(z, rhs)
-            if bordered.negligible(gap, z, rhs):
-                return z, True
-            z = z + solve(gap)
-        return z, bordered.negligible(bordered.residual(z, rhs), z, rhs)
+    z = solve(rhs)
+    for _ in range(REFINEMENTS):
+        gap = bordered.residual(z, rhs)
+        if bordered.negligible(gap, z, rhs):
+            return z, True
+        z = z + solve(gap)
+    return z, bordered.negligible(bordered.residual(z, rhs), z, rhs)
 
 
 @frozen(eq=False, slots=False)
@@ -129,7 +130,7 @@ class BlockElimination:
 
     def _eliminate(self, rhs: Array) -> Array:
         x = self.factor.solve(rhs[:-1])
-        lam: float = (rhs[-1] - self.bordered.row[:-1] @ x) / self.schur
+        lam: float = (rhs[-1] - self.bordered.row[:-1].dot(x)) / self.schur
         return join(x - lam * self.w, lam)
 
     @cached_property
@@ -137,6 +138,7 @@ class BlockElimination:
         return self.factor_whole()
 
 
+@without_warnings(all="ignore")
 def eliminate(bordered: BorderedMatrix, factor: Factored, factor_whole: Callable[[], BorderedSystem]) -> BorderedSystem:
     """Border a factorisation of H_y; near a fold, where H_y is useless, factor the whole matrix instead.
 
@@ -151,11 +153,10 @@ def eliminate(bordered: BorderedMatrix, factor: Factored, factor_whole: Callable
     W. Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria, SIAM 2000, section 3.
     """
     row = bordered.row
-    with np.errstate(all="ignore"):
-        w = factor.solve(bordered.column)
-        correction = factor.solve(bordered.column - bordered.matrix @ w)
-        w = w + correction
-        schur = float(row[-1] - row[:-1] @ w)
-        trusted = np.abs(correction).max() <= TRUSTED * np.abs(w).max()
-        trusted &= abs(schur) > TRUSTED * (abs(row[-1]) + np.abs(row[:-1]) @ np.abs(w))
+    w = factor.solve(bordered.column)
+    correction = factor.solve(bordered.column - bordered.matrix @ w)
+    w = w + correction
+    schur = float(row[-1] - row[:-1] @ w)
+    trusted = np.abs(correction).max() <= TRUSTED * np.abs(w).max()
+    trusted &= abs(schur) > TRUSTED * (abs(row[-1]) + np.abs(row[:-1]) @ np.abs(w))
     return BlockElimination(bordered, factor, w, schur, factor_whole) if trusted else factor_whole()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from math import sqrt
 
 import numpy as np
 from attrs import evolve, field, frozen
+from scipy.linalg.blas import dscal
 
-from continuation.arrays import Array, dot, generic_vector, largest, multiple
+from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
@@ -102,7 +103,7 @@ class Linearization:
         along = dot(row, self.tangent)
         if along == 0.0:
             raise EvaluationError("the border is orthogonal to the tangent")
-        corrected = multiple((rho - dot(row, z)) / along, self.tangent)
+        corrected: Array = dscal((rho - dot(row, z)) / along, self.tangent.copy())
         corrected += z
         return corrected
 
@@ -169,27 +170,26 @@ def _refined(
     Measured in the metric: the largest component is that of the smallest unit, and knows nothing of the others.
     """
     refinement = Iteration(guess, TANGENT_REFINEMENT)
-    solve, border, length = anchor.system.approximate, anchor.border, partial(norm, weights)
-    longest = length(guess)
-
-    def increment() -> Array:
+    solve, border = anchor.system.approximate, anchor.border
+    v, longest = guess, norm(weights, guess)
+    while True:
+        step = solve(-apply(v), 1.0 - dot(border, v))
+        size = sqrt(dot(weights * step, step))
+        if not refinement.add(step, size):
+            if refinement.size <= ROUND_OFF_LEFT * accuracy * norm(weights, v):
+                break
+            return None
         v = refinement.x
-        return solve(-apply(v), 1.0 - dot(border, v))
-
-    def small(size: float) -> bool:
         # The sum of lengths is a bound: the vector itself is measured only where that is met.
-        nonlocal longest
         longest += size
-        return size <= accuracy * longest and size <= accuracy * length(refinement.x)
-
-    done = refinement.run(increment, length, small)
-    if not (done or (refinement.stalled and refinement.size <= ROUND_OFF_LEFT * accuracy * length(refinement.x))):
-        return None
-    v = refinement.x
+        if size <= accuracy * longest and size <= accuracy * norm(weights, v):
+            break
+        if refinement.count == TANGENT_REFINEMENT.iterations:
+            return None
     if anchor.system.approximates:
         # Increments of a solver that is not exact may be small because it does not see what is left.
-        left = anchor.system.solve(-apply(v), 1.0 - dot(anchor.border, v))
-        if length(left) > TANGENT_LEAVES * length(v):
+        left = anchor.system.solve(-apply(v), 1.0 - dot(border, v))
+        if norm(weights, left) > TANGENT_LEAVES * norm(weights, v):
             return None
     return v
 

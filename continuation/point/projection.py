@@ -119,13 +119,14 @@ class PathSolver:
 
         Round-off may be more than that, where H or the units have few digits: it is measured where it matters.
         """
-        chord, residual = Iteration(guess, CHORD_STEPS), self.evaluator.residual
-
-        def measure(step: Array) -> float:
-            return self.tolerance.measure(step, near.weights)
-
-        if chord.run(lambda: solve(-residual(chord.x)), measure, lambda size: size <= NO_CHANGE):
-            return chord.x
+        chord, residual, measure = Iteration(guess, CHORD_STEPS), self.evaluator.residual, self.tolerance.measure
+        while chord.count < CHORD_STEPS.iterations:
+            step = solve(-residual(chord.x))
+            size = measure(step, near.weights)
+            if not chord.add(step, size):
+                break
+            if size <= NO_CHANGE:
+                return chord.x
         # The increment at which they stalled leads from one point that is off by round-off to another.
         last = chord.size * min(chord.ratio, 1.0)
         if chord.size <= enough or (
@@ -181,29 +182,33 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float, history: Sequence
     length = norm(weights, arc.b.u - arc.a.u)
     allowed = min(SLACK * length, max(EVEN * length, MISSED * distance))
     cubic = len(arc.segment.inside) <= CUBIC
-    off, sizes = [], []
+    noise = ARC_NOISE * solver.tolerance.relative
+    off, most = [], distance
     for t in ARC_PLACES if cubic else (*ARC_PLACES, LATE):
-        off.append(arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
-        sizes.append(size := norm(weights, off[-1]))
-        if size > allowed and size > ARC_NOISE * solver.tolerance.relative:
+        off.append(one := arc.a.approximate(-solver.evaluator.residual(arc.segment.at(t))))
+        size = norm(weights, one)
+        if size > allowed and size > noise:
             return None
+        most = max(most, size)
     if not cubic:
         return arc
-    even = max(EVEN * length, ARC_NOISE * solver.tolerance.relative)
+    even = max(EVEN * length, noise)
     # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t), with a small d, as it does at the point before.
-    first, second = (one / (t * (1.0 - t)) ** 2 for t, one in zip(ARC_PLACES, off))
-    d = (second - first) / (ARC_PLACES[1] - ARC_PLACES[0])
-    c = first - ARC_PLACES[0] * d
+    p, q = ARC_PLACES
+    first, second = off[0] / (p * (1.0 - p)) ** 2, off[1] / (q * (1.0 - q)) ** 2
+    d = (second - first) / (q - p)
+    c = first - p * d
     arc = guided(arc, c, d)
-    if max(distance, *sizes) <= even:
+    if most <= even:
         return arc
-
-    def alike(p: Array, q: Array) -> bool:
-        return norm(weights, p - q) <= ALIKE * max(norm(weights, p), norm(weights, q))
-
-    before = _missed_before(arc, history) if alike(first, second) else []
-    if before and alike(first, before[0]) and alike(second, before[1]):
-        return arc
+    sizes = norm(weights, first), norm(weights, second)
+    if norm(weights, first - second) <= ALIKE * max(sizes):
+        before = _missed_before(arc, history)
+        if before and all(
+            norm(weights, one - missed) <= ALIKE * max(size, norm(weights, missed))
+            for one, missed, size in zip((first, second), before, sizes)
+        ):
+            return arc
     # From the cubic, as the others: what a factorisation of another place makes of them has one error.
     middle = arc.a.approximate(-solver.evaluator.residual(arc.segment.at(0.5)))
     return arc if norm(weights, middle - (c + 0.5 * d) / 16.0) <= even else None
@@ -218,7 +223,7 @@ def _missed_before(arc: Arc, history: Sequence[Knot]) -> list[Array]:
     if len(knots) < 2:
         return []
     sigma, u, slope = knots[1]
-    length = dot(arc.border, arc.b.u - arc.a.u)
+    length = arc.length
     t = sigma / length
     s = t * (1.0 - t)
     missed = (u - arc.segment.at(t)) / s**2

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 from attrs import frozen
+from scipy.linalg.blas import daxpy, dscal
 
 from continuation.arrays import Array, add_multiple, dot
 
@@ -69,13 +70,14 @@ class HermiteSegment:
         """The cubic at t."""
         # From the beginning, so that round-off is that of the way, not of a sum of large parts.
         s, onward = t * (1.0 - t), self.u1 - self.u0
-        onward *= t * t * (3.0 - 2.0 * t)
-        return self.u0 + add_multiple(add_multiple(onward, s * (1.0 - t), self.d0), -s * t, self.d1)
+        dscal(t * t * (3.0 - 2.0 * t), onward)
+        point: Array = self.u0 + daxpy(self.d1, daxpy(self.d0, onward, onward.size, s * (1.0 - t)), onward.size, -s * t)
+        return point
 
     def derivative(self, t: float) -> Array:
         """Its derivative at t."""
         slope = self.u1 - self.u0
-        slope *= 6.0 * t * (1.0 - t)
+        dscal(6.0 * t * (1.0 - t), slope)
         return add_multiple(add_multiple(slope, (1.0 - t) * (1.0 - 3.0 * t), self.d0), t * (3.0 * t - 2.0), self.d1)
 
     def coordinate(self, i: int) -> tuple[Callable[[float], float], Callable[[float], float]]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from attrs import field, frozen
+from scipy.linalg.blas import dscal
 
 from continuation.arrays import Array, dot, multiple
 from continuation.checks import integer
@@ -24,9 +25,9 @@ class Interpolant:
 
     def __call__(self, h: float) -> Array:
         """Horner's scheme on the divided differences."""
-        value: Array = self.coefficients[-1]
+        value: Array = self.coefficients[-1].copy()
         for node, coefficient in zip(self.nodes[-2::-1], self.coefficients[-2::-1]):
-            value = multiple(h - node, value)
+            dscal(h - node, value)
             value += coefficient
         return value
 

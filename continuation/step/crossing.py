@@ -117,7 +117,7 @@ class Crossings:
         """
         # An arc that was cut, as at a kink, is the beginning of what was predicted.
         if arc.b is not attempt.point:
-            attempt = evolve(attempt, h=attempt.h * position(arc, arc.b.u) / position(arc, attempt.point.u))
+            attempt = evolve(attempt, h=attempt.h * arc.length / position(arc, attempt.point.u))
         seen = self.looks.along(arc, attempt, prediction, state)
         found = self._examined(arc, attempt, prediction, seen, flipped, ends, before)
         if isinstance(found, Rejected):
@@ -188,7 +188,7 @@ class Crossings:
             # Where branches are nearly parallel Newton's method finds their crossing from nearby only.
             suspect = flipped or ((inside or doubtful) and not whole) or (back is not None and back > 0.0)
             return _rejected(attempt, Rejection.ORIENTATION, 0.5) if suspect else None
-        at = position(arc, found.u) / position(arc, arc.b.u)
+        at = position(arc, found.u) / arc.length
         if ends and 1.0 < at <= 1.0 + AT_END:
             return None
         if not ends and abs(at - 1.0) < NEAR_CROSSING:
@@ -281,7 +281,7 @@ class Crossings:
         except EvaluationError:
             return None
         length = norm(a.weights, arc.b.u - a.u)
-        at = position(arc, found.u) / position(arc, arc.b.u)
+        at = position(arc, found.u) / arc.length
         if not 0.0 < at < BEYOND or norm(a.weights, found.u - arc.segment.at(at)) > NEAR_ARC * length:
             return None
         return found

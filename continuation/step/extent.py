@@ -8,10 +8,12 @@ turned, and |e| / |d| how far the equations have changed. Both grow like h.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, generic_vector, median
+from continuation.arrays import Array, dot, generic_vector, median
 from continuation.evaluation.evaluator import POINT_ULPS, EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
 
@@ -230,5 +232,5 @@ def _nonlinearity(
         turned = max(turned, 0.5 * float(relative[-1]))
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0
-    first, second = float(np.linalg.norm(d / scale)), float(np.linalg.norm(e / scale))
+    first, second = (math.sqrt(dot(part, part)) for part in (d / scale, e / scale))
     return d, max(turned, min(second / first, 1.0)) if first > CORRECTION_NOISE else turned

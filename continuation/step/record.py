@@ -55,23 +55,31 @@ class StepRecorder:
     observe: Observe | None
 
     def record(
-        self, point: Linearization, index: int, arclength: float, kind: int, residual_norm: float = math.nan, **how: Any
+        self,
+        point: Linearization,
+        index: int,
+        arclength: float,
+        kind: int,
+        residual_norm: float = math.nan,
+        tangent: Array | None = None,
+        **how: Any,
     ) -> Step:
         """The record of a point.
 
-        `kind`: One of `Kind`. `residual_norm`: Evaluated here where it is not known. `**how`: How the point was
-        reached: the other fields of `Step`.
+        `kind`: One of `Kind`. `residual_norm`: Evaluated here where it is not known. `tangent`: The point's own, unless
+        given. `**how`: How the point was reached: the other fields of `Step`.
         """
         return Step(
             index=index,
             u=point.u,
+            tangent=point.tangent if tangent is None else tangent,
             arclength=arclength,
             residual_norm=self.evaluator.residual_norm(point.u) if math.isnan(residual_norm) else residual_norm,
             orientation=point.orientation,
             kind=kind,
             share=share(point.weights, point.tangent),
             observed={} if self.observe is None else self.observe(point.y, point.lam),
-            **{"tangent": point.tangent} | how,
+            **how,
         )
 
     def observing(self, events: Sequence[LocatedEvent]) -> Sequence[LocatedEvent]:

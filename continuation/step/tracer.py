@@ -26,6 +26,7 @@ from continuation.path import LocatedEvent, Path, Step
 from continuation.point.linearization import Anchor, Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
+from continuation.silence import Silence
 from continuation.status import Kind, Status
 from continuation.step.advance import Advance, Stopped
 from continuation.step.capabilities import checked_end, finish_of, max_step_of
@@ -206,7 +207,7 @@ class Tracer:
 
     def _run(self) -> Iterator[Step]:
         try:
-            with self._evaluator.quiet():
+            with Silence():
                 point = self._first() if self.state is None else self._restored(self.state)
         except StartError as error:
             self._end(refused_start(error))
@@ -320,7 +321,7 @@ class Tracer:
         state = self.state
         assert state is not None
         # Overflow is looked for where it counts: by a step that is not finite.
-        with self._evaluator.quiet():
+        with Silence():
             found = self._advance.advance(point, state)
         end, verdict = None, found.verdict
         if isinstance(found, Stopped):

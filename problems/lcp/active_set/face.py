@@ -18,6 +18,7 @@ from continuation.linear.factoring import Factoring
 from continuation.linear.refine import Factored
 from continuation.linear.superlu import SuperLUMethod
 from continuation.linear.symmetric import factor_cholesky
+from continuation.silence import without_warnings
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import accurate_w
@@ -64,20 +65,20 @@ class Face:
     shift: float | Array
     q: Array
 
+    @without_warnings(over="ignore", invalid="ignore")
     def point(self, near: Array) -> tuple[Array, Array] | None:
         """(x, w) on the face, w zero on the active set; None where nothing finite comes out.
 
         Where the face holds many points this is, about, the one nearest to `near`.
         """
         standard = self.problem.standard
-        x = np.zeros_like(near) if standard else self.problem.at(self.state)
+        x = np.zeros(near.size) if standard else self.problem.at(self.state)
         if not self.exact:
             x = np.where(self.active, near, x)
-        with np.errstate(over="ignore", invalid="ignore"):
-            # One solve is all that exact factors need; from zero, w = q.
-            for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
-                x = self._corrected(x, self.q if self.exact and standard else self.w(x))
-            w = self.w(x)
+        # One solve is all that exact factors need; from zero, w = q.
+        for _ in range(1 if self.exact else SHIFTED_CORRECTIONS):
+            x = self._corrected(x, self.q if self.exact and standard else self.w(x))
+        w = self.w(x)
         if not (finite(x) and finite(w)):
             return None
         if self.exact:
@@ -86,16 +87,16 @@ class Face:
 
     def w(self, x: Array) -> Array:
         """``A x + shift x + q``, shape (n,)."""
-        w: Array = self.problem.A @ x + self.q
+        w: Array = self.problem.A.dot(x) + self.q
         return w + self.shift * x if isinstance(self.shift, np.ndarray) or self.shift else w
 
+    @without_warnings(over="ignore", invalid="ignore")
     def refined(self, x: Array, w: Array | None = None) -> Array:
         """The point x of a face of the problem itself, corrected once with w in twice the working precision.
 
         `w`: That w, where it is known.
         """
-        with np.errstate(over="ignore", invalid="ignore"):
-            return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
+        return self._corrected(x, accurate_w(self.problem, x)[0] if w is None else w)
 
     def _corrected(self, x: Array, w: Array) -> Array:
         corrected = x.copy()

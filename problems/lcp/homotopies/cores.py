@@ -15,6 +15,7 @@ from attrs import define, frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError
+from continuation.silence import without_warnings
 
 CORE_REFINEMENTS = 4
 """Corrections in the full system that a solve may take; one is the rule, and each gains three digits (`UNRELIABLE`)."""
@@ -40,7 +41,7 @@ UNRELIABLE = 1e-3
 
 System = TypeVar("System")
 
-_silently = np.errstate(all="ignore")
+_silently = without_warnings(all="ignore")
 """A pair of zeros gives an inf here, which the factorisation of the core then reports."""
 
 
@@ -160,7 +161,7 @@ class Full:
 
     def residual(self, z: Array, r: Array, rho: float) -> tuple[Array, float]:
         """``(r, rho) - M z``."""
-        return r - self.apply(z), rho - float(self.border @ z)
+        return r - self.apply(z), rho - float(self.border.dot(z))
 
 
 @frozen(eq=False)
@@ -227,6 +228,7 @@ class CoreSystem:
         correction = self.robust.solve(*self.full.residual(z, r, rho))
         return z + correction, self._moved(correction, z)[0]
 
+    @_silently
     def _refined(self, core: BorderedSystem, r: Array, rho: float) -> tuple[Array, float] | None:
         """The solution at round-off, and the size of its first correction; None where that is large.
 
@@ -234,23 +236,21 @@ class CoreSystem:
         condition: where they stall at a small size, the residual is as small as it can be.
         """
         try:
-            with np.errstate(all="ignore"):
-                z = core.solve(r, rho)
-                changes: list[float] = []
-                while len(changes) < CORE_REFINEMENTS:
-                    correction = core.solve(*self.full.residual(z, r, rho))
-                    z = z + correction
-                    moved, overall = self._moved(correction, z)
-                    if not overall <= UNRELIABLE:
-                        return None
-                    stalled = bool(changes) and moved > 0.5 * changes[-1]
-                    changes.append(moved)
-                    if moved <= CONVERGED or stalled:
-                        break
-                return z, changes[0]
+            z = core.solve(r, rho)
+            changes: list[float] = []
+            while len(changes) < CORE_REFINEMENTS:
+                correction = core.solve(*self.full.residual(z, r, rho))
+                z = z + correction
+                moved, overall = self._moved(correction, z)
+                if not overall <= UNRELIABLE:
+                    return None
+                stalled = bool(changes) and moved > 0.5 * changes[-1]
+                changes.append(moved)
+                if moved <= CONVERGED or stalled:
+                    break
         except SingularError:
-            pass
-        return None
+            return None
+        return z, changes[0]
 
     def _moved(self, correction: Array, z: Array) -> tuple[float, float]:
         """How much a correction changes z: component by component, and in the units of the point."""

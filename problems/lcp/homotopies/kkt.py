@@ -314,7 +314,7 @@ class KKTHomotopy:
         """How far along v until x, z1, z2, t or what z2 and t are complementary to ends; lambda itself is free."""
         rows, sides = self.rows, self.rows.sides
         (x, z1, z2, t), (dx, d1, d2, d3) = self.split(u[:-1]), self.split(v[:-1])
-        w, dw = self.problem.w(x) + u[-1] * self.rho, self.problem.A @ dx + v[-1] * self.rho
+        w, dw = self.problem.w(x) + u[-1] * self.rho, self.problem.A.dot(dx) + v[-1] * self.rho
         value = [sides.gaps(x), z1, rows.inside(z2, rows.raised(w, t), t)]
         change = [sides.pull(dx), d1, rows.moved(d2, rows.raised(dw, d3), d3)]
         return longest_step(np.concatenate(value), np.concatenate(change))

@@ -59,10 +59,11 @@ class KKTSystem:
         """H' v, one shorter than v: two products with A."""
         rows, sides, mu, l = self.rows, self.rows.sides, 1.0 - self.lam, v[-1]
         dx, d1, d2, d3 = rows.split(v[:-1])
-        slope = self.structure.problem.A @ dx
+        # `dot`: for a few unknowns `@` of numpy takes four times as long.
+        slope = self.structure.problem.A.dot(dx)
         image = np.empty(v.size - 1)
         first, forces, second, third = rows.split(image)
-        pull = slope + self.structure.transpose @ (dx - d2) - sides.force(d1)
+        pull = slope + self.structure.transpose.dot(dx - d2) - sides.force(d1)
         first[:] = mu * pull + self.lam * dx + self.column * l
         forces[:] = self.z1 * sides.pull(dx) + self.gap * d1 - self.c1 * l
         second[:] = self.factor * rows.raised(slope + self.rho * l, d3) + self.rest * d2 - self.c2 * l
@@ -73,7 +74,7 @@ class KKTSystem:
 
     def hessian(self, v: Array) -> Array:
         """``((1 - lam) (A + A') + lam I) v``, dH1/dx applied to v."""
-        product: Array = (1.0 - self.lam) * (self.structure.symmetrized @ v) + self.lam * v
+        product: Array = (1.0 - self.lam) * self.structure.symmetrized.dot(v) + self.lam * v
         return product
 
     def pairs(self) -> RowPairs:
@@ -110,14 +111,14 @@ class Reduced:
         known = pairs.right(r3, r4)
         _, force, d1 = self.first.known(r2)
         d2, d3 = pairs.of(self.second.f * known, r4, 0.0)
-        top = r1 + mu * (force + s.structure.transpose @ d2)
+        top = r1 + mu * (force + s.structure.transpose.dot(d2))
         rest = rho - b1.dot(d1) - b2.dot(d2)
         k = self.core.solve(top, rest - b3[:-1].dot(d3) if d3.size else rest)
         z = np.empty(r.size + 1)
         dx, forces, second, third = rows.split(z[:-1])
         dx[:], z[-1] = k[:n], k[n]
         forces[:] = self.first.partner(k[:n], r2, k[n])
-        inner = self.second.partner(s.structure.problem.A @ k[:n] + s.rho * k[n], known, k[n])
+        inner = self.second.partner(s.structure.problem.A.dot(k[:n]) + s.rho * k[n], known, k[n])
         second[:], third[:] = pairs.of(inner, r4, k[n])
         return z
 
@@ -189,10 +190,10 @@ def _reduced(system: KKTSystem, border: Array) -> Reduced | None:
         d2, d3 = pairs.of(second.b * s.rho + second.f * pairs.c, np.zeros_like(s.c3), 1.0)
         _, force, d1 = first.known(s.c1)
         bx, b1, b2, b3 = s.rows.split(border[:-1])
-        column = s.column - mu * (force + transpose @ d2)
+        column = s.column - mu * (force + transpose.dot(d2))
         row = np.empty(n + 1)
-        row[:n] = bx + first.row(b1) + transpose @ (second.b * pairs.row(b2, b3))
-        row[n] = border[-1] + float(b1 @ d1) + float(b2 @ d2) + float(b3 @ d3)
+        row[:n] = bx + first.row(b1) + transpose.dot(second.b * pairs.row(b2, b3))
+        row[n] = border[-1] + float(b1.dot(d1)) + float(b2.dot(d2)) + float(b3.dot(d3))
         weights = -second.b if pairs.turn is None else -pairs.turn * second.b
         try:
             matrix = s.structure.normal(mu, weights, s.lam - mu * first.b)

@@ -10,6 +10,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, largest, least
+from continuation.silence import without_warnings
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms
@@ -132,7 +133,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
     return certified(problem, x)
 
 
-@np.errstate(over="ignore", under="ignore", invalid="ignore")
+@without_warnings(over="ignore", under="ignore", invalid="ignore")
 def certified(problem: MixedLCP, x: Array) -> Certificate:
     """The certificate of a finite vector of n > 0 numbers, which nobody else changes.
 

@@ -10,12 +10,13 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix, largest, least
+from continuation.silence import without_warnings
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.inequalities import Inequalities
 from problems.lcp.proof.slices import sliced_terms
 
 _UNIT = float(np.finfo(float).eps) / 2
-_HIGH_BITS = np.int64(~0x7FFFFFF)
+_HIGH_BITS = np.array(~0x7FFFFFF)
 """Keeps the leading 26 bits of a double: the product of two such numbers is exact."""
 
 _AT_ONCE = 2**13
@@ -29,6 +30,7 @@ LARGEST_TERMS = 1e240
 of products below 1e-260 are no longer exact."""
 
 
+@without_warnings(over="ignore", invalid="ignore", under="ignore")
 def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
     """W = A x + q by compensated summation of error-free products, and a bound on the error of each entry.
 
@@ -39,9 +41,8 @@ def accurate_w(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array
     ----------
     Ogita, Rump and Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26, 2005 (Dot2, Proposition 5.5).
     """
-    with np.errstate(over="ignore", invalid="ignore", under="ignore"):
-        w, size, terms = _rows(problem, x)
-        bound = error_bound(w, size, terms)
+    w, size, terms = _rows(problem, x)
+    bound = error_bound(w, size, terms)
     overflowed = ~np.isfinite(w) | ~np.isfinite(bound)
     return np.where(overflowed, np.inf, w), np.where(overflowed, np.inf, bound)
 
@@ -69,7 +70,7 @@ class Terms:
     exponents: NDArray[Any]
 
 
-@np.errstate(over="ignore", invalid="ignore", under="ignore")
+@without_warnings(over="ignore", invalid="ignore", under="ignore")
 def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
     """What each row of A x + q comes to and what it is made of; nothing overflows, and no row underflows.
 

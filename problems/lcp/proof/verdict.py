@@ -104,7 +104,7 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
         w = accurate_w(problem, x)[0]
     A: Array = problem.A.toarray() if problem.sparse else problem.A
     terms, ones = A * x, np.ones(n)
-    total = np.abs(terms) @ ones
+    total = np.abs(terms).dot(ones)
     size = total + np.abs(q)
     # Beyond this w is summed over powers of two, and what it lost is not known here.
     if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
@@ -120,11 +120,11 @@ def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     if singular:
         return False
     inverse = np.abs(found)
-    off = np.abs(found @ block - one) @ ones + rounding * (inverse @ ones)
+    off = np.abs(found.dot(block) - one).dot(ones) + rounding * inverse.dot(ones)
     defect = off.item(off.argmax())
 
     def clear(bound: Array) -> bool:
-        far = inverse @ ((np.abs(w) + bound).take(on) / unit)
+        far = inverse.dot((np.abs(w) + bound).take(on) / unit)
         moved = far.item(far.argmax()) * (1.0 + ROUND_OFF) / (1.0 - defect)
         positive = w - bound > 2.0 * moved * total
         positive[on] = True

@@ -24,6 +24,7 @@ from continuation.checks import check_flag, instance_with
 from continuation.counts import Counts
 from continuation.linear.factoring import check_method
 from continuation.path import Path, Step
+from continuation.silence import Silence
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
 from problems.lcp.active_set.face import Face, Faces, exchanging
@@ -190,7 +191,7 @@ def solve(
     plain.known.pop("looked", None)
     immediate = None
     if quick and not game and start is None and near is None and least(problem.q) < 0.0:
-        with np.errstate(all="ignore"):
+        with Silence():
             immediate = at_once.at_once(Finish(Faces(structure, kept=kept), tolerance))
             if immediate is not None and scaled is not None:
                 immediate = unscaled(problem, scaled, immediate, tolerance)
@@ -224,7 +225,7 @@ def solve(
     case = Case(search, start, asked, restarts, seed, executor, near)
     strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
-    with np.errstate(all="ignore"), search.log if search.log is not None else nullcontext():
+    with Silence(), search.log if search.log is not None else nullcontext():
         if immediate is not None:
             found = immediate
         elif beyond:

@@ -77,7 +77,7 @@ def test_units_of_the_unknowns_cost_the_cascade_nothing(orders):
 @pytest.mark.parametrize("row", ["obstacle", "torsion"])
 def test_extras_end_at_the_same_solution(name, row):
     pytest.importorskip(BY_NAME[name].needs)
-    problem = BENCHMARK[row](40)
+    problem = BENCHMARK["ROWS"][row](40)
     one, other = solved(problem, sparse="superlu"), solved(problem, sparse=name)
     np.testing.assert_allclose(one.x, other.x, atol=1e-12 * np.abs(one.x).max())
     assert {"cholmod": "CHOLMOD", "amg": "multigrid", "pardiso": "PARDISO"}[name] in other.message
