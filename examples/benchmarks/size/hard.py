@@ -133,7 +133,7 @@ RANDOM: dict[str, tuple[int, float, Callable[[int, np.random.Generator], Data]]]
 
 def _each(seeds: int, size: float) -> Iterator[tuple[str, float, list[LCP]]]:
     first = 3000
-    for n, limit in ((100, 5.0), (300, 60.0)):
+    for n, limit in ((100, 5.0), (300, 60.0), (600, 300.0)):
         order = max(int(size * n), 3)
         yield f"Gaussian, n = {order}", limit, [random_planted(order, first + seed) for seed in range(seeds)]
     for name, (n, limit, make) in RANDOM.items():
