@@ -10,13 +10,14 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
-from continuation.certificate.cells import Cells, between, joined
+from continuation.certificate.cells import Cells, between, joined, sizes
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
 from continuation.certificate.links import Nodes
+from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
@@ -242,7 +243,10 @@ class Search:
     def _to_end(self, solver: PathSolver, nodes: list[Node]) -> list[Node]:
         """The nodes, with others in place of an end that was found otherwise than by a step, unless a tube holds it."""
         before, end = nodes[-2:]
-        if not _made(self.path.steps[-1]) or search(self.engine, _cell(before, end)).proved.all():
+        if not _made(self.path.steps[-1]):
+            return nodes
+        regular = self._regular(_cell(before, end))
+        if regular and search(self.engine, _cell(before, end)).proved.all():
             return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
@@ -250,7 +254,17 @@ class Search:
             return nodes
         before = evolve(before, weights=_by_extent(np.ptp(self.path.u, axis=0)))
         found = tail(solver, before, end, near)
-        return [*nodes[:-2], before, *found] if found else nodes
+        if not found:
+            return nodes
+        if regular:
+            reached = np.flatnonzero(search(self.engine, joined([_cell(a, end) for a in found])).proved)
+            if len(reached):
+                found = [*found[: int(reached[0]) + 1], end]
+        return [*nodes[:-2], before, *found]
+
+    def _regular(self, cell: Cells) -> bool:
+        """Whether the end of a cell can be proved to be a point of the curve: where it cannot, no tube reaches it."""
+        return bool(ends_of(self.engine, cell.with_tubes(sizes(cell), cell.slabs), np.ones(1)).proved.all())
 
     def _tangent(self, evaluator: Evaluator, u: Array, weights: Array, before: Array | None) -> Array:
         border = weights * (u - before) if before is not None else weights * (self.path.steps[1].u - u)

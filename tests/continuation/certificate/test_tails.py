@@ -41,3 +41,16 @@ def test_nodes_that_tubes_tell_too_wide_are_tested_on_their_own():
     homotopy = KKTHomotopy(LCP(A, np.where(kind == 1, w, 0.0) - A @ np.where(kind == 0, x, 0.0)))
     proof = certify(trace(homotopy), homotopy)
     assert proof.complete, str(proof)
+
+
+@pytest.mark.parametrize(("n", "seed"), [(4, 43), (6, 45), (8, 35)])
+def test_a_regular_end_to_which_a_series_leads_is_reached(n, seed):
+    # No tube reaches it from the last step; it solves no LCP, so that nothing else is proved of it either.
+    rng = np.random.default_rng([seed, n])
+    homotopy = KKTHomotopy(LCP(rng.normal(size=(n, n)), rng.normal(size=n)))
+    path = trace(homotopy)
+    assert path.steps[-1].segment is None
+    assert not homotopy.certify_end(path.endpoint.y)
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    assert "exactly at lam = 0" in proof.end
