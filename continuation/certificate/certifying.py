@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -28,7 +29,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.intervals.ends import Mask
-from continuation.metric import Automatic, Metric
+from continuation.metric import Automatic, Metric, norm
 from continuation.path import Path, Step, require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -275,15 +276,32 @@ class Search:
 
     def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
         """A point of the path between two nodes, or why there is none."""
-        cell = _cell(a, b)
-        guess = 0.5 * (a.u + b.u) + 0.125 * (cell.slope_begin[0] - cell.slope_end[0])
-        chart = cell.chart[0]
-        try:
-            near = linearize(solver.evaluator, guess, a.weights, chart)
-            found: Linearization = solver.project_and_linearize(near, guess, chart)
-        except EvaluationError as error:
-            return f"no point of the path was found between its ends ({error})"
-        return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
+        chart, lost = _cell(a, b).chart[0], ""
+        for bulge in _bulges(a, b):
+            guess = 0.5 * (a.u + b.u) + bulge
+            try:
+                near = linearize(solver.evaluator, guess, a.weights, chart)
+                found: Linearization = solver.project_and_linearize(near, guess, chart)
+            except EvaluationError as error:
+                lost = str(error)
+            else:
+                return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
+        return f"no point of the path was found between its ends ({lost})"
+
+
+def _bulges(a: Node, b: Node) -> Iterator[Array]:
+    """How far the middle of the cubic between two nodes is from that of the chord.
+
+    Where a tangent is nearly across the chord its slope in the chart is out of all proportion, and the corrector may
+    not come back from there: the second slopes are as long as the chord.
+    """
+    cell = _cell(a, b)
+    yield 0.125 * (cell.slope_begin[0] - cell.slope_end[0])
+    slopes = cell.slope_begin[0], cell.slope_end[0]
+    lengths = [norm(a.weights, slope) for slope in slopes]
+    if all(lengths):
+        first, last = (slope / length for slope, length in zip(slopes, lengths))
+        yield 0.125 * norm(a.weights, b.u - a.u) * (first - last)
 
 
 def _made(step: Step) -> bool:
