@@ -34,8 +34,13 @@ def up(x: Array) -> Array:
 
 
 def up_sum(x: Array) -> Array:
-    """`up` of a sum. A sum that is zero is exact, as sums do not underflow; zeros are kept for the sake of speed."""
-    return np.where(x == 0.0, 0.0, np.nextafter(x, np.inf))
+    """A number above every real sum that rounds to x, by at most two units in the last place; x where that is zero.
+
+    EPS |x| is at least the distance from x to the next number: it is exact, or, where it is subnormal, is rounded to no
+    less than that. A sum that is zero or subnormal is exact, as sums do not underflow. `nextafter` takes several times
+    as long.
+    """
+    return x + EPS * np.abs(x)
 
 
 @frozen(eq=False)
@@ -69,7 +74,7 @@ class Ends:
         else:
             c, d = self.hi * other.lo, self.hi * other.hi
             lo, hi = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
-        below, above = down(lo), up(hi)
+        below, above = lo - (EPS * np.abs(lo) + TINIEST), hi + (EPS * np.abs(hi) + TINIEST)
         # A product that is zero may have underflown, unless a factor is zero.
         zero = (lo == 0.0) & (hi == 0.0)
         if zero.any():
