@@ -63,6 +63,4 @@ class ByProducts:
             return Several.of([(place, self._judge(slabs.take(place), radius[place])) for place in places])
 
     def _judge(self, slabs: Slabs, radius: Array) -> Polynomial:
-        q = slabs.expansion.q
-        cubic = Ends(np.stack([k.lo for k in q], axis=1), np.stack([k.hi for k in q], axis=1))
-        return Polynomial.of(slabs, Derivative.of(self.form, cubic), radius)
+        return Polynomial.of(slabs, Derivative.of(self.form, slabs.expansion.coefficients), radius)
