@@ -42,6 +42,9 @@ CELL_HALVINGS = 8
 STANDS_STILL = 1e-10
 """Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
 
+LARGE_NUMBERS = 4_000_000
+"""Numbers of an array of 32 MB, the largest that has this effect."""
+
 
 def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
     """What bounds derivatives for this homotopy: by products where it is quadratic, else by intervals.
@@ -120,6 +123,9 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, list
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engine]:
+    # glibc keeps what is freed for the next array once it has seen a large one freed; asking the system for pages again
+    # each time took a third of a proof. Nothing is written to this one.
+    np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy, path.u)
     if cells is not None:
         return verified(engine, cells, path, homotopy, []), engine
