@@ -263,10 +263,10 @@ class Search:
         found = tail(solver, before, end, near)
         if not found:
             return nodes
-        if regular:
-            reached = np.flatnonzero(search(self.engine, joined([_cell(a, end) for a in found])).proved)
-            if len(reached):
-                found = [*found[: int(reached[0]) + 1], end]
+        for k, a in enumerate(found if regular else []):
+            if search(self.engine, _cell(a, end)).proved.all():
+                found = [*found[: k + 1], end]
+                break
         return [*nodes[:-2], before, *found]
 
     def _regular(self, cell: Cells) -> bool:
