@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.intervals.ends import EPS, Ends, bilinear, thin
+from continuation.intervals.ends import EPS, TINIEST, Ends, bilinear, thin, up_sum
 
 Index = NDArray[np.intp]
 
@@ -166,8 +166,7 @@ class Slabs:
     @cached_property
     def velocity(self) -> Ends:
         """The range of p' over each slab, shape (slabs, N + 1)."""
-        x = self.offset[:, None]
-        return self.expansion.over(Ends(-x, x))[1]
+        return self.expansion.rate(self.offset[:, None])
 
     def halved(self, parts: int) -> Slabs:
         """Each cut into so many."""
@@ -206,17 +205,26 @@ def at_node(cells: Cells, s: Array) -> Slabs:
     return Slabs(np.arange(len(cells)), s, np.zeros(len(cells)), cells)
 
 
-@frozen(eq=False)
+@frozen(eq=False, slots=False)
 class Expansion:
-    """The cubic about the middle of a slab: p(middle + x) = sum_k q_k x^k, exactly, as intervals that hold q_k."""
+    """The cubic about the middle of a slab: p(middle + x) = sum_k q_k x^k, exactly, as intervals that hold q_k.
 
-    q: tuple[Ends, Ends, Ends, Ends]
+    Attributes
+    ----------
+    coefficients : Ends, shape (slabs, 4, N + 1)
+    """
+
+    coefficients: Ends
+
+    @cached_property
+    def q(self) -> tuple[Ends, ...]:
+        """The coefficients one by one."""
+        return tuple(self.coefficients[:, k] for k in range(4))
 
     @property
     def last(self) -> Expansion:
         """Of the last component, the parameter, shape (slabs, 1)."""
-        q0, q1, q2, q3 = (q[:, -1:] for q in self.q)
-        return Expansion((q0, q1, q2, q3))
+        return Expansion(self.coefficients[:, :, -1:])
 
     def over(self, x: Ends) -> tuple[Ends, Ends, Ends]:
         """p, p' and p''/2 over offsets x of shape (slabs, 1)."""
@@ -226,34 +234,51 @@ class Expansion:
         first = q1 + x * (two * q2 + three * x * q3)
         return value, first, q2 + three * x * q3
 
+    def rate(self, x: Array) -> Ends:
+        """The range of p' over offsets of at most x >= 0, of shape (slabs, 1): as `over`, with sizes alone."""
+        size = self.coefficients[:, 2:].magnitude()
+        # Five roundings of numbers >= 0, half an EPS each; and products that underflow, unless all is zero.
+        room = x * (2.0 * size[:, 0] + 3.0 * x * size[:, 1]) * (1.0 + 4.0 * EPS) + (size[:, 0] > 0.0) * 16.0 * TINIEST
+        return self.coefficients[:, 1] + Ends(-room, room)
+
 
 def expansion(slabs: Slabs) -> Expansion:
-    """The cubics of slabs about their middles.
+    """The cubics of slabs about their middles, by middle and radius.
 
     Parameters
     ----------
     slabs : Slabs
+        With middles of at most 2.
     """
-    cells, m = slabs.cells, thin(slabs.middle[:, None])
-    d0, d1 = thin(cells.slope_begin), thin(cells.slope_end)
-    chord = thin(cells.end) - thin(cells.begin)
-    two, three = thin(np.full((1, 1), 2.0)), thin(np.full((1, 1), 3.0))
-    a2, a3 = three * chord - two * d0 - d1, d0 + d1 - two * chord
+    cells, m = slabs.cells, slabs.middle[:, None]
     # From the nearer end, where the cubic is that node, and round-off of the other one does not count.
-    from_end = (slabs.middle > 0.5)[:, None]
-    t = Ends(*(np.where(from_end, e, f) for e, f in zip(_ends(m - thin(np.ones((1, 1)))), _ends(m))))
-    b2 = a2 + three * a3
-    base, slope, bend = (
-        Ends(np.where(from_end, p.lo, q.lo), np.where(from_end, p.hi, q.hi))
-        for p, q in ((thin(cells.end), thin(cells.begin)), (d1, d0), (b2, a2))
-    )
-    q0 = base + t * (slope + t * (bend + t * a3))
-    q1 = slope + t * (two * bend + three * t * a3)
-    return Expansion((q0, q1, bend + three * t * a3, a3))
-
-
-def _ends(x: Ends) -> tuple[Array, Array]:
-    return x.lo, x.hi
+    later = m > 0.5
+    t = np.where(later, m - 1.0, m)  # exact, as 1/2 < m <= 2 (Sterbenz)
+    base, slope = np.where(later, cells.end, cells.begin), np.where(later, cells.slope_end, cells.slope_begin)
+    other, chord = np.where(later, cells.slope_begin, cells.slope_end), cells.end - cells.begin
+    bend = (3.0 * chord - 2.0 * slope - other) * np.where(later, -1.0, 1.0)
+    last = slope + other - 2.0 * chord
+    by_last = t * last
+    inner = slope + t * (bend + by_last)
+    middle = np.stack([base + t * inner, slope + t * (2.0 * bend + 3.0 * by_last), bend + 3.0 * by_last, last], axis=1)
+    # None of these, but for the last sum and product of the first, is of terms with more than eight roundings each:
+    # they are off by gamma_8 < 8.1 / 2 EPS times the same of sizes (Higham, Section 3.1), of which there are twice as
+    # many, for the rounding of these sizes.
+    size_t, first, second = np.abs(t), np.abs(slope), np.abs(other)
+    third = first + second + 2.0 * np.abs(chord)
+    second = third + first + np.abs(chord)
+    third_by = size_t * third
+    size = first + size_t * (second + third_by)
+    room = np.empty_like(middle)
+    room[:, 0] = size_t * size
+    room[:, 1] = first + size_t * (2.0 * second + 3.0 * third_by)
+    room[:, 2] = second + 3.0 * third_by
+    room[:, 3] = third
+    room *= 8.0 * EPS
+    room[:, 0] += EPS * (size_t * np.abs(inner) + np.abs(middle[:, 0]))
+    # Where all is zero nothing underflows; elsewhere a few products may, each by half of the tiniest number.
+    room += ((second > 0.0) * (32.0 * TINIEST))[:, None]
+    return Expansion(Ends(-up_sum(room - middle), up_sum(middle + room)))
 
 
 def advance(slabs: Slabs) -> Array:

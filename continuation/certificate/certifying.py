@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -10,13 +11,14 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
-from continuation.certificate.cells import Cells, between, joined
+from continuation.certificate.cells import Cells, between, joined, sizes
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
 from continuation.certificate.links import Nodes
+from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.second import confirmed
@@ -27,7 +29,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.intervals.ends import Mask
-from continuation.metric import Automatic, Metric
+from continuation.metric import Automatic, Metric, norm
 from continuation.path import Path, Step, require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -39,6 +41,9 @@ CELL_HALVINGS = 8
 
 STANDS_STILL = 1e-10
 """Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
+
+LARGE_NUMBERS = 4_000_000
+"""Numbers of an array of 32 MB, the largest that has this effect."""
 
 
 def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
@@ -118,6 +123,9 @@ def _proved(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, list
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engine]:
+    # glibc keeps what is freed for the next array once it has seen a large one freed; asking the system for pages again
+    # each time took a third of a proof. Nothing is written to this one.
+    np.empty(LARGE_NUMBERS)
     engine = engine_of(homotopy, path.u)
     if cells is not None:
         return verified(engine, cells, path, homotopy, []), engine
@@ -242,7 +250,10 @@ class Search:
     def _to_end(self, solver: PathSolver, nodes: list[Node]) -> list[Node]:
         """The nodes, with others in place of an end that was found otherwise than by a step, unless a tube holds it."""
         before, end = nodes[-2:]
-        if not _made(self.path.steps[-1]) or search(self.engine, _cell(before, end)).proved.all():
+        if not _made(self.path.steps[-1]):
+            return nodes
+        regular = self._regular(_cell(before, end))
+        if regular and search(self.engine, _cell(before, end)).proved.all():
             return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
@@ -250,7 +261,17 @@ class Search:
             return nodes
         before = evolve(before, weights=_by_extent(np.ptp(self.path.u, axis=0)))
         found = tail(solver, before, end, near)
-        return [*nodes[:-2], before, *found] if found else nodes
+        if not found:
+            return nodes
+        for k, a in enumerate(found if regular else []):
+            if search(self.engine, _cell(a, end)).proved.all():
+                found = [*found[: k + 1], end]
+                break
+        return [*nodes[:-2], before, *found]
+
+    def _regular(self, cell: Cells) -> bool:
+        """Whether the end of a cell can be proved to be a point of the curve: where it cannot, no tube reaches it."""
+        return bool(ends_of(self.engine, cell.with_tubes(sizes(cell), cell.slabs), np.ones(1)).proved.all())
 
     def _tangent(self, evaluator: Evaluator, u: Array, weights: Array, before: Array | None) -> Array:
         border = weights * (u - before) if before is not None else weights * (self.path.steps[1].u - u)
@@ -261,15 +282,32 @@ class Search:
 
     def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
         """A point of the path between two nodes, or why there is none."""
-        cell = _cell(a, b)
-        guess = 0.5 * (a.u + b.u) + 0.125 * (cell.slope_begin[0] - cell.slope_end[0])
-        chart = cell.chart[0]
-        try:
-            near = linearize(solver.evaluator, guess, a.weights, chart)
-            found: Linearization = solver.project_and_linearize(near, guess, chart)
-        except EvaluationError as error:
-            return f"no point of the path was found between its ends ({error})"
-        return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
+        chart, lost = _cell(a, b).chart[0], ""
+        for bulge in _bulges(a, b):
+            guess = 0.5 * (a.u + b.u) + bulge
+            try:
+                near = linearize(solver.evaluator, guess, a.weights, chart)
+                found: Linearization = solver.project_and_linearize(near, guess, chart)
+            except EvaluationError as error:
+                lost = str(error)
+            else:
+                return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
+        return f"no point of the path was found between its ends ({lost})"
+
+
+def _bulges(a: Node, b: Node) -> Iterator[Array]:
+    """How far the middle of the cubic between two nodes is from that of the chord.
+
+    Where a tangent is nearly across the chord its slope in the chart is out of all proportion, and the corrector may
+    not come back from there: the second slopes are as long as the chord.
+    """
+    cell = _cell(a, b)
+    yield 0.125 * (cell.slope_begin[0] - cell.slope_end[0])
+    slopes = cell.slope_begin[0], cell.slope_end[0]
+    lengths = [norm(a.weights, slope) for slope in slopes]
+    if all(lengths):
+        first, last = (slope / length for slope, length in zip(slopes, lengths))
+        yield 0.125 * norm(a.weights, b.u - a.u) * (first - last)
 
 
 def _made(step: Step) -> bool:

@@ -38,12 +38,12 @@ class SupportsEndCertificate(Protocol):
         ...
 
 
-def certificate_of(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> str:
+def certificate_of(cells: Cells, at: Nodes, path: Path, homotopy: Any) -> str:
     """What is said of an end that the tubes do not reach, or not at the target, where the homotopy can prove it."""
     last, end = float(cells.end[-1, -1]), path.steps[-1]
     if path.status is not Status.REACHED_TARGET or not isinstance(homotopy, SupportsEndCertificate):
         return ""
-    if not at.proved[-1] or at_target(cells, ends, path):
+    if not at.proved[-1]:
         return ""
     if not abs(last - end.lam) <= NEAR_END * abs(path.steps[0].lam - end.lam):
         return ""
@@ -62,19 +62,21 @@ def series_of(cells: Cells, at: Nodes, path: Path) -> str:
 
 
 def at_target(cells: Cells, ends: Nodes, path: Path) -> bool:
-    """Whether the last tube has a point of the curve exactly at the parameter of the last point of the path."""
+    """Whether the last tube has a point of the curve exactly at the parameter of the end of a path to its target."""
+    if path.status is not Status.REACHED_TARGET:
+        return False
     last, there = cells.take(slice(-1, None)), ends.take(slice(1, 2))
     whole = last.place[0, 1] == path.arclength[-1] and bool((last.end[0] == path.steps[-1].u).all())
     held = reach(last, np.ones(1), there.radius) <= last.radius
     return bool(whole and there.proved.all() and held.all())
 
 
-def at_end(cells: Cells, at: Nodes, ends: Nodes, path: Path) -> tuple[str, Array | None, list[Gap]]:
-    """What is proved of the end: where the path reached its target, a point of the curve exactly there."""
+def at_end(at: Nodes, ends: Nodes, path: Path, there: bool) -> tuple[str, Array | None, list[Gap]]:
+    """What is proved of the end: where the path reached its target, a point of the curve exactly `there`, or not."""
     s = float(path.arclength[-1])
     if path.status is not Status.REACHED_TARGET:
         found = bool(at.proved[-1])
         return ("The end is a point of the curve.", None, []) if found else ("", None, [Gap(s, s, NO_CURVE)])
-    if at_target(cells, ends, path):
+    if there:
         return f"The end lies on it, exactly at lam = {path.steps[-1].lam:g}.", ends.radius[1], []
     return "", None, [Gap(s, s, "no point of the curve was found at the target")]

@@ -99,11 +99,15 @@ class Derivative:
             if part.sizes is not None:
                 error = error + np.abs(factor) * part.linear_error(x)[:, None]
         size[:, 0] += form.plain.linear_size(x)
-        error[:, 0] += form.plain.linear_error(x)
+        if form.plain.sizes is not None:
+            error[:, 0] += form.plain.linear_error(x)
         return up_by(size, count), up_by(error + 4.0 * EPS * size, count)
 
     def products(self, x: Array, radius: Array) -> Array:
         """A bound of |2 Q(d, x)| for |d| <= radius."""
         first, second = self.form.first.linear_size, self.form.second.linear_size
-        crossed = first(radius) * second(x) + first(x) * second(radius)
+        if x is radius:
+            crossed = 2.0 * first(x) * second(x)
+        else:
+            crossed = first(radius) * second(x) + first(x) * second(radius)
         return up_by(crossed * (1.0 + SUM_ROUNDING) ** 2, 2 * x.shape[1])

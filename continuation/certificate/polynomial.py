@@ -78,9 +78,13 @@ class Polynomial:
         if not moving:
             return cls(slabs, derivative, d, Y, off)
         E, F, H = found.astype(np.float32)
-        C = np.matmul(E, E) - F
-        third = np.matmul(E, F) - np.matmul(C, E) - H
-        return cls(slabs, derivative, d, Y, off, E, C, np.abs(np.concatenate([third, F, H], axis=1)))
+        C = np.matmul(E, E)
+        C -= F
+        left = np.concatenate([np.matmul(E, F), F, H], axis=1)
+        third = left[:, : E.shape[1]]
+        third -= np.matmul(C, E)
+        third -= H
+        return cls(slabs, derivative, d, Y, off, E, C, np.abs(left, out=left))
 
     @cached_property
     def size_Y(self) -> Array:
@@ -189,7 +193,7 @@ class Polynomial:
             return self._spread(x, radius)
         key = x.tobytes()
         if key not in self._own:
-            self._own[key] = self._spread(x, radius)
+            self._own[key] = self._spread(x, x)
         return self._own[key]
 
     def _spread(self, x: Array, radius: Array) -> Array:

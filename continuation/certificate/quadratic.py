@@ -24,9 +24,6 @@ from continuation.intervals.ends import Ends
 CACHED_NUMBERS = 200_000
 """Numbers of one array of matrices at a time, 1.6 MB: a few of them are to be in a cache of several."""
 
-BATCH_NUMBERS = 4_000_000
-"""Numbers of an array of 32 MB, the largest that has this effect."""
-
 
 @frozen(eq=False)
 class ByProducts:
@@ -54,15 +51,10 @@ class ByProducts:
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`; valid for all radii."""
         places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // self.together(radius.shape[1])))
-        # glibc keeps what is freed for the next array once it has seen a large one freed; asking the system for pages
-        # again each time took a third of a judgement. Nothing is written to this one.
-        np.empty(BATCH_NUMBERS)
         with np.errstate(all="ignore"):
             if len(places) == 1:
                 return self._judge(slabs, radius)
             return Several.of([(place, self._judge(slabs.take(place), radius[place])) for place in places])
 
     def _judge(self, slabs: Slabs, radius: Array) -> Polynomial:
-        q = slabs.expansion.q
-        cubic = Ends(np.stack([k.lo for k in q], axis=1), np.stack([k.hi for k in q], axis=1))
-        return Polynomial.of(slabs, Derivative.of(self.form, cubic), radius)
+        return Polynomial.of(slabs, Derivative.of(self.form, slabs.expansion.coefficients), radius)

@@ -10,8 +10,8 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, expansion, joined, sizes
-from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, certificate_of, series_of
+from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along, expansion, joined, sizes
+from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, at_target, certificate_of, series_of
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import RANGE, Piece, Turn, located, pieces, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
@@ -78,7 +78,8 @@ def verified(
     ]
     gaps += _order(cells, path, ends.take(slice(0, 1)))
     gaps += _beside(engine, cells, at, ends.take(slice(0, 1)), path)
-    certificate, before = certificate_of(cells, at, ends, path, homotopy), float(cells.place[-1, 1])
+    there, before = at_target(cells, ends, path), float(cells.place[-1, 1])
+    certificate = "" if there else certificate_of(cells, at, path, homotopy)
     series = "" if certificate else series_of(cells, at, path)
     if certificate or series:
         gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
@@ -87,7 +88,7 @@ def verified(
     told = _between_nodes(known or pieces(engine, cells), cells, ends, at)
     turning, more = _turning(engine, cells, told, path, places)
     gaps += more + _events(path, places)
-    end, radius, missing = (certificate, None, []) if certificate else at_end(cells, at, ends, path)
+    end, radius, missing = (certificate, None, []) if certificate else at_end(at, ends, path, there)
     if series:
         end, missing = series, [Gap(before, float(path.arclength[-1]), LIMIT)]
     gaps += missing
@@ -104,37 +105,46 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
     """
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
+    first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
     ask = ~known.proved
-    asked = ask.copy()
     at = Nodes(known.radius.copy(), Ends(known.tangent.lo.copy(), known.tangent.hi.copy()))
-    for trial in range(LINK_TRIALS):
-        first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
-        s = np.ones(ask.sum() + 2)
-        s[-2] = 0.0
-        every = nodes(engine, joined([cells.take(ask), first, last]), s)
-        at.put(ask, every.take(slice(0, -2)))
-        ends = every.take(slice(-2, None))
-        left, right = cells.take(slice(None, -1)), cells.take(slice(1, None))
-        joints = linked(left, at.take(slice(0, -1)), right)
-        if joints.all() or trial == LINK_TRIALS - 1:
+    s = np.ones(ask.sum() + 2)
+    s[-2] = 0.0
+    every = nodes(engine, joined([cells.take(ask), first, last]), s)
+    at.put(ask, every.take(slice(0, -2)))
+    joints = linked(cells.take(slice(None, -1)), at.take(slice(0, -1)), cells.take(slice(1, None)))
+    asked = ask
+    for _ in range(LINK_TRIALS - 1):
+        left = np.flatnonzero(~joints)
+        if not len(left):
             break
         ask = np.append(~joints, False) & ~asked
-        asked |= ask
+        asked = asked | ask
+        if not ask.any():
+            cells = _widened(engine, cells, at, left)
+            ask = ~at.proved
         if ask.any():
-            continue
-        wanted = np.maximum(cells.radius, np.where(np.isfinite(at.radius), WIDER * at.radius, 0.0))
-        needed = reach(right, np.zeros(len(right)), at.radius[:-1])
-        wanted[1:] = np.maximum(wanted[1:], np.where(np.isfinite(needed), WIDER * needed, 0.0))
-        changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
-        if not len(changed):
-            break
-        tried = cells.take(changed).with_tubes(wanted[changed], cells.slabs[changed])
-        good, _ = check(engine, tried)
-        radius = cells.radius.copy()
-        radius[changed[good]] = wanted[changed[good]]
-        cells = cells.with_tubes(radius, cells.slabs)
-        ask = ~at.proved
-    return cells, at, joints, ends
+            at.put(ask, nodes(engine, cells.take(ask), np.ones(ask.sum())))
+        # Links that hold do so between wider tubes as well.
+        joints[left] = linked(cells.take(left), at.take(left), cells.take(left + 1))
+    return cells, at, joints, every.take(slice(-2, None))
+
+
+def _widened(engine: Engine, cells: Cells, at: Nodes, left: Index) -> Cells:
+    """The cells, those to the left and to the right of links that fail with wider tubes, where these are proved."""
+    wanted = cells.radius.copy()
+    for k, least in (
+        (left, at.radius[left]),
+        (left + 1, reach(cells.take(left + 1), np.zeros(len(left)), at.radius[left])),
+    ):
+        wanted[k] = np.maximum(wanted[k], np.where(np.isfinite(least), WIDER * least, 0.0))
+    changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
+    if not len(changed):
+        return cells
+    good, _ = check(engine, cells.take(changed).with_tubes(wanted[changed], cells.slabs[changed]))
+    radius = cells.radius.copy()
+    radius[changed[good]] = wanted[changed[good]]
+    return cells.with_tubes(radius, cells.slabs)
 
 
 def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:

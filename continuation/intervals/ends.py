@@ -34,8 +34,19 @@ def up(x: Array) -> Array:
 
 
 def up_sum(x: Array) -> Array:
-    """`up` of a sum. A sum that is zero is exact, as sums do not underflow; zeros are kept for the sake of speed."""
-    return np.where(x == 0.0, 0.0, np.nextafter(x, np.inf))
+    """A number above every real sum that rounds to x, by at most two units in the last place; x where that is zero.
+
+    EPS |x| is at least the distance from x to the next number: it is exact, or, where it is subnormal, is rounded to no
+    less than that. A sum that is zero or subnormal is exact, as sums do not underflow. `nextafter` takes several times
+    as long.
+    """
+    return x + EPS * np.abs(x)
+
+
+def _outward(x: Array, out: Array) -> Array:
+    """How far the end of a product is to be moved."""
+    np.multiply(np.abs(x, out=out), EPS, out=out)
+    return np.add(out, TINIEST, out=out)
 
 
 @frozen(eq=False)
@@ -63,19 +74,19 @@ class Ends:
         return Ends(-up_sum(other.hi - self.lo), up_sum(self.hi - other.lo))
 
     def __mul__(self, other: Ends) -> Ends:
-        a, b = self.lo * other.lo, self.lo * other.hi
-        if self.lo is self.hi:
-            lo, hi = np.minimum(a, b), np.maximum(a, b)
-        else:
-            c, d = self.hi * other.lo, self.hi * other.hi
-            lo, hi = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
-        below, above = down(lo), up(hi)
-        # A product that is zero may have underflown, unless a factor is zero.
-        zero = (lo == 0.0) & (hi == 0.0)
-        if zero.any():
+        # In place, as to ask for memory takes as long as to multiply.
+        a, b = np.asarray(self.lo * other.lo), np.asarray(self.lo * other.hi)
+        lo, hi = np.minimum(a, b), np.maximum(a, b)
+        if self.lo is not self.hi:
+            for product in (np.multiply(self.hi, other.lo, out=a), np.multiply(self.hi, other.hi, out=b)):
+                lo, hi = np.minimum(lo, product, out=lo), np.maximum(hi, product, out=hi)
+        # As `up_sum`, and the tiniest number for what underflows; a product with a factor that is zero is zero.
+        zero = None if np.all(hi) else (lo == 0.0) & (hi == 0.0)
+        lo, hi = lo - _outward(lo, a), hi + _outward(hi, b)
+        if zero is not None and zero.any():
             zero &= ((self.lo == 0.0) & (self.hi == 0.0)) | ((other.lo == 0.0) & (other.hi == 0.0))
-            below, above = np.where(zero, 0.0, below), np.where(zero, 0.0, above)
-        return Ends(below, above)
+            lo, hi = np.where(zero, 0.0, lo), np.where(zero, 0.0, hi)
+        return Ends(lo, hi)
 
     def __truediv__(self, other: Ends) -> Ends:
         with np.errstate(all="ignore"):

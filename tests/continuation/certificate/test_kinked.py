@@ -14,6 +14,7 @@ from problems.nonlinear import bratu_under_obstacle
 from ...util import benchmark
 
 corrupted = benchmark("proof/corrupted.py")
+drawn = benchmark("proof/subjects.py")
 
 
 def bent(y, lam, a, b):
@@ -110,6 +111,13 @@ def test_what_is_wrong_with_kinks_is_refused(subjects, fault):
         more = {"homotopy": homotopy} if fault is corrupted.straight_on else {}
         wrong = fault(path, proof, rng, **more)
         assert wrong is None or not certify(wrong, homotopy).complete
+
+
+def test_a_long_step_behind_a_kink_is_halved():
+    # Its first tangent is nearly across the chord: the cubic in the chart leads the corrector astray.
+    homotopy = drawn.cubic(30)
+    proof = certify(trace(homotopy), homotopy)
+    assert proof.complete, str(proof)
 
 
 def test_several_switches_in_one_kink_are_a_gap_there_alone():

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from attrs import evolve
 
-from continuation import certify, trace
+from continuation import CONSERVATIVE, certify, trace
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy
 
@@ -41,3 +42,33 @@ def test_nodes_that_tubes_tell_too_wide_are_tested_on_their_own():
     homotopy = KKTHomotopy(LCP(A, np.where(kind == 1, w, 0.0) - A @ np.where(kind == 0, x, 0.0)))
     proof = certify(trace(homotopy), homotopy)
     assert proof.complete, str(proof)
+
+
+@pytest.mark.parametrize(("n", "seed"), [(4, 43), (6, 45), (8, 35)])
+def test_a_regular_end_to_which_a_series_leads_is_reached(n, seed):
+    # No tube reaches it from the last step; it solves no LCP, so that nothing else is proved of it either.
+    rng = np.random.default_rng([seed, n])
+    homotopy = KKTHomotopy(LCP(rng.normal(size=(n, n)), rng.normal(size=n)))
+    path = trace(homotopy)
+    assert path.steps[-1].segment is None
+    assert not homotopy.certify_end(path.endpoint.y)
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    assert "exactly at lam = 0" in proof.end
+
+
+def test_an_end_on_another_branch_is_a_gap():
+    # Next to the target two branches nearly meet, and a series leads across. Tubes join nodes next to that end to it;
+    # but between those and the last step there is none.
+    rng = np.random.default_rng([44, 4])
+    homotopy = KKTHomotopy(LCP(rng.normal(size=(4, 4)), rng.normal(size=4)))
+    path = trace(homotopy, preset=CONSERVATIVE)
+    assert certify(path, homotopy).complete
+    y = np.array([0.0, 0.058, 1.23, 0.0, 0.82, 0.0, 0.0, 1.2, 0.0, 0.0, 1.17, 0.0])
+    for _ in range(8):
+        y -= np.linalg.solve(homotopy.jacobian(y, 0.0)[0], homotopy.residual(y, 0.0))
+    assert np.abs(homotopy.residual(y, 0.0)).max() < 1e-14
+    steps = [step for step in path.steps[:-1] if step.lam > 0.006]
+    end = evolve(path.steps[-1], index=len(steps), u=np.append(y, 0.0), segment=None, corrector_iterations=0)
+    proof = certify(evolve(path, steps=[*steps, end]), homotopy)
+    assert any(steps[-1].arclength <= gap.begin < gap.end for gap in proof.gaps)

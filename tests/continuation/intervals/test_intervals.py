@@ -8,6 +8,7 @@ import scipy.sparse as sp
 
 from continuation import intervals, jets
 from continuation.intervals import Interval, UndecidedError, enclose, jacobian
+from continuation.intervals.ends import Ends, thin
 
 from ...util import benchmark
 
@@ -27,6 +28,23 @@ def test_no_value_lies_outside_of_its_interval(name):
 @pytest.mark.parametrize("name", campaign.ONE)
 def test_no_derivative_lies_outside_of_its_interval(name):
     assert campaign.slopes_outside(name, 100, seed=2) == 0
+
+
+def test_sums_and_products_of_all_sizes_are_enclosed():
+    # Rational arithmetic as the judge; subnormal numbers, products that underflow, sums that cancel.
+    rng = np.random.default_rng(3)
+    x, y = (
+        rng.choice([-1.0, 1.0], 4000) * rng.uniform(1.0, 2.0, 4000) * 2.0 ** rng.integers(-540, 500, 4000) for _ in "xy"
+    )
+    small = rng.integers(-(2**54), 2**54, (2, 1000)) * 2.0**-1074
+    x, y = np.concatenate([x, x, small[0], [0.0, 0.0, 1.0]]), np.concatenate([y, -x, small[1], [0.0, 2.0**-1074, -1.0]])
+    u, v = thin(x), Ends(y - 0.0, y + 0.0)
+    for found, exact in ((u + v, Fraction.__add__), (u - v, Fraction.__sub__), (u * v, Fraction.__mul__)):
+        for lo, hi, a, b in zip(found.lo.tolist(), found.hi.tolist(), x.tolist(), y.tolist()):
+            value = exact(Fraction(a), Fraction(b))
+            assert Fraction(lo) <= value <= Fraction(hi)
+            assert value or lo == hi == 0.0
+            assert hi - lo <= 1e-15 * abs(value) + 2.0**-1070
 
 
 RESIDUALS = {
