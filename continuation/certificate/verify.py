@@ -23,11 +23,11 @@ from continuation.point.segment import HermiteSegment
 from continuation.status import Kind
 
 NOT_A_NODE = "a point of the path is no node of the proof"
-BESIDE = "a point of the path does not lie on the curve"
+OFF_CURVE = "a point of the path does not lie on the curve"
 NO_END = "no tube was found at the end"
 NOWHERE = "where the parameter turns is not known"
 
-DISTANCE = 1e-4
+POINT_DISTANCE = 1e-4
 """How far a point or an event may be from the curve, in sizes of its step: located ones are off by their tolerance, of
 1e-6."""
 
@@ -189,14 +189,14 @@ def _beside(engine: Engine, cells: Cells, at: Nodes, first: Nodes, path: Path) -
     if far.any():
         again = nodes(engine, own.take(far), s[far]).radius
         far[far] = ~(again <= allowed[far]).all(axis=1)
-    return [Gap(s, s, BESIDE) for s in place[far].tolist()]
+    return [Gap(s, s, OFF_CURVE) for s in place[far].tolist()]
 
 
 def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
     """How far a point in a cell may be from the curve, component by component."""
     size = np.maximum(sizes(own), np.abs(np.diff(path.u, axis=0))[_later(path.arclength, arclength) - 1])
     # Of what stands still a cell knows no size but the tube's.
-    return np.where(own.begin == own.end, own.radius, DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
+    return np.where(own.begin == own.end, own.radius, POINT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
 
 
 # --- turning points and events ----------------------------------------------------------------------------

@@ -50,6 +50,10 @@ LARGEST_MADE_DENSE = 500
 """A sparse matrix of at most this order is made dense for pivots and paths, whose matrices of order n or 2n fill: with
 5 % entries and n = 200 a path takes a tenth of the time then."""
 
+FEW_GROUPS = 20, 1000
+"""Up to this order such a tree comes before reflections, which take 3 ms where it takes 1 to 15, but find a solution
+that depends on how sums are rounded."""
+
 SMALL_TREE = 40, 1000
 """Largest order, and linear programs of a small tree that enumerates faces in groups, before any path: 0.1 ms each at
 n = 20, 0.2 at 40. Feasible Gaussian problems take 5 to 150 up to n = 20, 40 to 1,000 at 30 and 1,200 at 40."""
@@ -72,7 +76,7 @@ LARGEST_EARLY_PROOF = 40
 """Up to this order the linear program is not worth a thought (5 ms, where Wang's path takes 200), so it comes first."""
 
 FIRST_ROUND, FIRST_ROUNDS = 1, 4
-"""Rounds of reflections before any path, where faces can be enumerated in groups, which decide more, and else."""
+"""Rounds of reflections before any path: where faces can be enumerated in groups, which decide more, and else."""
 
 FIRST_WORK, MOST_WORK, MOST_ROUNDS = 1.5e9, 6e9, 40
 """Iterations times n^2 of reflections before any path, and before restarts; of the second at most so many rounds. The

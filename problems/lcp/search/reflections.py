@@ -27,7 +27,7 @@ from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 
 Single = NDArray[np.float32]
 
-TOGETHER = 16
+RUNS_AT_ONCE = 16
 """Runs at once: of 24 Gaussian problems, n = 200, the slowest takes 2.1 s of two, 1.3 of eight and 0.16 of sixteen."""
 
 CHECKED = 25
@@ -89,8 +89,8 @@ class Reflections:
         """Without end: how many rounds of runs are over, and the faces at which runs stay, `CHECKED` steps later."""
         n, over = self.lower.size, 0
         while True:
-            z = random.standard_normal((2 * n, TOGETHER), np.float32)
-            before = np.full((n, TOGETHER), UPPER + 1, dtype=np.int8)
+            z = random.standard_normal((2 * n, RUNS_AT_ONCE), np.float32)
+            before = np.full((n, RUNS_AT_ONCE), UPPER + 1, dtype=np.int8)
             for k in range(1, run_length(n) + 1):
                 a = self.onto @ z
                 a += self.nearest

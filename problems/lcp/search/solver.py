@@ -47,7 +47,7 @@ from problems.lcp.search.judging import answer, beyond_floats, of_program, unsca
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.pivots import Nearby
 from problems.lcp.search.search import Search
-from problems.lcp.search.strategy import AUTOMATIC, NAMED, PATHS, Attempt, settled_by
+from problems.lcp.search.strategy import AUTOMATIC, EXACTLY, NAMED, PATHS, Attempt, settled_by
 from problems.lcp.search.work import default_budget
 from problems.options import check_budget, check_seed, check_tolerance, finite_vector
 
@@ -233,6 +233,8 @@ def solve(
         else:
             settled = settled_by(case, strategy)
             found, scaled = answer(search, _account(case, settled)), search.scaled
+            if automatic and found.outcome is Outcome.SOLVED_TO_PRECISION and settled_by(case, (EXACTLY,)):
+                found = answer(search, _account(case, EXACTLY))
             found = evolve(found, problem=problem) if scaled is None else unscaled(problem, scaled, found, tolerance)
         if not search.paths and search.log is not None:
             _archive_without_path(search, found)

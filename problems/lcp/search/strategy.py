@@ -6,7 +6,6 @@ proof that there is none. Another attempt is one more entry in its place, and it
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -16,7 +15,7 @@ from attrs import frozen
 from continuation.presets import FAST
 from problems.lcp.active_set.finish import below_zero
 from problems.lcp.active_set.iteration import Policy
-from problems.lcp.active_set.multigrid_guess import guess, suitable
+from problems.lcp.active_set.multigrid_guess import guess
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import natural_units
@@ -27,8 +26,27 @@ from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable, exhaust
 from problems.lcp.search import said
 from problems.lcp.search.case import Case
+from problems.lcp.search.conditions import (
+    always,
+    as_given,
+    game_perhaps,
+    has_coarser_problems,
+    in_a_box,
+    monotone,
+    near,
+    pivotable,
+    provable,
+    reflectable,
+    scaled,
+    stopped,
+    tiny,
+    wang_may_do,
+    with_rows,
+    zero_solves,
+)
 from problems.lcp.search.limits import (
     AT_GUESS,
+    FEW_GROUPS,
     FEW_PIECES,
     FIRST,
     FIRST_ROUND,
@@ -39,8 +57,6 @@ from problems.lcp.search.limits import (
     LARGE_TREE,
     LARGEST_EARLY_PROOF,
     LARGEST_MADE_DENSE,
-    LARGEST_PROOF,
-    LARGEST_TINY,
     LEAST_START,
     MOST_AUGMENTED,
     MOST_ROUNDS,
@@ -51,7 +67,7 @@ from problems.lcp.search.limits import (
     SMALL_TREE,
     WHILE_REGULAR,
 )
-from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, by_lemke, by_lemke_howson, convex
+from problems.lcp.search.pivots import by_guess, by_lemke, by_lemke_howson
 from problems.lcp.search.reflections import rounds_within
 from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, first_patience
 
@@ -109,7 +125,7 @@ def _from_zero(case: Case) -> bool:
     policy = FROM_ZERO
     if case.known.z_matrix:
         policy = Policy(steps=min(case.problem.n, MOST_Z_STEPS))
-    elif _as_given(_pivotable)(case) and case.problem.n <= LARGEST_MADE_DENSE and not case.known.negative_diagonal:
+    elif as_given(pivotable)(case) and case.problem.n <= LARGEST_MADE_DENSE and not case.known.negative_diagonal:
         policy = WHILE_REGULAR
     return case.search.settle(case.first_state, policy)
 
@@ -207,35 +223,8 @@ def _restarts(case: Case) -> bool:
     return case.search.solved
 
 
-# -- when they are tried, and what is said --------------------------------------------------------------------
-
-
-def _always(case: Case) -> bool:
-    return True
-
-
-def _has_coarser_problems(case: Case) -> bool:
-    return case.search.finish is not None and suitable(case.search.structure)
-
-
-def _monotone(case: Case) -> bool:
-    return case.semidefinite and not case.known.symmetric
-
-
-def _wang_may_do(case: Case) -> bool:
-    """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges; in a box it cannot."""
-    return not case.problem.standard or not case.known.negative_diagonal
-
-
-def _stopped(case: Case) -> bool:
-    return case.search.finish is not None and case.search.finish.stopped is not None
-
-
-def _pivotable(case: Case) -> bool:
-    """Where the pure path is not asked for, and a table of n^2 numbers is no burden."""
-    if not case.problem.standard or not case.in_budget or case.search.finish is None:
-        return False
-    return case.problem.n <= LARGEST_TABLE or convex(case.search.structure)
+def _small_tree(case: Case) -> bool:
+    return case.problem.n > FEW_GROUPS[0] and case.groupable(SMALL_TREE)
 
 
 def _reflected(case: Case) -> bool:
@@ -247,103 +236,55 @@ def _reflected_further(case: Case) -> bool:
     return case.reflect(rounds_within(case.problem.n, MOST_WORK, MOST_ROUNDS), REFLECTED_SHARE)
 
 
-def _reflectable(case: Case) -> bool:
-    """Where projections are no burden, and nothing is known to end pivots at a solution or a proof."""
-    usable = case.in_budget and case.search.finish is not None and case.problem.n <= LARGEST_TABLE
-    return usable and not case.known.semidefinite
-
-
-def _game_perhaps(case: Case) -> bool:
-    return _pivotable(case) and case.known.nonnegative
-
-
-def _as_given(when: Callable[[Case], bool]) -> Callable[[Case], bool]:
-    """Where entries are alike pivots are tried in the units given, which take less time than others to be found."""
-    return lambda case: case.search.postponed and when(case)
-
-
-def _scaled(when: Callable[[Case], bool]) -> Callable[[Case], bool]:
-    """Else in units of the problem's own, once."""
-    return lambda case: not case.pivoted and when(case)
-
-
-def _near(case: Case) -> bool:
-    return case.guess is not None and case.problem.n <= LARGEST_TABLE and case.search.finish is not None
-
-
-def _provable(case: Case) -> bool:
-    n, A = case.problem.n, case.problem.A
-    entries = A.nnz if case.problem.sparse else n * n
-    return bool(n * entries <= LARGEST_PROOF or case.search.seconds_left < math.inf)
-
-
-def _zero_solves(case: Case) -> bool:
-    if case.problem.standard:
-        return bool(case.problem.q.min() >= 0.0)
-    return case.problem.natural_residual(case.problem.near_zero) == 0.0
-
-
-def _in_a_box(case: Case) -> bool:
-    """Whether the problem is that of the KKT points of a quadratic function, which a box always has."""
-    ends = case.problem.lower, case.problem.upper
-    return case.known.symmetric and all(bool(np.isfinite(end).all()) for end in ends)
-
-
-def _with_rows(case: Case) -> bool:
-    """Whether the problem is that of a program which is not one in a box alone."""
-    return case.problem.primal > 0 and case.in_budget and not _in_a_box(case)
-
-
-def _tiny(case: Case) -> bool:
-    return case.pivoted and case.problem.n <= LARGEST_TINY
-
+# -- the order of them ---------------------------------------------------------------------------------------
 
 WITHOUT_PATH: tuple[Attempt, ...] = (
-    Attempt("x = 0", lambda c: c.problem.standard and _zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
+    Attempt("x = 0", lambda c: c.problem.standard and zero_solves(c), _zero, "q >= 0, so x = 0 is a solution."),
     Attempt(
         "the point nearest to zero",
-        lambda c: not c.problem.standard and _zero_solves(c),
+        lambda c: not c.problem.standard and zero_solves(c),
         _zero,
         "The point nearest to zero is a solution.",
     ),
-    Attempt("a problem nearby", _near, _from_guess, "Solved from the solution of a problem nearby, before any path."),
+    Attempt("a problem nearby", near, _from_guess, "Solved from the solution of a problem nearby, before any path."),
     Attempt("active sets, from x0", lambda c: c.x0 is not None, _from_x0, said.SETTLED),
-    Attempt("active sets, from coarser problems", _has_coarser_problems, _from_coarser_problems, said.SETTLED),
-    Attempt("Lemke and Howson, as given", _as_given(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
-    Attempt("Lemke, at once", _as_given(lambda c: _pivotable(c) and c.contact_perhaps), _by_lemke, said.LEMKE),
+    Attempt("active sets, from coarser problems", has_coarser_problems, _from_coarser_problems, said.SETTLED),
+    Attempt("Lemke and Howson, as given", as_given(game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
+    Attempt("Lemke, at once", as_given(lambda c: pivotable(c) and c.contact_perhaps), _by_lemke, said.LEMKE),
     Attempt(
         "active sets of A + shift I, from x = 0", lambda c: c.definite_perhaps, _proximally_from_zero, said.SETTLED
     ),
-    Attempt("active sets, from x = 0", _always, _from_zero, said.SETTLED),
-    Attempt("active sets of A + shift I, from the last", _monotone, _proximally_from_last, said.SETTLED_SHIFTED),
-    Attempt("Lemke, as given", _as_given(_scaled(_pivotable)), _by_lemke, said.LEMKE),
-    Attempt("active sets, further", _stopped, _further, said.SETTLED),
-    Attempt("proof, at once", _tiny, _proof, said.PROVED),
-    Attempt("few faces, at once", _tiny, _all_faces, said.TRIED),
+    Attempt("active sets, from x = 0", always, _from_zero, said.SETTLED),
+    Attempt("active sets of A + shift I, from the last", monotone, _proximally_from_last, said.SETTLED_SHIFTED),
+    Attempt("Lemke, as given", as_given(scaled(pivotable)), _by_lemke, said.LEMKE),
+    Attempt("active sets, further", stopped, _further, said.SETTLED),
+    Attempt("proof, at once", tiny, _proof, said.PROVED),
+    Attempt("few faces, at once", tiny, _all_faces, said.TRIED),
     Attempt("units of its own", lambda c: c.search.postponed, _rescaled, ""),
-    Attempt("descent in a box", _in_a_box, _descent, said.DESCENDED),
+    Attempt("descent in a box", in_a_box, _descent, said.DESCENDED),
     Attempt("dense from here on", lambda c: c.problem.sparse and c.problem.n <= LARGEST_MADE_DENSE, _made_dense, ""),
-    Attempt("Lemke and Howson", _scaled(_game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
-    Attempt("Lemke", _scaled(_pivotable), _by_lemke, said.LEMKE),
+    Attempt("Lemke and Howson", scaled(game_perhaps), _by_lemke_howson, said.LEMKE_HOWSON),
+    Attempt("Lemke", scaled(pivotable), _by_lemke, said.LEMKE),
     Attempt("proof, early", lambda c: c.problem.n <= LARGEST_EARLY_PROOF and not c.proof_sought, _proof, said.PROVED),
-    Attempt("reflections", _reflectable, _reflected, said.REFLECTED),
-    Attempt("some groups of faces", lambda c: c.groupable(SMALL_TREE), lambda c: c.branch(SMALL_TREE), said.BRANCHED),
+    Attempt("few groups of faces", lambda c: c.groupable(FEW_GROUPS), lambda c: c.branch(FEW_GROUPS), said.BRANCHED),
+    Attempt("reflections", reflectable, _reflected, said.REFLECTED),
+    Attempt("some groups of faces", _small_tree, lambda c: c.branch(SMALL_TREE), said.BRANCHED),
     Attempt(
         "few pieces", lambda c: not c.problem.standard and decidable(c.problem, FEW_PIECES), _all_faces, said.TRIED
     ),
-    Attempt("augmented Lagrangian", _with_rows, _augmented, said.AUGMENTED),
+    Attempt("augmented Lagrangian", with_rows, _augmented, said.AUGMENTED),
 )
 """What is cheap and cannot mislead."""
 
 # The end of Wang's path solves the problem, where it has one; the KKT path has an end, which need not solve it.
 PATHS: tuple[Attempt, ...] = (
-    Attempt("Wang's path", _wang_may_do, _path("wang", preset=FAST), said.FOLLOWED),
-    Attempt("KKT path, first", lambda c: not _wang_may_do(c), _path("kkt", True, preset=FAST), said.FOLLOWED),
-    Attempt("proof", lambda c: c.in_budget and not c.proof_sought and _provable(c), _proof, said.PROVED),
-    Attempt("KKT path", lambda c: c.in_budget and _wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
+    Attempt("Wang's path", wang_may_do, _path("wang", preset=FAST), said.FOLLOWED),
+    Attempt("KKT path, first", lambda c: not wang_may_do(c), _path("kkt", True, preset=FAST), said.FOLLOWED),
+    Attempt("proof", lambda c: c.in_budget and not c.proof_sought and provable(c), _proof, said.PROVED),
+    Attempt("KKT path", lambda c: c.in_budget and wang_may_do(c), _path("kkt", preset=FAST), said.FOLLOWED),
     Attempt("groups of faces", lambda c: c.groupable(LARGE_TREE), lambda c: c.branch(LARGE_TREE), said.BRANCHED),
     Attempt("all faces", lambda c: c.in_budget and decidable(c.problem, LARGEST_DECIDED), _all_faces, said.TRIED),
-    Attempt("reflections, further", _reflectable, _reflected_further, said.REFLECTED),
+    Attempt("reflections, further", reflectable, _reflected_further, said.REFLECTED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),
 )
 """Any of these may cost the whole budget."""
@@ -355,11 +296,33 @@ NAMED: tuple[Attempt, ...] = (
     Attempt(
         "feasible start", lambda c: c.x0 is None and HOMOTOPIES[c.asked].feasible, _feasible_start, "{case.reason}"
     ),
-    Attempt("path", _always, _path(), said.FOLLOWED),
-    Attempt("proof", _provable, _proof, said.PROVED),
+    Attempt("path", always, _path(), said.FOLLOWED),
+    Attempt("proof", provable, _proof, said.PROVED),
     Attempt("restarts", lambda c: c.restarts > 0, _restarts, said.RESTARTED),
 )
 """For a homotopy that was asked for."""
+
+
+def _exactly(case: Case) -> bool:
+    search = case.search
+    found = exhaust(case.problem, search.seconds_left, filtered=True)
+    if found is None or found.point is None or not np.isfinite(found.point).all():
+        return False
+    end = certify(case.problem, found.point)
+    if search.confirmed(end):
+        search.exhaustion = found
+        search.ends.clear()
+        search.accept(end)
+    return search.exhaustion is found
+
+
+EXACTLY = Attempt(
+    "all faces, for an exact solution",
+    lambda c: decidable(c.problem, LARGEST_DECIDED) and (c.search.scaled is None or c.search.scaled.exact),
+    _exactly,
+    said.TRIED,
+)
+"""Where active sets end within a singular face, which holds no solution of the data as given, another one may."""
 
 
 def settled_by(case: Case, strategy: tuple[Attempt, ...]) -> Attempt | None:

@@ -338,5 +338,5 @@ def test_a_start_that_is_not_on_the_curve_is_a_gap_however_wide_its_tube():
         path = trace(homotopy)
         first, *others = path.steps
         proof = certify(evolve(path, steps=[evolve(first, u=first.u + off), *others]), homotopy)
-        assert [gap.reason for gap in proof.gaps] == [verify.BESIDE]
+        assert [gap.reason for gap in proof.gaps] == [verify.OFF_CURVE]
         assert certify(path, homotopy).complete

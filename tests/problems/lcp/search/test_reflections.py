@@ -8,7 +8,7 @@ import pytest
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER
-from problems.lcp.search.reflections import TOGETHER, Reflections, rounds_within, run_length
+from problems.lcp.search.reflections import RUNS_AT_ONCE, Reflections, rounds_within, run_length
 
 
 def planted(n, seed, bounds=False):
@@ -39,7 +39,7 @@ def nearest_by_trial(problem, x, w):
 def test_both_projections_are_the_nearest_points(bounds):
     problem, r = planted(6, 1, bounds), np.random.default_rng(0)
     sets = Reflections.of(problem)
-    z = r.standard_normal((12, TOGETHER)).astype(np.float32)
+    z = r.standard_normal((12, RUNS_AT_ONCE)).astype(np.float32)
     near = sets.onto @ z + sets.nearest
     again = sets.onto @ near + sets.nearest
     np.testing.assert_allclose(again, near, atol=1e-5)
@@ -47,7 +47,7 @@ def test_both_projections_are_the_nearest_points(bounds):
     np.testing.assert_allclose((near[:, :1] - near).T @ (z - near), 0.0, atol=1e-4)
     own = MixedLCP(np.eye(6), np.zeros(6), sets.lower[:, 0].astype(float), sets.upper[:, 0].astype(float))
     state, b = sets._complementary(z)
-    for j in range(TOGETHER):
+    for j in range(RUNS_AT_ONCE):
         found = list(zip(b[:6, j], b[6:, j], state[:, j]))
         for (x, w, _), (x0, w0, _) in zip(found, nearest_by_trial(own, z[:6, j], z[6:, j])):
             assert (x, w) == pytest.approx((x0, w0), abs=1e-6)
