@@ -22,3 +22,14 @@ def test_a_failure_is_not_a_success():
     assert solution.outcome is lcp.Outcome.UNSOLVABLE
     assert not solution.success
     assert not solution.outcome
+
+
+def test_an_exact_solution_is_preferred_to_one_of_other_last_digits():
+    # Active sets end within the face of both, whose equations are inconsistent by a digit; x_2 = 0 solves exactly.
+    A = [[0.1768198335047411, 0.44183472382140804], [0.44183472382140804, 1.1040499207862082]]
+    problem = lcp.LCP(A, [-0.48196594397099524, -1.2043292063163211])
+    assert not lcp.certify_exactly(problem, [0.37628023, 0.9402433]).solves
+    found = lcp.solve(problem)
+    assert found.outcome is lcp.Outcome.SOLVED
+    assert found.x[1] == 0.0
+    assert lcp.certify_exactly(problem, found.x).solves
