@@ -25,8 +25,8 @@ bounds do it in 0.1 ms, where a proof by pivots takes 0.6."""
 MESSAGE = f"{Outcome.SOLVED} The first active set, where q < 0, is right."
 
 
-def at_once(finish: Finish) -> Solution | None:
-    """The solution on the face where q < 0, certified and judged as any other; None if that is not one.
+def at_once(finish: Finish) -> tuple[Solution | None, bool]:
+    """The solution on the face where q < 0, certified and judged as any other, or None; and whether that is regular.
 
     `finish`: Of a dense LCP; where its faces are kept this one is made once.
     """
@@ -35,14 +35,13 @@ def at_once(finish: Finish) -> Solution | None:
     face = finish.faces.face(active_state(problem.q < 0.0), regular=finish.faces.structure.symmetric)
     point = None if face is None else face.point(np.zeros(problem.n))
     if face is None or point is None or not finish.judged(face, *point)[2]:
-        problem.known["looked"] = face is not None and face.exact
-        return None
+        return None, face is not None and face.exact
     certificate = finish.certificate
     assert certificate is not None
     if problem.n <= LARGEST_DECIDED and not exact_nearby(problem, certificate.x, certificate.w):
-        return None
+        return None, face.exact
     counts = Counts(factorizations=1)
-    return Solution(problem, Outcome.SOLVED, MESSAGE, certificate, (), -1, counts, time.perf_counter() - began)
+    return Solution(problem, Outcome.SOLVED, MESSAGE, certificate, (), -1, counts, time.perf_counter() - began), True
 
 
 def none_at_once(problem: MixedLCP, plain: MixedLCP) -> Solution | None:

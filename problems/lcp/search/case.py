@@ -117,7 +117,7 @@ class Case:
             return False
         if not isinstance(problem, LCP) or problem.sparse:
             return False
-        share = 1.0 if problem.known.get("looked", False) else independent(problem)
+        share = 1.0 if self.search.looked else independent(problem)
         return (share < 1.0 or not problem.A.diagonal().all()) and (known.symmetric or share >= LEAST_REGULAR)
 
     @property

@@ -239,7 +239,7 @@ def by_lemke_howson(search: Search, seed: int) -> bool:
 def _reached(search: Search, path: AlmostComplementary, ended: Ended) -> bool:
     search.compiled = path.compiled
     # A first active set that was looked at, and not tried since, is counted here.
-    looked = not search.counts.factorizations and "looked" in search.problem.known
+    looked = not search.counts.factorizations and search.looked is not None
     if ended is not Ended.REACHED or not search.settle(active_state(path.active), AT_END):
         return False
     search.counts.factorizations += looked

@@ -58,7 +58,8 @@ class Search:
     For `continuation.trace`. `counts`: Of everything so far. `ends`: Where the paths, and the finish, led. `scaled`:
     The problem in units of its own, where it is solved in these. `postponed`: Whether these are looked for only when
     active sets have failed in the units given. `proof`: That there is no feasible point, exactly or to working
-    precision. `exhaustion`: What trying all faces came to. `compiled`: Whether pivots were.
+    precision. `exhaustion`: What trying all faces came to. `compiled`: Whether pivots were. `looked`: Whether the
+    equations of the first active set are regular, where it was looked at before the search, and is not counted yet.
     """
 
     structure: Structure
@@ -76,6 +77,7 @@ class Search:
     proof: Farkas | FloatFarkas | None = None
     exhaustion: Exhaustion | None = None
     compiled: bool = False
+    looked: bool | None = None
     began: float = field(factory=time.perf_counter)
     _kept: int = field(default=0, init=False)
 
@@ -115,6 +117,7 @@ class Search:
         if own is not None:
             self.scaled = own.after(self.scaled)
             self.ends.clear()
+            self.looked = None
             self._change(own.problem)
 
     def make_dense(self) -> None:

@@ -188,11 +188,10 @@ def solve(
     # A game is left to its own method, which takes no active set.
     game = quick and plain.A[0, 0] == 0.0 and isinstance(plain, LCP) and Game.of(plain) is not None
     kept: dict[bytes, Face] | None = {} if quick else None
-    plain.known.pop("looked", None)
-    immediate = None
+    immediate, looked = None, None
     if quick and not game and start is None and near is None and least(problem.q) < 0.0:
         with Silence():
-            immediate = at_once.at_once(Finish(Faces(structure, kept=kept), tolerance))
+            immediate, looked = at_once.at_once(Finish(Faces(structure, kept=kept), tolerance))
             if immediate is not None and scaled is not None:
                 immediate = unscaled(problem, scaled, immediate, tolerance)
             if immediate is None and plain.n <= at_once.LARGEST_EXCLUDED:
@@ -220,6 +219,7 @@ def solve(
         dict(options),
         scaled=scaled,
         postponed=postponed,
+        looked=looked,
     )
     asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
     case = Case(search, start, asked, restarts, seed, executor, near)

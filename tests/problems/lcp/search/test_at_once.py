@@ -58,7 +58,7 @@ def test_a_first_active_set_that_is_wrong_is_factored_once(made, monkeypatch):
 
 def test_it_is_not_taken_where_it_is_no_solution():
     faces = Faces(Structure(LCP([[1.0, 2.0], [2.0, 1.0]], [-1.0, -3.0])))
-    assert at_once.at_once(Finish(faces, 1e-10)) is None
+    assert at_once.at_once(Finish(faces, 1e-10))[0] is None
 
 
 def test_an_iteration_over_regular_faces_ends_before_a_singular_one_which_may_be_tried_later():
@@ -149,7 +149,7 @@ def test_a_singular_first_face_of_a_symmetric_matrix_is_left_to_the_proximal_met
     monkeypatch.setattr(Face, "point", lambda self, near, real=Face.point: asked.append(self.exact) or real(self, near))
     # Two goods that one market buys: costs alone tell them apart.
     problem = LCP([[2.0, 2.0, 1.0], [2.0, 2.0, 1.0], [1.0, 1.0, 3.0]], [-3.0, -2.0, -1.0])
-    assert at_once.at_once(Finish(Faces(Structure(problem)), 1e-10)) is None
+    assert at_once.at_once(Finish(Faces(Structure(problem)), 1e-10))[0] is None
     assert (len(made), asked) == (1, [])
     found = lcp.solve(problem)
     np.testing.assert_allclose(found.x, [1.5, 0.0, 0.0], atol=1e-15)
