@@ -19,10 +19,9 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.length import check_metric, metric_of
 from continuation.metric import Metric, inner, norm
 from continuation.path import LocatedEvent, Path, Step, require_path
-from continuation.point.arc import Arc
+from continuation.point.arc import cubic_between
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
-from continuation.point.segment import hermite
 from continuation.predictors import Knot
 from continuation.presets import CONSERVATIVE
 from continuation.status import Status
@@ -204,7 +203,7 @@ def _follow(tracer: Tracer, knots: list[Knot], tolerance: Tolerance) -> int:
 def _meets(solver: PathSolver, knot: Knot, before: Linearization, after: Linearization) -> bool:
     if _same(after.weights, after, knot, solver.tolerance):
         return True
-    arc = Arc(before, after, before.border, hermite(before.u, before.tangent, after.u, after.tangent, before.border))
+    arc = cubic_between(before, after, before.border)
     return passes_start(solver, knot, arc)
 
 

@@ -141,7 +141,7 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if before == 0.0:
         return None
     if arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
-        if not may_vanish(_at(value), arc, before, after):
+        if not may_vanish(_at(value), arc, before, after) or _below_round_off(solver, arc, value):
             return None
         return next(iter(locate(solver, _at(value), arc, before, after)), None)
     # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
@@ -162,6 +162,14 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if abs(gap) <= ON_TARGET * max(1.0, abs(value)):
         return fold[0]
     return crossing(solver, cut(arc, fold[0]), value) if gap < 0.0 else None
+
+
+def _below_round_off(solver: PathSolver, arc: Arc, value: float) -> bool:
+    """Whether both ends of an arc are nearer to a parameter value than round-off moves the arc's points.
+
+    An asymptote gets as near as 1e-250, and the least value of a polynomial between two such ends is noise.
+    """
+    return bool(max(abs(arc.a.lam - value), abs(arc.b.lam - value)) <= solver.noise_by_component(arc.a)[-1])
 
 
 def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:

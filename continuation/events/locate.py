@@ -10,11 +10,11 @@ import numpy as np
 from attrs import evolve
 from scipy.optimize import minimize_scalar
 
-from continuation.arrays import Array, dot, largest
+from continuation.arrays import dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue, TurningPoint
-from continuation.point.arc import Arc
+from continuation.point.arc import Arc, cubic_between
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC, HermiteSegment, QuinticSegment, Segment, hermite
@@ -129,12 +129,8 @@ def _descent(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -
         knots.insert(k + 1, (point, g))
         if sign * g <= 0.0 or abs(sign * g - expected) <= AS_EXPECTED * abs(g):
             break
-        parts[k : k + 1] = [_between(part.a, point, arc.border), _between(point, part.b, arc.border)]
+        parts[k : k + 1] = [cubic_between(part.a, point, arc.border), cubic_between(point, part.b, arc.border)]
     return knots[1:-1]
-
-
-def _between(a: Linearization, b: Linearization, border: Array) -> Arc:
-    return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 
 def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[Linearization]:

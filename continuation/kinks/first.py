@@ -12,10 +12,9 @@ from continuation.arrays import Array, generic_vector
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
 from continuation.events.locate import AT_ROUND_OFF, MONITOR_PLACES, NEARLY_ZERO, _descent, _root
-from continuation.point.arc import Arc, position
+from continuation.point.arc import Arc, cubic_between, position
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver
-from continuation.point.segment import hermite
 from continuation.roots import zero_between
 from continuation.status import Kind
 
@@ -326,4 +325,4 @@ def _on_path(solver: PathSolver, arc: Arc, t: float) -> Linearization:
 
 def part_between(arc: Arc, a: Linearization, b: Linearization) -> Arc:
     """The part of an arc between two points of it."""
-    return Arc(a, b, arc.border, hermite(a.u, a.tangent, b.u, b.tangent, arc.border))
+    return cubic_between(a, b, arc.border)

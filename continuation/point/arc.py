@@ -67,6 +67,11 @@ def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> A
     # By name: an isinstance check of a Protocol costs more here than the rest of the function.
     if hasattr(prediction, "segment"):
         return Arc(a, b, border, prediction.segment(dot(border, b.u - a.u), b.u))
+    return cubic_between(a, b, border)
+
+
+def cubic_between(a: Linearization, b: Linearization, border: Array) -> Arc:
+    """The arc of the Hermite cubic, whose parameter is the pseudo-arclength along `border`."""
     return Arc(a, b, border, hermite(a.u, a.tangent, b.u, b.tangent, border))
 
 

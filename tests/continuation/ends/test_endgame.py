@@ -1,12 +1,15 @@
 """Ends at which the path is not a function of the parameter that Newton's method could find."""
 
+from typing import ClassVar
+
 import numpy as np
 import pytest
+from attrs import frozen
 
 import continuation
-from continuation import DEFAULT, FAST, SERIES, Status
+from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status
 from problems.lcp.data.problem import LCP
-from problems.lcp.homotopies import WangHomotopy
+from problems.lcp.homotopies import KKTHomotopy, WangHomotopy
 
 from ...util import by_preset
 from ..util import scalar
@@ -99,3 +102,93 @@ def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
     np.testing.assert_allclose(path.endpoint.u, 0.0, rtol=0, atol=1e-9)
     assert path.end_error is None
     assert path.winding_number is None
+
+
+# -- ends behind a place where two branches nearly meet ------------------------------------------------------------
+
+
+@frozen
+class NearlyMeeting:
+    """(y - c)^2 = (lam - c)^2 + d^2 from the upper branch at lam = 1: it turns off at lam = c, d from the other one."""
+
+    c: float
+    d: float
+    target: ClassVar[float] = 0.0
+
+    @property
+    def end(self):
+        """Straight on it would be 0, about."""
+        return self.c + np.hypot(self.c, self.d)
+
+    def start(self):
+        return np.array([self.c + np.hypot(1.0 - self.c, self.d)]), 1.0
+
+    def residual(self, y, lam):
+        return (y - self.c) ** 2 - (lam - self.c) ** 2 - self.d**2
+
+    def jacobian(self, y, lam):
+        return np.array([[2.0 * (y[0] - self.c)]]), np.array([-2.0 * (lam - self.c)])
+
+    def max_step(self, u, v):
+        return u[-1] / -v[-1] if v[-1] < 0.0 else np.inf
+
+
+every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
+
+
+@every_preset
+@pytest.mark.parametrize("c", [3e-3, 1e-4, 1e-5, 1e-6])
+@pytest.mark.parametrize("ratio", [0.3, 0.1])
+def test_a_path_that_turns_off_next_to_the_end_is_followed(c, ratio, preset):
+    """The other branch is ten tolerances away, or more: nearer ones count as a branch point, which is passed."""
+    homotopy = NearlyMeeting(c, c * ratio)
+    path = continuation.trace(homotopy, preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y, homotopy.end, rtol=1e-6)
+
+
+def random_problem(n, seed):
+    rng = np.random.default_rng([seed, n])
+    return LCP(rng.normal(size=(n, n)), rng.normal(size=n))
+
+
+ENDS = {
+    (4, 44): [0.0, 0.0, 1.37548783, 0.0],
+    (2, 24): [0.0364452589, 0.0],
+    (2, 71): [0.0, 0.0304732589],
+    (8, 71): [0.0, 0.703214829, 0.260473035, 0.0, 0.00736690494, 0.0, 0.0, 0.000650188398],
+    (8, 73): [1.07894192, 0.415154404, 0.0, 0.000491435512, 1.31928004, 0.0, 0.10408397, 0.484365887],
+    (2, 49): [0.0443357891, 0.0],
+}
+"""By n and seed, from CONSERVATIVE with steps of at most 0.05 and no target, where lam = 1e-12."""
+
+
+@every_preset
+@pytest.mark.parametrize(("n", "seed"), ENDS)
+def test_the_path_of_a_random_problem_is_followed_to_its_own_end(n, seed, preset):
+    """Straight on, one component or another would be half of what it is."""
+    path = continuation.trace(KKTHomotopy(random_problem(n, seed)), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y[:n], ENDS[n, seed], atol=1e-7)
+
+
+class WithoutSign:
+    """A factorisation that does not tell the sign of its determinant, as that of an operator."""
+
+    sign = 0
+
+    def __init__(self, system):
+        self.solve = system.solve
+
+
+class Unoriented(KKTHomotopy):
+    def bordered(self, y, lam, border):
+        return WithoutSign(super().bordered(y, lam, border))
+
+
+@pytest.mark.parametrize(("n", "seed"), [problem for problem in ENDS if problem != (8, 73)])
+def test_where_no_orientation_is_known_the_path_between_samples_is_looked_at(n, seed):
+    """Not enough on (8, 73): there the other branch is a millionth of the path away."""
+    path = continuation.trace(Unoriented(random_problem(n, seed)))
+    assert path.status is Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.y[:n], ENDS[n, seed], atol=1e-7)
