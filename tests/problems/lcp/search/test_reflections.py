@@ -78,6 +78,22 @@ def test_units_of_rows_and_columns_are_those_of_the_sets():
     np.testing.assert_allclose(two.nearest, one.nearest, atol=0.02)
 
 
+def test_a_large_part_of_rank_one_is_not_what_units_are_taken_from():
+    r = np.random.default_rng(6)
+    game = LCP(r.standard_normal((40, 40)) + 1e4, -np.ones(40))
+    # Along the others a step in x and one in w = A x weigh the same: of either a half is left.
+    assert 0.3 < np.median(Reflections.of(game).onto.diagonal()[:40]) < 0.7
+
+
+def test_bounds_far_from_zero_are_those_of_the_sets():
+    problem = planted(40, 8, bounds=True)
+    off = 1e3 * np.random.default_rng(9).uniform(1.0, 2.0, 40)
+    moved = MixedLCP(problem.A, problem.q - problem.A @ off, problem.lower + off, problem.upper + off)
+    sets = Reflections.of(moved)
+    assert not sets.lower[np.isfinite(sets.lower)].any()  # the bound nearest to zero is where x begins
+    assert lcp.solve(moved, restarts=0).solved
+
+
 @pytest.mark.parametrize("bounds", [False, True])
 @pytest.mark.parametrize("n", [50, 100])
 def test_planted_problems_are_solved_before_any_path(n, bounds):
