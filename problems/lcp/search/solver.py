@@ -107,8 +107,8 @@ def solve(
         problem with several solutions come to another one.
     budget : continuation.Budget, optional
         Of everything together. By default as many factorisations as take about a minute, which depends on n alone
-        (`default_budget`), so that the same call gives the same answer on every machine; ``Budget(seconds=60)`` ends
-        by the clock.
+        (`default_budget`), so that no clock decides the answer; reflections, which need none, take half a minute more
+        at most. ``Budget(seconds=60)`` ends by the clock.
     tolerance : float
         What `Certificate.solves` is asked before anything is called a solution.
     archive : path, optional
