@@ -25,7 +25,7 @@ HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(ini
 
 def killed(file, steps=30):
     def work():
-        for step in Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5)),), **OPTIONS):
+        for step in Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5, seconds=3600.0)),), **OPTIONS):
             if step.index == steps:
                 os.kill(os.getpid(), signal.SIGKILL)
 
@@ -51,7 +51,7 @@ signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 try:
     if work == "trace":
-        log = PathLog(file, limits=Limits(rows=20))
+        log = PathLog(file, limits=Limits(rows=20, seconds=3600.0))
         trace(ExponentialCosine(3), archive=log, controller=Fixed(bounds=Bounds(initial=0.002)))
     elif work == "merge":
         merge([file], file + ".new.h5")
@@ -219,7 +219,7 @@ def test_a_child_does_not_keep_the_lock(tmp_path):
     file, read, write = tmp_path / "run.h5", *os.pipe()
 
     def work():
-        steps = iter(Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5)),), **OPTIONS))
+        steps = iter(Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5, seconds=3600.0)),), **OPTIONS))
         for _ in range(20):
             next(steps)
         if not os.fork():

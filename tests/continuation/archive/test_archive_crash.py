@@ -35,7 +35,7 @@ class Slow:
 
 
 def write(file, rows):
-    trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows)), observers=(Slow(),), **OPTIONS)
+    trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows, seconds=3600.0)), observers=(Slow(),), **OPTIONS)
 
 
 @pytest.fixture(scope="module")
@@ -112,7 +112,7 @@ def test_death_between_the_phases(tmp_path, monkeypatch, flushes):
     path = trace(FreudensteinRoth())
     with monkeypatch.context() as patch:
         dying(patch, flushes)
-        log = PathLog(tmp_path / "run.h5", limits=Limits(rows=3))
+        log = PathLog(tmp_path / "run.h5", limits=Limits(rows=3, seconds=3600.0))
         with pytest.raises(Death):
             for _ in Tracer(FreudensteinRoth(), observers=(log,)):
                 pass
@@ -136,7 +136,7 @@ def test_death_between_the_phases(tmp_path, monkeypatch, flushes):
 def test_death_in_the_first_commits_of_a_resumed_path(tmp_path, monkeypatch, rows, recovered):
     """The checkpoint that the file was resumed from is not what the first new one is written over."""
     path, file = trace(FreudensteinRoth()), tmp_path / "run.h5"
-    trace(FreudensteinRoth(), archive=PathLog(file, limits=Limits(rows=rows)), budget=Budget(steps=12))
+    trace(FreudensteinRoth(), archive=PathLog(file, limits=Limits(rows=rows, seconds=3600.0)), budget=Budget(steps=12))
     for _ in range(3):
         with monkeypatch.context() as patch:
             # Four flushes make the copy; the fifth would end the first phase of the commit that ends the path.
@@ -152,7 +152,7 @@ def test_death_in_the_first_commits_of_a_resumed_path(tmp_path, monkeypatch, row
 
 
 def test_a_torn_checkpoint_gives_way_to_the_one_before(tmp_path):
-    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=4))
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=4, seconds=3600.0))
     steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
     assert any(step.index == 13 for step in steps)
     slots = log._store._slots
@@ -173,7 +173,7 @@ def test_a_file_that_was_closed_stays_as_it_is(tmp_path):
 
 
 def test_a_live_writer_is_left_alone(tmp_path):
-    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=2))
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=2, seconds=3600.0))
     steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
     for _ in range(5):
         next(steps)
@@ -185,7 +185,7 @@ def test_a_live_writer_is_left_alone(tmp_path):
 
 
 def test_recovery_by_force_keeps_what_was_committed(tmp_path):
-    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=2))
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=2, seconds=3600.0))
     steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
     for _ in range(5):
         next(steps)
@@ -209,7 +209,7 @@ def test_keyboard_interrupt_within_a_commit_repeats_it(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Store, "_flush", interrupted)
     with pytest.raises(KeyboardInterrupt) as interrupt:
-        trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=4)))
+        trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=4, seconds=3600.0)))
     found = interrupt.value.path
     assert found.status is Status.INTERRUPTED
     with open_archive(tmp_path / "run.h5") as archive:
@@ -227,7 +227,7 @@ def test_a_full_disk_is_one_clear_line(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Store, "_put", staticmethod(full))
     with pytest.raises(ArchiveError, match=r"run.h5: could not be written \(.*No space left.*; what was committed is"):
-        trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=6)))
+        trace(FreudensteinRoth(), archive=PathLog(tmp_path / "run.h5", limits=Limits(rows=6, seconds=3600.0)))
     monkeypatch.undo()
     with open_archive(tmp_path / "run.h5") as archive:
         assert archive.points.size == 6

@@ -80,7 +80,7 @@ def test_truncated(archive, fraction):
 @pytest.mark.parametrize("fraction", [0.1, 0.5, 0.8, 0.95])
 def test_truncated_while_growing(tmp_path, fraction):
     """A file that was copied while it grew, and not to its end: said at once, while HDF5 itself would wait for ever."""
-    log = PathLog(tmp_path / "live.h5", limits=Limits(rows=3))
+    log = PathLog(tmp_path / "live.h5", limits=Limits(rows=3, seconds=3600.0))
     steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
     next(step for step in steps if step.index == 15)
     raw = (tmp_path / "live.h5").read_bytes()

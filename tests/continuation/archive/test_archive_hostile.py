@@ -26,7 +26,11 @@ from problems.bifurcation import ExponentialCosine
 @pytest.fixture(scope="module")
 def base(tmp_path_factory):
     file = tmp_path_factory.mktemp("base") / "base.h5"
-    trace(ExponentialCosine(3), archive=PathLog(file, limits=Limits(rows=5), tangents=True), budget=Budget(steps=12))
+    trace(
+        ExponentialCosine(3),
+        archive=PathLog(file, limits=Limits(rows=5, seconds=3600.0), tangents=True),
+        budget=Budget(steps=12),
+    )
     return file
 
 

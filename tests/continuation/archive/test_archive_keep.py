@@ -32,7 +32,9 @@ def assert_same(found, path):
 @pytest.mark.parametrize("problem", [FreudensteinRoth(), HOMOTOPY], ids=["events", "many steps"])
 def test_what_is_not_in_memory_is_read(tmp_path, keep, memory, problem):
     path = trace(problem, **OPTIONS)
-    found = trace(problem, archive=PathLog(tmp_path / "run.h5", keep=keep, limits=Limits(rows=10)), **OPTIONS)
+    found = trace(
+        problem, archive=PathLog(tmp_path / "run.h5", keep=keep, limits=Limits(rows=10, seconds=3600.0)), **OPTIONS
+    )
     assert_same(found, path)
     assert np.array_equal(found.steps[-3].u, path.steps[-3].u)
     assert [step.index for step in found.steps[9:2:-3]] == [9, 6, 3]
@@ -45,7 +47,7 @@ def test_what_is_not_in_memory_is_read(tmp_path, keep, memory, problem):
 
 
 def test_it_can_be_read_while_it_grows(tmp_path):
-    log, seen = PathLog(tmp_path / "run.h5", keep="ends", limits=Limits(rows=4)), []
+    log, seen = PathLog(tmp_path / "run.h5", keep="ends", limits=Limits(rows=4, seconds=3600.0)), []
     tracer = Tracer(HOMOTOPY, observers=(log,), **OPTIONS)
     for step in tracer:
         seen.append(step.u)
@@ -57,7 +59,7 @@ def test_it_can_be_read_while_it_grows(tmp_path):
 @pytest.mark.parametrize("tangents", [False, True])
 def test_resume_from_it(tmp_path, keep, tangents):
     path = trace(FreudensteinRoth(), **OPTIONS)
-    log = PathLog(tmp_path / "run.h5", keep="ends", tangents=tangents, limits=Limits(rows=3))
+    log = PathLog(tmp_path / "run.h5", keep="ends", tangents=tangents, limits=Limits(rows=3, seconds=3600.0))
     trace(FreudensteinRoth(), archive=log, budget=Budget(steps=len(path) // 2), **OPTIONS)
     found = resume(tmp_path / "run.h5", budget=Budget(), keep=keep)
     assert isinstance(found.steps, list) == (keep == "all")

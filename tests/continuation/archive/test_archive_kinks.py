@@ -46,7 +46,9 @@ def written(file, keep="all", steps=6):
                 step = attrs.evolve(step, kind=Kind.KINK)
             super().step(tracer, step)
 
-    tracer = Tracer(Line(), observers=(Said(file, keep=keep, limits=Limits(rows=4)),), budget=Budget(steps=steps))
+    tracer = Tracer(
+        Line(), observers=(Said(file, keep=keep, limits=Limits(rows=4, seconds=3600.0)),), budget=Budget(steps=steps)
+    )
     for _ in tracer:
         pass
     return tracer

@@ -22,7 +22,7 @@ def path():
 
 
 def logged(file, *others):
-    return Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5)), *others), **OPTIONS)
+    return Tracer(HOMOTOPY, observers=(PathLog(file, limits=Limits(rows=5, seconds=3600.0)), *others), **OPTIONS)
 
 
 def ends(steps, tracer):
@@ -89,7 +89,7 @@ class Raising:
 @pytest.mark.parametrize("first", [False, True])
 def test_an_observer_that_raises_leaves_a_path_to_resume(tmp_path, path, where, first):
     file = tmp_path / "run.h5"
-    observers = [PathLog(file, limits=Limits(rows=3)), Raising(where)]
+    observers = [PathLog(file, limits=Limits(rows=3, seconds=3600.0)), Raising(where)]
     with pytest.raises(RuntimeError, match="of the observer"):
         trace(HOMOTOPY, observers=observers[::-1] if first else observers, **OPTIONS)
     with open_archive(file) as archive:

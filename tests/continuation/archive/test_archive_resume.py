@@ -96,7 +96,7 @@ def test_each_state_leads_to_the_next_exactly(problem, options):
 
 
 def interrupt(file, homotopy, index, **options):
-    log = PathLog(file, limits=Limits(rows=5))
+    log = PathLog(file, limits=Limits(rows=5, seconds=3600.0))
     steps = iter(Tracer(homotopy, observers=(log,), **options))
     next(step for step in steps if step.index == index)
     steps.close()

@@ -196,7 +196,7 @@ def test_many_paths_in_one_file_and_selections(tmp_path):
 
 
 def test_a_growing_file_is_read_up_to_what_is_committed(tmp_path):
-    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=4))
+    log = PathLog(tmp_path / "run.h5", limits=Limits(rows=4, seconds=3600.0))
     steps = iter(Tracer(FreudensteinRoth(), observers=(log,)))
     written = [next(steps) for _ in range(10)]
     with open_archive(tmp_path / "run.h5") as archive:
