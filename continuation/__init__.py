@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from continuation.version import __version__
 
 if TYPE_CHECKING:
-    from continuation.auditing import audit, refine
+    from continuation.auditing import arclength, audit, refine
     from continuation.branch_switching import branch_directions, switch_branch
     from continuation.budget import Budget
     from continuation.certificate import Proof, certify
@@ -28,25 +28,24 @@ if TYPE_CHECKING:
     from continuation.evaluation.jacobian_check import check_jacobian
     from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint
     from continuation.events.branch_point import BranchPoint
-    from continuation.guard import Guard
     from continuation.homotopy import Homotopy
-    from continuation.interrupted import Interrupted
     from continuation.kinks.start import kink_rays
-    from continuation.length import arclength
     from continuation.metric import Automatic, Euclidean, Metric
     from continuation.path import LocatedEvent, Path, Step
+    from continuation.path.interrupted import Interrupted
     from continuation.predictors import Predictor
-    from continuation.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
     from continuation.stability import HopfPoint, Stability
     from continuation.status import Kind, Status
+    from continuation.step.guard import Guard
     from continuation.step.options import Options
+    from continuation.step.presets import CONSERVATIVE, DEFAULT, FAST, SERIES, Preset
     from continuation.step.settings import Settings
     from continuation.step.tracer import Observer, Tracer
     from continuation.tolerance import Tolerance
     from continuation.tracing import solve_at, trace, trace_both
 
 _HOMES = {
-    "auditing": "audit refine",
+    "auditing": "arclength audit refine",
     "branch_switching": "branch_directions switch_branch",
     "budget": "Budget",
     "certificate": "Proof certify",
@@ -61,15 +60,14 @@ _HOMES = {
     "evaluation.jacobian_check": "check_jacobian",
     "events": "Event KinkPoint Monitor TargetValue TurningPoint",
     "events.branch_point": "BranchPoint",
-    "guard": "Guard",
+    "step.guard": "Guard",
     "homotopy": "Homotopy",
-    "interrupted": "Interrupted",
+    "path.interrupted": "Interrupted",
     "kinks.start": "kink_rays",
-    "length": "arclength",
     "metric": "Automatic Euclidean Metric",
     "path": "LocatedEvent Path Step",
     "predictors": "Predictor",
-    "presets": "CONSERVATIVE DEFAULT FAST SERIES Preset",
+    "step.presets": "CONSERVATIVE DEFAULT FAST SERIES Preset",
     "stability": "HopfPoint Stability",
     "status": "Kind Status",
     "step.options": "Options",

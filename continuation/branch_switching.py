@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.checks import complain, is_number
 from continuation.arrays import Array
-from continuation.checks import complain, is_number
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator

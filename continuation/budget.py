@@ -6,7 +6,7 @@ import math
 
 from attrs import field, frozen
 
-from continuation.checks import POSITIVE
+from continuation.arguments.checks import POSITIVE
 from continuation.counts import Counts
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from attrs import field, frozen
 from scipy.linalg.blas import dscal
 
+from continuation.arguments.checks import FRACTION, POSITIVE_FINITE
 from continuation.arrays import Array, dot
-from continuation.checks import FRACTION, POSITIVE_FINITE
 
 
 class Metric(Protocol):

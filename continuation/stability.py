@@ -16,8 +16,8 @@ from attrs import define, field, frozen
 from attrs.validators import optional
 from scipy.optimize import brentq
 
+from continuation.arguments.checks import integer, one_of, sign
 from continuation.arrays import Array
-from continuation.checks import integer, one_of, sign
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.linear.followed import Followed
 from continuation.linear.spectrum import Spectrum, plain, spectrum

@@ -7,8 +7,8 @@ import sys
 
 from attrs import field, frozen
 
+from continuation.arguments.checks import FRACTION, POSITIVE, complain, is_number
 from continuation.arrays import Array
-from continuation.checks import FRACTION, POSITIVE, complain, is_number
 from continuation.metric import norm
 
 LEAST_TOLERANCE = sys.float_info.epsilon**2

@@ -10,8 +10,8 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from continuation.arguments.checks import check_flag, complain, instance_with, is_number, real_vector
 from continuation.arrays import Array
-from continuation.checks import check_flag, complain, instance_with, is_number, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
@@ -84,7 +84,7 @@ def trace(
     elif save_every != 1:
         raise ValueError(f"save_every: expected none without an archive, found {save_every!r}")
     if progress:
-        from continuation.progress import Progress
+        from continuation.step.progress import Progress
 
         watching.append(Progress())
     path = Tracer(homotopy, observers=watching, state=state, **options).run()

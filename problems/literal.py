@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import FRACTION, POSITIVE_FINITE, integer
 from continuation.arrays import Array
-from continuation.checks import FRACTION, POSITIVE_FINITE, integer
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy
 from problems.options import quiet

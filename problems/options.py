@@ -10,11 +10,11 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import Attribute
 
+from continuation.arguments.checks import FINITE, integer
 from continuation.arrays import Array
 from continuation.arrays import finite as finite_sum
 from continuation.budget import Budget
-from continuation.checks import FINITE, integer
-from continuation.silence import without_warnings
+from continuation.linear.silence import without_warnings
 
 quiet = without_warnings(over="ignore", invalid="ignore")
 """Decorates an evaluation whose overflow is to give inf or nan without a warning: the tracer handles these."""

@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from continuation.drawing import TURN, require_matplotlib
 from continuation.path import Path
 from continuation.plot import plot_components
+from continuation.plot.drawing import TURN, require_matplotlib
 from problems.paper import Example
 
 ZOOM = (0.1, 0.2, 0.5, 0.5)

@@ -19,7 +19,7 @@ from typing import Any
 
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
 from continuation.archive.locks import is_held
-from continuation.checks import complain
+from continuation.arguments.checks import complain
 
 _ABANDONED = 60.0
 """Seconds after which a part that nobody holds a lock on is litter: it is locked right after it is made."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from attrs import field, frozen
 
-from continuation.checks import integer, number
+from continuation.arguments.checks import integer, number
 
 
 @frozen

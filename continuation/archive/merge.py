@@ -21,7 +21,7 @@ from continuation.archive.copies import (
 from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
-from continuation.checks import complain
+from continuation.arguments.checks import complain
 from continuation.status import Status
 
 

@@ -15,7 +15,7 @@ from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES
 from continuation.archive.trust import is_registered, registry
-from continuation.checks import complain
+from continuation.arguments.checks import complain
 from continuation.path import Path
 from continuation.status import Kind, Status
 

@@ -22,12 +22,12 @@ from continuation.archive.selection import Selection, selected
 from continuation.archive.stored import events as events_of
 from continuation.archive.stored import stored_path
 from continuation.archive.tables import Table
-from continuation.checks import complain
+from continuation.arguments.checks import complain
+from continuation.arguments.labels import Labels
 from continuation.citation import entries
 from continuation.counts import Counts
-from continuation.html import archive_page
-from continuation.labels import Labels
 from continuation.path import Path
+from continuation.plot.html import archive_page
 from continuation.status import Status
 
 _AT_ONCE = 1 << 22

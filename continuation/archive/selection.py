@@ -11,7 +11,7 @@ import numpy as np
 from continuation.archive import frames
 from continuation.archive.schema import KINK_PART
 from continuation.archive.stored import OpenArchive
-from continuation.checks import complain, is_number
+from continuation.arguments.checks import complain, is_number
 from continuation.path import Path
 from continuation.status import Status
 

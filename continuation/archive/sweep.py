@@ -20,9 +20,9 @@ from continuation.archive.atomic import as_file, check_new
 from continuation.archive.parts import THREAD_SECONDS, collect, end_repeats, finished
 from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
-from continuation.checks import complain, instance_with, is_number
-from continuation.interrupted import Interrupted
+from continuation.arguments.checks import complain, instance_with, is_number
 from continuation.path import Path
+from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
 
@@ -58,7 +58,7 @@ def trace_many(
         One file with all paths. Workers write files of their own, ``name.sweep-xxxxxxxx.0001.h5``, ..., which are
         merged into it and removed. If this process is killed they stay, to be merged, and the sweep can be run again.
     progress : callable, optional
-        ``progress(done, total)``, called in this process; `continuation.progress.SweepProgress` shows it on stderr.
+        ``progress(done, total)``, called in this process; `continuation.step.progress.SweepProgress` shows it.
     timeout : float, optional
         Seconds that one homotopy may take with a process pool, whose processes are ended then. (`Budget.seconds` is
         looked at between steps, and so never where a homotopy does not come back.)

@@ -12,8 +12,8 @@ from attrs import define, frozen
 
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
 from continuation.archive.writer import PathLog
-from continuation.interrupted import Interrupted
 from continuation.path import LocatedEvent, Path, Step
+from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options
 from continuation.step.tracer import Tracer

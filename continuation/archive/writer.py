@@ -27,7 +27,7 @@ from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, c
 from continuation.archive.store import Store
 from continuation.archive.stored import StoredSteps, kept_every
 from continuation.archive.structure import SLOTS
-from continuation.checks import complain
+from continuation.arguments.checks import complain
 from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status

@@ -30,7 +30,8 @@ from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.intervals.ends import Mask
 from continuation.metric import Automatic, Metric, norm
-from continuation.path import Path, Step, require_path
+from continuation.path import Path, Step
+from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.tolerance import Tolerance

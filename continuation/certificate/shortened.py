@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from continuation.auditing import Halved
+from continuation.auditing.retrace import Halved
 from continuation.certificate.certifying import certify
 from continuation.certificate.proof import Proof
 from continuation.step.options import Options

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from importlib.metadata import EntryPoint, entry_points
 from typing import Literal
 
+from continuation.arguments.plugins import grouped, owners
 from continuation.chart.study import Study
-from continuation.plugins import grouped, owners
 
 GROUP = "continuation.studies"
 """Entry points of this group are functions (size, compare) to a sequence of studies, named as the entry point."""

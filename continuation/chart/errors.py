@@ -10,11 +10,11 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
+from continuation.auditing.length import arclength as quadrature
 from continuation.chart.model import Answer, Problem
 from continuation.correctors import MoorePenrose
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
-from continuation.length import arclength as quadrature
 from continuation.metric import Euclidean
 from continuation.path import Path
 from continuation.point.linearization import linearize

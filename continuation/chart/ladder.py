@@ -9,7 +9,7 @@ from typing import Any
 from attrs import evolve, field, frozen
 
 from continuation.predictors import Taylor
-from continuation.presets import DEFAULT
+from continuation.step.presets import DEFAULT
 
 Options = dict[str, Any]
 """Arguments of `continuation.trace`."""

@@ -7,12 +7,12 @@ from typing import Any, Protocol, runtime_checkable
 
 from attrs import Factory, field, frozen
 
+from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.chart.errors import Error
 from continuation.chart.ladder import Ladder, tolerances
 from continuation.chart.model import Method, Problem
 from continuation.chart.results import WORK, Results
 from continuation.chart.table import Table
-from continuation.checks import NOT_NEGATIVE, integer
 
 
 class Figure(Protocol):

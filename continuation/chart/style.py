@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from continuation.drawing import COLOURS, STYLES, require_matplotlib
+from continuation.plot.drawing import COLOURS, STYLES, require_matplotlib
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
 

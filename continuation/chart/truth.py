@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import POSITIVE
 from continuation.arrays import Array
-from continuation.checks import POSITIVE
 from continuation.path import Path
-from continuation.presets import CONSERVATIVE
+from continuation.step.presets import CONSERVATIVE
 from continuation.tracing import trace
 
 REFERENCE_TOLERANCE = 1e-11

@@ -79,7 +79,7 @@ def _inspect(arguments: argparse.Namespace) -> int:
 def _resume(arguments: argparse.Namespace) -> int:
     from continuation.archive import resume
     from continuation.budget import Budget
-    from continuation.progress import Progress
+    from continuation.step.progress import Progress
 
     names = ("steps", "seconds", "factorizations")
     limits = {name: getattr(arguments, name) for name in names if getattr(arguments, name)}
@@ -100,9 +100,9 @@ def _resume(arguments: argparse.Namespace) -> int:
 
 def _given(arguments: argparse.Namespace) -> Any:
     """The homotopy that --homotopy names, made with the parameters in the file and, over those, KEY=VALUE ..."""
-    from continuation import plugins
     from continuation.archive import open_archive
     from continuation.archive.provenance import stored_parameters
+    from continuation.arguments import plugins
     from continuation.cli.making import homotopy_of, importable
 
     with complaints("FILE"), open_archive(arguments.file) as archive:

@@ -73,7 +73,8 @@ def chart_presets(
     `course` has the options that belong to the path (target, direction, events), `method` those of every method (the
     budget). Raises `ArithmeticError` if the path at the reference's tolerance does not arrive.
     """
-    from continuation import chart, presets
+    from continuation import chart
+    from continuation.step import presets
 
     problem = chart.Problem(title, homotopy, chart.reference(homotopy, **course), course)
     turns = problem.truth.turning_points

@@ -6,9 +6,9 @@ import argparse
 from collections.abc import Callable, Sequence
 from importlib.metadata import EntryPoint, entry_points
 
+from continuation.arguments.plugins import grouped, owners
 from continuation.cli import archives, charts, completion, figures, homotopies
 from continuation.cli.parser import Subparsers, UsageError
-from continuation.plugins import grouped, owners
 
 GROUP = "continuation.commands"
 """Entry points of this group are functions that take the subparsers and add one command, named as the entry point."""

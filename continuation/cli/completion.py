@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from continuation import plugins
+from continuation.arguments import plugins
 from continuation.cli.parser import SUCCESS, Subparsers
 
 _BASH = """\

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from continuation import plugins
+from continuation.arguments import plugins
 from continuation.cli.archives import complaints
 from continuation.cli.making import homotopy_of, refused, unknown
 from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, above_zero, paint, parsed, positive
@@ -120,8 +120,8 @@ def _entry(name: str, described: plugins.Description, origin: str, kind: str) ->
 
 
 def _trace(arguments: argparse.Namespace) -> int:
-    from continuation import presets
     from continuation.archive import PathLog
+    from continuation.step import presets
     from continuation.tracing import trace
 
     homotopy, values = homotopy_of(arguments.name, arguments.options)

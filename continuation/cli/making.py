@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from continuation import plugins
+from continuation.arguments import plugins
 from continuation.cli.parser import PlugInError, UsageError
 
 DOOR = (

@@ -8,7 +8,7 @@ from typing import Any, Protocol, TypeAlias
 from attrs import evolve, field, frozen
 from attrs.validators import optional
 
-from continuation.checks import POSITIVE, POSITIVE_FINITE, complain
+from continuation.arguments.checks import POSITIVE, POSITIVE_FINITE, complain
 from continuation.rejection import Rejection
 
 State: TypeAlias = tuple[float, ...]

@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 from attrs import field, frozen
 
-from continuation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINBOLDT
-from continuation.checks import FACTOR, FRACTION, POSITIVE, integer
+from continuation.arguments.checks import FACTOR, FRACTION, POSITIVE, integer
+from continuation.citation.bibliography import ALLGOWER_GEORG, DEN_HEIJER_RHEINBOLDT
 from continuation.controllers.base import Bounds, Decision, State, StepMeasures, checked_bounds
 
 LEAST_SHRINK = 1.2

@@ -7,9 +7,9 @@ from typing import ClassVar
 
 from attrs import field, frozen
 
+from continuation.arguments.checks import POSITIVE, integer
 from continuation.arrays import Array, dot
-from continuation.bibliography import KELLEY
-from continuation.checks import POSITIVE, integer
+from continuation.citation.bibliography import KELLEY
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.point.linearization import Linearization

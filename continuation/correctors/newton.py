@@ -7,9 +7,9 @@ from typing import ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import POSITIVE, SHARE, integer
 from continuation.arrays import Array
-from continuation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER
-from continuation.checks import POSITIVE, SHARE, integer
+from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Anchor, Linearization, linearize

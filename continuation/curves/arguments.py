@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array
-from continuation.checks import complain, real_vector
 from continuation.evaluation.derivatives import sizes
+from continuation.path.steps import LocatedEvent
 from continuation.status import Kind
-from continuation.steps import LocatedEvent
 
 KINDS = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 """What an event can be by its kind alone; of others the function is needed."""

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import FINITE, complain
+from continuation.arguments.labels import Labels
 from continuation.arrays import Array, Matrix
-from continuation.bibliography import GOVAERTS
-from continuation.checks import FINITE, complain
+from continuation.citation.bibliography import GOVAERTS
 from continuation.curves.arguments import as_event, as_point, as_size
 from continuation.curves.calculus import Calculus, calculus_at
 from continuation.curves.conditions import HopfPoint, Singular
@@ -24,7 +25,6 @@ from continuation.curves.written import WrittenOut
 from continuation.events import Event, Monitor
 from continuation.events.singularity import full_derivative
 from continuation.homotopy import SupportsPieces
-from continuation.labels import Labels
 from continuation.linear import BorderedSystem
 from continuation.status import Kind
 

@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 from attrs import field, frozen
 
-from continuation.checks import complain
+from continuation.arguments.checks import complain
 
 
 @frozen(eq=False)

@@ -10,11 +10,11 @@ from attrs import evolve, field, frozen
 
 from continuation.archive.memory import save_all
 from continuation.arrays import Array
-from continuation.bifurcation import Value, at_event, plot_bifurcation
 from continuation.counts import Counts
-from continuation.drawing import Axes
 from continuation.metric import norm
 from continuation.path import LocatedEvent, Path, Step
+from continuation.plot.bifurcation import Value, at_event, plot_bifurcation
+from continuation.plot.drawing import Axes
 from continuation.point.segment import hermite
 from continuation.status import Kind
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import POSITIVE_FINITE, complain, real_vector
 from continuation.arrays import Array, Matrix
-from continuation.checks import POSITIVE_FINITE, complain, real_vector
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.correctors.base import holds
 from continuation.counts import Counts

@@ -12,6 +12,7 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 
 from continuation.archive.growing import Growing
+from continuation.arguments.labels import Labels
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.diagrams.branches import LABELS, Branch, Diagram, from_point
@@ -20,7 +21,6 @@ from continuation.diagrams.junctions import Junction, directions_of, meetings
 from continuation.diagrams.places import Places
 from continuation.diagrams.points import points_of
 from continuation.events.box import is_inside
-from continuation.labels import Labels
 from continuation.metric import Inherited
 from continuation.path import LocatedEvent, Path
 from continuation.status import Status

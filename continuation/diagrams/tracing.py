@@ -13,15 +13,15 @@ import numpy as np
 
 from continuation.archive.atomic import as_file, check_new
 from continuation.archive.growing import Growing
-from continuation.checks import complain, instance_with, is_number
+from continuation.arguments.checks import complain, instance_with, is_number
 from continuation.counts import Counts
 from continuation.diagrams.branches import Diagram
 from continuation.diagrams.search import Search
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.box import is_boundless
 from continuation.homotopy import SupportsPieces
-from continuation.interrupted import Interrupted
 from continuation.path import Path
+from continuation.path.interrupted import Interrupted
 from continuation.stability import Stability
 from continuation.status import Status
 from continuation.step.options import Options, check_names, documented

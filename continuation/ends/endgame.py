@@ -19,13 +19,13 @@ from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
 from continuation.ends.landing import regular
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.events.roots import zero_between
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver, arc_on_path
 from continuation.point.segment import Curve
 from continuation.predictors.polynomial import interpolate
-from continuation.roots import zero_between
 from continuation.step.stepper import LOW_ORDER_FRACTION
 from continuation.tolerance import Tolerance
 

@@ -14,13 +14,13 @@ from continuation.correctors import BorderedNewton
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import TargetValue, TurningPoint
 from continuation.events.locate import locate, may_vanish
+from continuation.events.roots import zero_between
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import NEAR_SINGULAR, Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
-from continuation.roots import zero_between
 from continuation.step.stepper import Attempt, Stepper
 
 RESOLUTION = 1e-9

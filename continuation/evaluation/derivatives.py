@@ -11,7 +11,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix, generic_vector
-from continuation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
+from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
 
 
 @frozen

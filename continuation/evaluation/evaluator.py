@@ -14,15 +14,15 @@ import numpy as np
 from attrs import field, frozen
 from scipy.linalg.blas import dasum, dscal
 
+from continuation.arguments.checks import instance_with, real_vector
 from continuation.arrays import Array, Matrix, finite, generic_vector, largest
-from continuation.checks import instance_with, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
 from continuation.evaluation.pieces import WholeMap
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces, offers
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
+from continuation.linear.silence import Silence, silent
 from continuation.rejection import Rejection
-from continuation.silence import Silence, silent
 
 POINT_ULPS = 4.0
 """Units in the last place by which round-off moves a point, about."""

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array, Matrix
-from continuation.checks import complain, real_vector
 
 
 def _start_vector(y: object) -> Array:

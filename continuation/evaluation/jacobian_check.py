@@ -10,8 +10,8 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from continuation.arguments.checks import real_vector
 from continuation.arrays import Array
-from continuation.checks import real_vector
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import difference_along
 from continuation.evaluation.evaluator import EvaluationError, Evaluator

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import complain
 from continuation.arrays import Array
-from continuation.checks import complain
 
 Signs = tuple[int, ...]
 """Of all switches, each -1 or +1: the name of a piece."""

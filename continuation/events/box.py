@@ -8,10 +8,10 @@ from typing import Any
 
 from attrs import field, frozen
 
+from continuation.arguments.checks import FINITE, complain, is_number, sign
+from continuation.arguments.labels import Labels
 from continuation.arrays import Array
-from continuation.checks import FINITE, complain, is_number, sign
 from continuation.events.monitors import Event, TargetValue
-from continuation.labels import Labels
 from continuation.status import Kind
 
 Box = Mapping[str | int, tuple[float | None, float | None]]

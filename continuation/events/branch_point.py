@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from attrs import field, frozen
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
-from continuation.checks import integer
 from continuation.status import Kind
 
 

@@ -14,11 +14,11 @@ from continuation.arrays import dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.events import Event, TargetValue, TurningPoint
+from continuation.events.roots import zero_between
 from continuation.point.arc import Arc, cubic_between
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC, HermiteSegment, QuinticSegment, Segment, hermite
-from continuation.roots import zero_between
 
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""

@@ -8,8 +8,8 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import FINITE, complain, integer, of_kind, sign
 from continuation.arrays import Array
-from continuation.checks import FINITE, complain, integer, of_kind, sign
 from continuation.status import Kind
 
 

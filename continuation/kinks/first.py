@@ -12,10 +12,10 @@ from continuation.arrays import Array, generic_vector
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
 from continuation.events.locate import AT_ROUND_OFF, MONITOR_PLACES, NEARLY_ZERO, _descent, _root
+from continuation.events.roots import zero_between
 from continuation.point.arc import Arc, cubic_between, position
 from continuation.point.linearization import Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver
-from continuation.roots import zero_between
 from continuation.status import Kind
 
 SEEN = 4.0

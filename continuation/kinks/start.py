@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array
-from continuation.checks import complain, real_vector
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.evaluation.pieces import BORDER_DISTANCE, Pieces, Signs, SwitchError

@@ -11,8 +11,8 @@ from scipy.linalg.blas import dgbmv
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import dia_array
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array, Matrix
-from continuation.checks import integer
 from continuation.linear.dense import lu_sign
 from continuation.linear.entries import real
 from continuation.linear.refine import BorderedMatrix, eliminate

@@ -10,8 +10,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array, Matrix
+from continuation.linear.silence import without_warnings
 from continuation.linear.system import BorderedSystem, SingularError
-from continuation.silence import without_warnings
 
 REFINEMENTS = 2
 """Corrections that a solve may take before its answer is called inaccurate: each gains the digits of TRUSTED. Here no

@@ -9,9 +9,9 @@ from typing import ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import one_of
 from continuation.arrays import Array
-from continuation.bibliography import HAIRER_NORSETT_WANNER
-from continuation.checks import one_of
+from continuation.citation.bibliography import HAIRER_NORSETT_WANNER
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization, linearize
 from continuation.predictors.base import Knot, history_in_pseudo_arclength

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from attrs import field, frozen
 from scipy.linalg.blas import dscal
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array, dot, multiple
-from continuation.checks import integer
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
 from continuation.predictors.base import Knot, history_in_pseudo_arclength

@@ -14,9 +14,9 @@ import numpy as np
 from attrs import field, frozen
 from attrs.validators import optional
 
+from continuation.arguments.checks import FRACTION, POSITIVE_FINITE, complain, integer, of_kind
 from continuation.arrays import Array
-from continuation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
-from continuation.checks import FRACTION, POSITIVE_FINITE, complain, integer, of_kind
+from continuation.citation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsTaylor
 from continuation.point.linearization import Linearization, factored, with_exact_solves

@@ -14,7 +14,6 @@ from continuation.ends.target import ArcEnd, EndsAt, Target
 from continuation.evaluation.evaluator import EvaluationError
 from continuation.evaluation.pieces import Pieces
 from continuation.events.scan import first_terminal, found_by_events, scan_events
-from continuation.guard import objection
 from continuation.kinks.crossing import Crossing, cross
 from continuation.kinks.first import first_zero
 from continuation.metric import norm
@@ -26,6 +25,7 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.status import Kind
 from continuation.step.crossing import Crossed, Crossings
+from continuation.step.guard import objection
 from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.stepper import Arrival

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array, finite
-from continuation.checks import complain, real_vector
 from continuation.evaluation.evaluator import POINT_ULPS, EvaluationError, Evaluator
 from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve, offers
 from continuation.point.projection import MaxStep

@@ -12,17 +12,17 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any, NamedTuple, TypedDict, TypeVar
 
+from continuation.arguments.checks import check_flag, check_sign, complain, instance_with, is_number
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.checks import check_flag, check_sign, complain, instance_with, is_number
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.events import Event
 from continuation.events.box import Box
-from continuation.guard import Guard
 from continuation.metric import Metric
 from continuation.predictors import Predictor
-from continuation.presets import DEFAULT, Preset
+from continuation.step.guard import Guard
+from continuation.step.presets import DEFAULT, Preset
 from continuation.step.start import guessed, is_guess, point_and_direction
 from continuation.step.state import State
 from continuation.tolerance import Tolerance, as_tolerance

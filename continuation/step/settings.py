@@ -8,20 +8,20 @@ from typing import Any
 
 from attrs import evolve, frozen, has
 
+from continuation.arguments.checks import complain, instance_with
+from continuation.arguments.labels import Labels
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.checks import complain, instance_with
 from continuation.controllers import Controller
 from continuation.correctors import Corrector
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events import Event, KinkPoint, TargetValue, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
-from continuation.guard import Guard
 from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces, offers
-from continuation.labels import Labels
 from continuation.metric import Automatic, Metric
 from continuation.predictors import Predictor
+from continuation.step.guard import Guard
 from continuation.step.options import EVENT, PARTS, Options, checked_target, each, names_homotopy
 from continuation.tolerance import Tolerance, as_tolerance
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from attrs import evolve
 
+from continuation.arguments.checks import real_vector
 from continuation.arrays import Array, generic_vector
-from continuation.checks import real_vector
 from continuation.correctors import BorderedNewton
 from continuation.correctors.base import holds
 from continuation.evaluation.evaluator import EvaluationError, Evaluator

@@ -11,6 +11,7 @@ from typing import Any, Protocol, Unpack
 
 import numpy as np
 
+from continuation.arguments.labels import Labels
 from continuation.arrays import Array
 from continuation.citation import references_of, unique
 from continuation.counts import Counts
@@ -19,14 +20,13 @@ from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.events.scan import monitored
 from continuation.homotopy import SupportsPieces, offers
-from continuation.interrupted import Interrupted
 from continuation.kinks.start import begin
-from continuation.labels import Labels
+from continuation.linear.silence import Silence
 from continuation.path import LocatedEvent, Path, Step
+from continuation.path.interrupted import Interrupted
 from continuation.point.linearization import Anchor, Linearization
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
-from continuation.silence import Silence
 from continuation.status import Kind, Status
 from continuation.step.advance import Advance, Stopped
 from continuation.step.capabilities import checked_end, finish_of, max_step_of

@@ -11,9 +11,9 @@ import numpy as np
 from attrs import evolve, field, frozen
 from attrs.validators import optional
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.checks import integer
 from continuation.controllers import AllgowerGeorg, Bounds, Controller
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import from_residual
@@ -22,8 +22,8 @@ from continuation.metric import Automatic
 from continuation.path import Path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
-from continuation.presets import DEFAULT
 from continuation.status import Kind, Status
+from continuation.step.presets import DEFAULT
 from continuation.step.start import StartError, first_point
 from continuation.step.tracer import Tracer
 from continuation.step.verdict import refused_start

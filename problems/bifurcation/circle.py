@@ -8,7 +8,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.bibliography import ALLGOWER_GEORG
+from continuation.citation.bibliography import ALLGOWER_GEORG
 from problems.options import quiet
 
 

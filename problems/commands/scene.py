@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.plugins import SCENES
 from continuation.cli import FAILURE, SUCCESS, UsageError
 from continuation.cli.figures import check_picture, write
 from continuation.cli.making import homotopy_of, refused
 from continuation.cli.parser import paint
-from continuation.plugins import SCENES
 
 WORD = "scene"
 """In place of a file."""

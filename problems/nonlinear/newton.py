@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.bibliography import ALLGOWER_GEORG
+from continuation.citation.bibliography import ALLGOWER_GEORG
 from problems.bibliography import KELLER
 from problems.nonlinear.differentiable import Differentiable
 from problems.nonlinear.start_checks import Function, Jacobian, start_vector, value_at

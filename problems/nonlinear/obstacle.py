@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
+from continuation.arguments.checks import is_number
 from continuation.arrays import Array
-from continuation.checks import is_number
 from continuation.linear import Banded
 from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap

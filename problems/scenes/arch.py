@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
-from continuation.checks import integer
 from problems.lcp.data.program import Program, from_lp
 from problems.scenes.rivals import CLARABEL, HIGHS, PIQP
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

@@ -11,8 +11,8 @@ from attrs import field, frozen
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from continuation.arguments.checks import integer, number
 from continuation.arrays import Array
-from continuation.checks import integer, number
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

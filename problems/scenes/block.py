@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
-from continuation.checks import FINITE, NOT_NEGATIVE
+from continuation.arguments.checks import FINITE, NOT_NEGATIVE
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import arrow
 from problems.scenes.planar import contact_unknowns, free_motion, impulses, time_step

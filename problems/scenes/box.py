@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import FINITE, NOT_NEGATIVE
 from continuation.arrays import Array
-from continuation.checks import FINITE, NOT_NEGATIVE
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import arrow, rectangle
 from problems.scenes.planar import contact_unknowns, free_motion, impulses, time_step

@@ -9,8 +9,8 @@ import numpy as np
 from attrs import field, frozen
 from scipy.optimize import brentq
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
-from continuation.checks import integer
 from continuation.linear import Banded
 from continuation.tracing import solve_at
 from problems.bifurcation import Bratu1D

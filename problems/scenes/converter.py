@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import integer, number
 from continuation.arrays import Array
-from continuation.checks import integer, number
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import LEMKE, TABLES
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
-from continuation.checks import POSITIVE
+from continuation.arguments.checks import POSITIVE
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, numbers, positive

@@ -8,8 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
 
+from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.arrays import Array
-from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
 from problems.scenes.scene import Quantities, Rival, Units, Unknown

@@ -10,8 +10,8 @@ import scipy.sparse as sp
 from attrs import field, frozen
 from scipy.optimize import brentq
 
+from continuation.arguments.checks import integer, number
 from continuation.arrays import Array
-from continuation.checks import integer, number
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import BFGS, CLARABEL, GAUSS_SEIDEL, PIQP
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
-from continuation.checks import FINITE, NOT_NEGATIVE, number
+from continuation.arguments.checks import FINITE, NOT_NEGATIVE, number
 from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along

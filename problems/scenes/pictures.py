@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.drawing import COLOURS
+from continuation.plot.drawing import COLOURS
 
 
 def arrow(axes: Any, start: tuple[float, float], along: tuple[float, float], k: int, label: str = "") -> None:

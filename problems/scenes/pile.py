@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import FINITE, NOT_NEGATIVE, integer
 from continuation.arrays import Array
-from continuation.checks import FINITE, NOT_NEGATIVE, integer
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.solver import solve
 from problems.scenes.pictures import rectangle

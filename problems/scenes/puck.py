@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import FINITE, integer
 from continuation.arrays import Array
-from continuation.checks import FINITE, integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.pictures import arrow
 from problems.scenes.rivals import LEMKE, TABLES

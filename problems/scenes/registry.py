@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from continuation import plugins
-from continuation.plugins import SCENES, Factory, Plugin
+from continuation.arguments import plugins
+from continuation.arguments.plugins import SCENES, Factory, Plugin
 
 
 def available() -> dict[str, Plugin]:

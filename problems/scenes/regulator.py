@@ -8,8 +8,8 @@ import numpy as np
 from attrs import field, frozen
 from scipy.linalg import solve_discrete_are
 
+from continuation.arguments.checks import FINITE, integer
 from continuation.arrays import Array
-from continuation.checks import FINITE, integer
 from continuation.path import Path
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along

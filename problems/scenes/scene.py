@@ -10,8 +10,8 @@ from typing import Any, ClassVar, Protocol, runtime_checkable
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import POSITIVE_FINITE
 from continuation.arrays import Array
-from continuation.checks import POSITIVE_FINITE
 from continuation.tracing import trace
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import number
 from continuation.arrays import Array
-from continuation.checks import number
 from problems.nonlinear.normal_map import NormalMap
 from problems.scenes.arc_length import arc_length_method
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

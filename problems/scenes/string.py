@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import field, frozen
 
-from continuation.checks import integer
+from continuation.arguments.checks import integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import BFGS, CLARABEL, GAUSS_SEIDEL, LEMKE, PIQP
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

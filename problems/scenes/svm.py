@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.arrays import Array
-from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.rivals import CLARABEL, PIQP
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

@@ -9,8 +9,8 @@ import scipy.sparse as sp
 from attrs import field, frozen
 from numpy.typing import NDArray
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
-from continuation.checks import integer
 from problems.lcp.data.problem import MixedLCP
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

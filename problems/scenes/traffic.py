@@ -9,8 +9,8 @@ import scipy.sparse as sp
 from attrs import field, frozen
 from scipy.sparse.csgraph import dijkstra
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array
-from continuation.checks import integer
 from problems.lcp.data.program import Program, from_qp
 from problems.scenes.rivals import CLARABEL, PIQP
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import numpy as np
 from attrs import field, frozen
 
+from continuation.arguments.checks import NOT_NEGATIVE
 from continuation.arrays import Array
-from continuation.checks import NOT_NEGATIVE
 from continuation.path import Path
 from problems.lcp.data.problem import LCP
 from problems.lcp.parametric.along import along

@@ -8,8 +8,8 @@ import numpy as np
 from attrs import field, frozen
 from scipy.optimize import nnls
 
+from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.arrays import Array
-from continuation.checks import NOT_NEGATIVE, integer
 from problems.lcp.data.problem import LCP
 from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
 from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive

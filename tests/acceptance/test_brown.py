@@ -5,7 +5,7 @@ import pytest
 
 from continuation import Status, trace
 from continuation.auditing import audit
-from continuation.length import arclength
+from continuation.auditing.length import arclength
 from problems.nonlinear import brown, fixed_point, newton
 
 from ..util import every_preset

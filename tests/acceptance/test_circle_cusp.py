@@ -5,7 +5,7 @@ import pytest
 
 from continuation import Status, TargetValue, trace
 from continuation.auditing import audit
-from continuation.length import arclength
+from continuation.auditing.length import arclength
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp
 

@@ -8,8 +8,8 @@ from attrs import evolve
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, Status, trace
 from continuation.auditing import audit
+from continuation.auditing.length import arclength
 from continuation.controllers import Bounds, Geometric
-from continuation.length import arclength
 from continuation.metric import Euclidean
 from continuation.predictors import Tangent
 from continuation.step import acceptance

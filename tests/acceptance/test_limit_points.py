@@ -10,8 +10,8 @@ from scipy.integrate import quad
 import continuation
 from continuation import TurningPoint, trace
 from continuation.auditing import audit
+from continuation.auditing.length import arclength
 from continuation.controllers import AllgowerGeorg, Bounds, Curvature, IterationCount
-from continuation.length import arclength
 from problems.bifurcation import FreudensteinRoth
 
 from ..util import every_preset

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import bibliography
 from continuation.archive import open_archive
-from continuation.citation import entries, key, short, unique
+from continuation.citation import bibliography, entries, key, short, unique
 from continuation.controllers import Curvature
 from continuation.correctors import Broyden
 from continuation.predictors import RungeKutta, Taylor

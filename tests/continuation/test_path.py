@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import Status, plugins
+from continuation import Status
 from continuation.archive import open_archive
+from continuation.arguments import plugins
 from problems import lcp
 from problems.bifurcation import Bratu1D, FreudensteinRoth
 

@@ -5,8 +5,8 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from continuation import plugins
-from continuation.plugins import PluginError, available, describe, find, make, options
+from continuation.arguments import plugins
+from continuation.arguments.plugins import PluginError, available, describe, find, make, options
 
 
 @pytest.fixture

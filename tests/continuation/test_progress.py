@@ -6,8 +6,8 @@ import sys
 import pytest
 
 import continuation
-from continuation import progress
-from continuation.progress import Progress
+from continuation.step import progress
+from continuation.step.progress import Progress
 
 
 class Terminal(io.StringIO):

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import pytest
 
-from continuation.silence import Silence, silent, without_warnings
+from continuation.linear.silence import Silence, silent, without_warnings
 
 
 @without_warnings(over="ignore")

@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 from continuation import from_functions
-from continuation.plugins import available, make
+from continuation.arguments.plugins import available, make
 from continuation.testing import check_homotopy
 from problems import lcp
 from problems.bifurcation import Aircraft, Bratu1D, Bratu2D, Cusp, ExponentialCosine, Pitchfork

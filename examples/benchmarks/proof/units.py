@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from continuation import LocatedEvent, Path, Step, certify
-from continuation.presets import DEFAULT
 from continuation.status import Kind, Status
+from continuation.step.presets import DEFAULT
 
 sys.path.insert(0, str(File(__file__).parents[1] / "units"))
 from rescaled import Rescaled, plain, rescaled

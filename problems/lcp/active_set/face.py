@@ -16,9 +16,9 @@ from continuation.linear.banded import factor_band
 from continuation.linear.dense import factor_lu
 from continuation.linear.factoring import Factoring
 from continuation.linear.refine import Factored
+from continuation.linear.silence import without_warnings
 from continuation.linear.superlu import SuperLUMethod
 from continuation.linear.symmetric import factor_cholesky
-from continuation.silence import without_warnings
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import accurate_w

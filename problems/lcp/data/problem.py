@@ -15,8 +15,8 @@ import scipy.sparse as sp
 from attrs import Attribute, Factory, field, frozen
 from numpy.typing import NDArray
 
+from continuation.arguments.checks import integer
 from continuation.arrays import Array, Matrix
-from continuation.checks import integer
 from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import check_finite, finite_vector, real_array, sound_sparse
 

@@ -15,7 +15,7 @@ from attrs import define, frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError
-from continuation.silence import without_warnings
+from continuation.linear.silence import without_warnings
 
 CORE_REFINEMENTS = 4
 """Corrections in the full system that a solve may take; one is the rule, and each gains three digits (`UNRELIABLE`)."""

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from attrs import cmp_using, field, frozen
 
+from continuation.arguments.checks import POSITIVE_FINITE
 from continuation.arrays import Array
-from continuation.checks import POSITIVE_FINITE
 from problems.lcp.data.problem import MixedLCP
 
 LARGEST_FALL = 1e-3

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
+from continuation.arguments.checks import instance_with
 from continuation.arrays import Array
-from continuation.checks import instance_with
 from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.data.spread import largest_entries
 from problems.lcp.homotopies.rows import Rows

@@ -11,7 +11,8 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.path import Path, require_path
+from continuation.path import Path
+from continuation.path.path import require_path
 from problems.lcp.data.problem import MixedLCP, State, require_problem
 from problems.lcp.parametric.along import levels_of
 from problems.lcp.parametric.stairs import Stairs

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from attrs import define, evolve, field, frozen
 
+from continuation.arguments.checks import check_flag
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.checks import check_flag
 from continuation.counts import Counts
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.parametric.along import along

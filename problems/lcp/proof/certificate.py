@@ -10,7 +10,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, largest, least
-from continuation.silence import without_warnings
+from continuation.linear.silence import without_warnings
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State, require_problem
 from problems.lcp.homotopies.starts import natural_units
 from problems.lcp.proof.compensated import Terms, row_terms

@@ -10,7 +10,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, Matrix, largest, least
-from continuation.silence import without_warnings
+from continuation.linear.silence import without_warnings
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.inequalities import Inequalities
 from problems.lcp.proof.slices import sliced_terms

@@ -11,9 +11,9 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
+from continuation.arguments.checks import instance_with
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.checks import instance_with
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.lockstep import lemke_bases
 from problems.lcp.proof.pieces import all_faces

@@ -10,8 +10,8 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.html import TABLE_ROWS, table
 from continuation.path import Path, Step
+from continuation.plot.html import TABLE_ROWS, table
 from continuation.status import Described, Kind, Status
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program

@@ -17,8 +17,8 @@ from continuation.controllers import AllgowerGeorg
 from continuation.correctors import BorderedNewton
 from continuation.path import Path, Step
 from continuation.predictors import Hermite
-from continuation.presets import Preset
 from continuation.status import Kind
+from continuation.step.presets import Preset
 from continuation.step.tracer import Observer
 from continuation.tolerance import Tolerance
 from problems.lcp.active_set.face import Faces

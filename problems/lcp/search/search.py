@@ -263,7 +263,7 @@ class Search:
         archive = () if self.log is None else (Padded(self.log, (3 if self.problem.standard else 6) * self.problem.n),)
         if not self.progress:
             return archive
-        from continuation.progress import Progress
+        from continuation.step.progress import Progress
 
         return (*archive, Progress())
 

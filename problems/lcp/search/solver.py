@@ -18,13 +18,13 @@ from attrs import evolve
 
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
+from continuation.arguments.checks import check_flag, instance_with
 from continuation.arrays import Array, largest, least
 from continuation.budget import Budget
-from continuation.checks import check_flag, instance_with
 from continuation.counts import Counts
 from continuation.linear.factoring import check_method
+from continuation.linear.silence import Silence
 from continuation.path import Path, Step
-from continuation.silence import Silence
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
 from problems.lcp.active_set.face import Face, Faces, exchanging

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
-from continuation.presets import FAST
+from continuation.step.presets import FAST
 from problems.lcp.active_set.finish import below_zero
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.active_set.multigrid_guess import guess

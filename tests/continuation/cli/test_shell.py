@@ -12,7 +12,7 @@ from continuation import Budget, trace
 from continuation.archive import open_archive, trace_many
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
 from continuation.cli.parser import paint
-from continuation.progress import SweepProgress
+from continuation.step.progress import SweepProgress
 from problems.bifurcation import Cusp
 
 OWN = """

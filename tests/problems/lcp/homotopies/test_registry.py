@@ -5,7 +5,7 @@ import argparse
 import numpy as np
 import pytest
 
-from continuation.plugins import available, describe
+from continuation.arguments.plugins import available, describe
 from problems import lcp, plugins
 from problems.charts import lcp as lcp_charts
 from problems.commands import solve as command

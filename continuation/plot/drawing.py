@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from attrs import frozen
 
+from continuation.arguments.labels import Labels
 from continuation.arrays import Array
-from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -48,7 +48,40 @@ MOST_COMPONENTS = 12
 Axes = Any
 
 
-def marked(path: Path) -> list[tuple[LocatedEvent, dict[str, Any]]]:
+class Drawn(Protocol):
+    """A path as pictures need it: `continuation.Path`."""
+
+    steps: list[Any]
+    events: list[Any]
+    labels: Labels
+
+    @property
+    def u(self) -> Array:
+        """All points, shape (m, N + 1)."""
+
+    @property
+    def lam(self) -> Array:
+        """The parameter at each."""
+
+    @property
+    def arclength(self) -> Array:
+        """Their arclengths."""
+
+    @property
+    def turning_points(self) -> list[Any]:
+        """The located turning points."""
+
+    @property
+    def kinks(self) -> list[Any]:
+        """The located kinks."""
+
+    def __len__(self) -> int: ...
+
+    def __call__(self, s: float, /) -> Array:
+        """The point at an arclength."""
+
+
+def marked(path: Drawn) -> list[tuple[Any, dict[str, Any]]]:
     """The turning points, kinks and Hopf points, with their marks."""
     hopf = ((event, {**TURN, **MARKS[Kind.HOPF]}) for event in path.events if event.kind == Kind.HOPF)
     return [*((event, TURN) for event in path.turning_points), *((event, KINK) for event in path.kinks), *hopf]
@@ -62,7 +95,7 @@ class Drawing:
     u: Array
 
     @classmethod
-    def of(cls, path: Path) -> Drawing:
+    def of(cls, path: Drawn) -> Drawing:
         """Sample the curve, between its points too."""
         if len(path) < 2:
             return cls(path.arclength, path.u)
@@ -71,7 +104,7 @@ class Drawing:
         return cls._through(*_with_turns(path.arclength, path.u, path.turning_points))
 
     @classmethod
-    def _along(cls, steps: Sequence[Step]) -> Drawing:
+    def _along(cls, steps: Sequence[Any]) -> Drawing:
         """By the segments' own parameter; arclength within a segment by chords, which no picture shows to be wrong.
 
         The path at given arclengths (`Path.__call__`) integrates its speed for each: 0.5 s of the 4 s of the demo.
@@ -111,7 +144,7 @@ def _between(knots: Array) -> Array:
     return np.append(np.concatenate(pieces), knots[-1])
 
 
-def _with_turns(s: Array, u: Array, turns: Sequence[LocatedEvent]) -> tuple[Array, Array]:
+def _with_turns(s: Array, u: Array, turns: Sequence[Any]) -> tuple[Array, Array]:
     """The points with the located turning points among them; of points in one place, the first."""
     located = [np.append(turn.y, turn.lam) for turn in turns]
     every = np.concatenate([s, [turn.arclength for turn in turns]])
@@ -134,7 +167,7 @@ AGAINST = ("lam", "arclength")
 """What a picture may run along."""
 
 
-def check_path(path: Path) -> None:
+def check_path(path: Drawn) -> None:
     """Raise ValueError for a path without points."""
     if len(path) == 0:
         raise ValueError("path: expected at least one point, found none")
@@ -192,7 +225,7 @@ def across(against: str, drawing: Drawing) -> Array:
     return values
 
 
-def label_axis(axes: Axes, against: str, paths: Sequence[Path]) -> None:
+def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
     """Name the horizontal axis, and let it run as the paths do: from left to right where the parameter falls."""
     if against == "arclength":
         axes.set_xlabel("arclength $s$")
@@ -202,13 +235,13 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Path]) -> None:
         axes.invert_xaxis()
 
 
-def falls(path: Path) -> bool:
+def falls(path: Drawn) -> bool:
     """Whether the parameter never grows along the path, as from 1 to 0."""
     lam = path.lam
     return len(lam) > 1 and bool((np.diff(lam) <= 0.0).all()) and bool(lam[-1] < lam[0])
 
 
-def mark_events(axes: Axes, places: Sequence[tuple[LocatedEvent, float, Any]]) -> None:
+def mark_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
     """Mark events at their coordinates, each kind in its own way, named once in the legend."""
     named = set(axes.get_legend_handles_labels()[1])
     for event, x, y in places:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from continuation.checks import complain
+from continuation.arguments.checks import complain
 from continuation.point.arc import Arc
 
 

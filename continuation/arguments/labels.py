@@ -8,7 +8,7 @@ from typing import Any
 
 from attrs import field, frozen
 
-from continuation.checks import complain
+from continuation.arguments.checks import complain
 
 ATTRIBUTES = ("parameter_name", "names", "units")
 """Of a homotopy, and of an archive's root."""

@@ -10,8 +10,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.drawing import Axes
-from continuation.path import Path
+from continuation.plot.drawing import Axes, Drawn
 from continuation.status import Kind
 
 UNSTABLE = "unstable"
@@ -36,7 +35,7 @@ def stretches(s: Array, edges: Array, first: bool) -> list[Stretch]:
     return [Stretch(a, b, first != bool(k % 2)) for k, (a, b) in enumerate(pairwise(bounds))]
 
 
-def by_stability(path: Path, s: Array) -> list[Stretch] | None:
+def by_stability(path: Drawn, s: Array) -> list[Stretch] | None:
     """Where the path is stable, by what was stored with its points; None where nothing was.
 
     Between two points that differ it changes at the first of the events between them that can be the reason, else half

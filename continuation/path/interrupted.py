@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from continuation.path import Path
+from continuation.path.path import Path
 
 
 class Interrupted(KeyboardInterrupt):

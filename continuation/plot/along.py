@@ -1,7 +1,4 @@
-"""Pictures of a path with matplotlib, which is imported only when one is drawn.
-
-Colours are Okabe and Ito's, which colour-blind readers tell apart; line styles repeat the distinction.
-"""
+"""Pictures of one path: its unknowns, its profiles, a map of colours, its steps."""
 
 from __future__ import annotations
 
@@ -10,14 +7,11 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.bifurcation import plot_bifurcation
-from continuation.drawing import (
+from continuation.plot.drawing import (
     COLOURS,
-    KINK,
-    MOST_COMPONENTS,
-    TURN,
     Axes,
     Drawing,
+    Drawn,
     across,
     axes_or_new,
     check_path,
@@ -25,31 +19,16 @@ from continuation.drawing import (
     label_axis,
     line_style,
     marked,
-    require_matplotlib,
     tidy,
 )
-from continuation.path import Path
-from continuation.stretches import by_stability, draw_line
-
-__all__ = [
-    "KINK",
-    "MOST_COMPONENTS",
-    "TURN",
-    "Drawing",
-    "plot_bifurcation",
-    "plot_components",
-    "plot_heat",
-    "plot_profiles",
-    "plot_steps",
-    "require_matplotlib",
-]
+from continuation.plot.stretches import by_stability, draw_line
 
 MOST_PROFILES = 6
 """Lines of one panel that are told apart at a glance."""
 
 
 def plot_components(
-    path: Path,
+    path: Drawn,
     axes: Axes | None = None,
     against: str = "lam",
     names: Sequence[str] | None = None,
@@ -107,7 +86,7 @@ def plot_components(
     return tidy(axes)
 
 
-def plot_profiles(path: Path, axes: Axes | None = None, profiles: int = MOST_PROFILES, x: Array | None = None) -> Axes:
+def plot_profiles(path: Drawn, axes: Axes | None = None, profiles: int = MOST_PROFILES, x: Array | None = None) -> Axes:
     """Draw all unknowns as one line, as a function of where they are, at a few points along the path.
 
     Parameters
@@ -143,7 +122,7 @@ def plot_profiles(path: Path, axes: Axes | None = None, profiles: int = MOST_PRO
     return tidy(axes)
 
 
-def plot_heat(path: Path, axes: Axes | None = None, x: Array | None = None) -> Axes:
+def plot_heat(path: Drawn, axes: Axes | None = None, x: Array | None = None) -> Axes:
     """Draw all unknowns along the path as a map of colours: arclength to the right, the unknowns upwards.
 
     Parameters
@@ -177,7 +156,7 @@ def plot_heat(path: Path, axes: Axes | None = None, x: Array | None = None) -> A
     return axes
 
 
-def _places(path: Path, x: Array | None) -> Array:
+def _places(path: Drawn, x: Array | None) -> Array:
     size = path.steps[0].y.size
     places = np.arange(size, dtype=float) if x is None else np.asarray(x, dtype=float)
     if places.shape != (size,):
@@ -185,7 +164,7 @@ def _places(path: Path, x: Array | None) -> Array:
     return places
 
 
-def plot_steps(path: Path, axes: Axes | None = None) -> Axes:
+def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
     """Draw how far apart the points are, on a logarithmic scale, against arclength: where the controller was careful.
 
     Parameters

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.drawing import (
+from continuation.plot.drawing import (
     Axes,
     Drawing,
+    Drawn,
     across,
     axes_or_new,
     check_path,
@@ -21,8 +22,7 @@ from continuation.drawing import (
     mark_events,
     tidy,
 )
-from continuation.path import Path
-from continuation.stretches import Stretch, by_stability, draw_line, stretches
+from continuation.plot.stretches import Stretch, by_stability, draw_line, stretches
 
 Value: TypeAlias = int | str | Callable[[Array, float], float] | None
 """A component, the name of an unknown or of an observed scalar, a function of (y, lam), or the maximum norm."""
@@ -31,7 +31,7 @@ Stable: TypeAlias = str | Callable[[Array, float], bool] | None
 
 
 def plot_bifurcation(
-    path: Path | Sequence[Path],
+    path: Drawn | Iterable[Drawn],
     axes: Axes | None = None,
     component: int | None = None,
     *,
@@ -73,7 +73,7 @@ def plot_bifurcation(
     ValueError
         If a path is empty, a component does not exist, or nothing is called as `value` or `stable` says.
     """
-    paths = [path] if isinstance(path, Path) else list(path)
+    paths = list(path) if isinstance(path, Iterable) else [path]
     if not paths:
         raise ValueError("path: expected at least one, found none")
     for one in paths:
@@ -97,7 +97,7 @@ def plot_bifurcation(
     return tidy(axes)
 
 
-def values_along(path: Path, drawing: Drawing, value: Value) -> Array:
+def values_along(path: Drawn, drawing: Drawing, value: Value) -> Array:
     """A number of each point that is drawn."""
     if value is None:
         return height(drawing.u[:, :-1])
@@ -111,7 +111,7 @@ def values_along(path: Path, drawing: Drawing, value: Value) -> Array:
     return found
 
 
-def _component(path: Path, name: str) -> int:
+def _component(path: Drawn, name: str) -> int:
     try:
         i = path.labels.index(name)
     except ValueError:
@@ -122,7 +122,7 @@ def _component(path: Path, name: str) -> int:
     return i
 
 
-def _observed(path: Path, drawing: Drawing, name: str) -> Array:
+def _observed(path: Drawn, drawing: Drawing, name: str) -> Array:
     """An observed scalar between the points: monotone cubics, which have no extremum that the points have not."""
     from scipy.interpolate import PchipInterpolator
 
@@ -136,7 +136,7 @@ def _observed(path: Path, drawing: Drawing, name: str) -> Array:
     return found
 
 
-def at_event(event: Any, path: Path, value: Value) -> float:
+def at_event(event: Any, path: Drawn, value: Value) -> float:
     """The number that is drawn of an event.
 
     `path`: On which it lies.
@@ -152,7 +152,7 @@ def at_event(event: Any, path: Path, value: Value) -> float:
     return float(event.y[value])
 
 
-def _parts(path: Path, drawing: Drawing, stable: Stable) -> list[Stretch] | None:
+def _parts(path: Drawn, drawing: Drawing, stable: Stable) -> list[Stretch] | None:
     if stable is None:
         return by_stability(path, drawing.s)
     if callable(stable):
@@ -164,7 +164,7 @@ def _parts(path: Path, drawing: Drawing, stable: Stable) -> list[Stretch] | None
     return stretches(drawing.s, drawing.s[np.flatnonzero(np.diff(solid))], bool(solid[0]))
 
 
-def _named(path: Path, value: Value) -> str:
+def _named(path: Drawn, value: Value) -> str:
     if value is None:
         return r"$\max_i |y_i|$"
     if callable(value):

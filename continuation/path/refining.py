@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from attrs import evolve
 
+from continuation.arguments.checks import complain, is_number
 from continuation.arrays import Array
-from continuation.checks import complain, is_number
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import norm
-from continuation.path import Path, Step
+from continuation.path.steps import LocatedEvent, Step
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.point.segment import Segment, hermite
@@ -24,25 +26,26 @@ DEEPEST = 8
 """Halvings of an arc: the error of a cubic falls by 16 with each, so that these are worth nine digits."""
 
 
-def refined_path(homotopy: Any, path: Path, accuracy: float = 1e-3) -> Path:
-    """The path with more points, until the arcs between them are the path to an accuracy.
+def refined_path(
+    homotopy: Any, path: Sequence[Step], events: Sequence[LocatedEvent], accuracy: float
+) -> tuple[list[Step], list[LocatedEvent]]:
+    """The steps and events of a path with more points, until the arcs between them are the path to an accuracy.
 
     Each arc's middle is corrected onto the path. Where the arc was farther off than the accuracy, relative to how far
     each component goes on the whole path, the point is added, and both halves are looked at again.
 
-    `homotopy`: The one that was traced. Returns Path: Its steps, in between new ones of kind REGULAR, with cubics
-    through points and tangents. Raises `ValueError` if the accuracy is no positive number.
+    `homotopy`: The one that was traced. New steps are of kind REGULAR, with cubics through points and tangents. Raises
+    `ValueError` if the accuracy is no positive number.
     """
     if not is_number(accuracy) or not 0.0 < accuracy < math.inf:
         raise complain(ValueError, "accuracy", "a positive number", accuracy)
     if len(path) < 2:
-        return path
+        return list(path), list(events)
     solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
-    points = path.u
+    points = np.array([step.u for step in path])
     allowed = accuracy * np.maximum(np.ptp(points, axis=0), 1e-12 * (1.0 + np.abs(points).max(axis=0)))
-    steps, first = [path.steps[0]], {0: 0}
-    for k, after in enumerate(path.steps[1:], 1):
-        before = path.steps[k - 1]
+    steps, first = [path[0]], {0: 0}
+    for k, (before, after) in enumerate(pairwise(path), 1):
         segment = after.segment
         if segment is not None:
             steps += _between(solver, before, after, segment, allowed, DEEPEST)
@@ -50,9 +53,9 @@ def refined_path(homotopy: Any, path: Path, accuracy: float = 1e-3) -> Path:
         first[k] = len(steps) - 1
     steps = [evolve(step, index=k) for k, step in enumerate(steps)]
     arclengths = np.array([step.arclength for step in steps])
-    after = np.maximum(np.searchsorted(arclengths, [event.arclength for event in path.events]), 1).tolist()
-    events = [evolve(event, step=first[event.step] if event.ends_step else k) for event, k in zip(path.events, after)]
-    return evolve(path, steps=steps, events=events)
+    after = np.maximum(np.searchsorted(arclengths, [event.arclength for event in events]), 1).tolist()
+    moved = [evolve(event, step=first[event.step] if event.ends_step else k) for event, k in zip(events, after)]
+    return steps, moved
 
 
 def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, allowed: Array, deep: int) -> list[Step]:

@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
-from continuation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
-from continuation.checks import complain
-from continuation.path import Path
+from continuation.arguments.checks import complain
+from continuation.citation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
 from continuation.status import Kind
 
 _KEY = re.compile(r"@\w+\s*\{\s*([^,\s]+)\s*,")
 _FIELD = re.compile(r"^\s*(author|year|title)\s*=\s*\{(.*)\},?\s*$", re.MULTILINE)
 _MARKUP = re.compile(r"\\[\"'`^~=.uvHcdbtk]?|[{}$]")
+
+
+@runtime_checkable
+class Traced(Protocol):
+    """A traced path: what decides which methods it used."""
+
+    winding_number: int | None
+    events: list[Any]
+    references: tuple[str, ...]
 
 
 def cite(source: Any) -> str:
@@ -34,7 +42,7 @@ def cite(source: Any) -> str:
     TypeError
         If `source` is neither: it has no `references`, and is no homotopy.
     """
-    if isinstance(source, Path):
+    if isinstance(source, Traced):
         ends = (MORGAN_SOMMESE_WAMPLER,) if source.winding_number is not None else ()
         crossed = (GOVAERTS,) if any(event.kind == Kind.BRANCH_POINT for event in source.events) else ()
         return "\n\n".join(unique((SOFTWARE, ALLGOWER_GEORG, *ends, *crossed, *source.references)))

@@ -9,22 +9,23 @@ from typing import Any
 import numpy as np
 from attrs import evolve, field, frozen
 
+from continuation.arguments.checks import check_flag, complain, is_number
 from continuation.arrays import Array
+from continuation.auditing.length import check_metric, metric_of
 from continuation.budget import Budget
-from continuation.checks import check_flag, complain, is_number
 from continuation.controllers import Bounds, Decision, StepMeasures
 from continuation.counts import Counts
 from continuation.ends.closed_curve import SAME_POINT, passes_start
 from continuation.evaluation.evaluator import Evaluator
-from continuation.length import check_metric, metric_of
 from continuation.metric import Metric, inner, norm
-from continuation.path import LocatedEvent, Path, Step, require_path
+from continuation.path import LocatedEvent, Path, Step
+from continuation.path.path import require_path
 from continuation.point.arc import cubic_between
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
-from continuation.presets import CONSERVATIVE
 from continuation.status import Status
+from continuation.step.presets import CONSERVATIVE
 from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from continuation.arguments.checks import instance_with
 from continuation.arrays import Array
-from continuation.checks import instance_with
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import Automatic, Euclidean, Metric, Weighted, norm
-from continuation.path import Path, require_path
+from continuation.path import Path
+from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.point.segment import hermite

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from os import PathLike
 from typing import Any, overload
 
 import numpy as np
-from attrs import define, field
+from attrs import define, evolve, field
 from scipy.optimize import brentq
 
+from continuation.arguments.checks import complain, real_vector
+from continuation.arguments.labels import Labels
 from continuation.arrays import Array
-from continuation.checks import complain, real_vector
 from continuation.counts import Counts
-from continuation.labels import Labels
-from continuation.late import late
+from continuation.path.parts import Pieces, following, part_of, turned_round
+from continuation.path.steps import LocatedEvent, Step
 from continuation.point.segment import parameter_at
 from continuation.rejection import Rejected
 from continuation.status import Kind, Status
-from continuation.steps import LocatedEvent, Step
 
 __all__ = ["LocatedEvent", "Path", "Step"]
 
@@ -79,7 +79,10 @@ class Path:
 
     def __getitem__(self, index: int | slice) -> Step | Path:
         """A step, or the part of the path between two steps; arclengths stay what they are."""
-        return late("parts", "part_of")(self, index) if isinstance(index, slice) else self.steps[index]
+        return self._of(part_of(self.steps, self.events, index)) if isinstance(index, slice) else self.steps[index]
+
+    def _of(self, pieces: Pieces) -> Path:
+        return evolve(self, steps=pieces[0], events=pieces[1])
 
     def __repr__(self) -> str:
         end = f", lam {self.steps[0].lam:g} -> {self.steps[-1].lam:g}" if self.steps else ""
@@ -206,8 +209,7 @@ class Path:
 
     def reversed(self) -> Path:
         """The same path from its end to its start; arclength counts from there."""
-        path: Path = late("parts", "turned_round")(self)
-        return path
+        return self._of(turned_round(self.steps, self.events))
 
     def join(self, other: Path) -> Path:
         """Put another path, which begins where this one ends, behind it.
@@ -221,8 +223,14 @@ class Path:
         ValueError
             If it begins elsewhere.
         """
-        path: Path = late("parts", "joined")(self, other)
-        return path
+        if not len(self) or not len(other):
+            return self if len(self) else other
+        extent = max(float(np.ptp(path.u, axis=0).max()) for path in (self, other))
+        steps, events = following(self.steps, other.steps, other.events, extent)
+        whole = other._of(([*self.steps, *steps], [*self.events, *events]))
+        whole.counts, whole.seconds = self.counts + other.counts, self.seconds + other.seconds
+        whole.references = tuple(dict.fromkeys((*self.references, *other.references)))
+        return whole
 
     def refined(self, homotopy: Any, accuracy: float = 1e-3) -> Path:
         """The path with more points, corrected onto it, until it is a curve to the accuracy: see `refined_path`.
@@ -232,8 +240,9 @@ class Path:
         homotopy : Homotopy
         accuracy : float, default 1e-3
         """
-        path: Path = late("refining", "refined_path")(homotopy, self, accuracy)
-        return path
+        from continuation.path.refining import refined_path
+
+        return self._of(refined_path(homotopy, self.steps, self.events, accuracy))
 
     def plot(self, axes: Any = None, **options: Any) -> Any:
         """Draw it: the unknowns, or with ``value=...`` a diagram of one number (`continuation.plot`).
@@ -244,15 +253,21 @@ class Path:
         **options
             As for `continuation.plot.plot_components`; with `value`, for `plot_bifurcation`.
         """
-        return late("plot", "plot_bifurcation" if "value" in options else "plot_components")(self, axes, **options)
+        from continuation.plot import plot_bifurcation, plot_components
+
+        return (plot_bifurcation if "value" in options else plot_components)(self, axes, **options)
 
     def to_xarray(self) -> Any:
         """The points, located events among them, as an `xarray.Dataset`: that of `Archive.to_xarray`."""
-        return late("archive.memory", "dataset_of")(self)
+        from continuation.archive import memory
+
+        return memory.dataset_of(self)
 
     def to_dataframe(self) -> Any:
         """The points, located events among them, as a `pandas.DataFrame`, with the homotopy's names for columns."""
-        return late("archive.memory", "dataframe_of")(self)
+        from continuation.archive import memory
+
+        return memory.dataframe_of(self)
 
     def save(self, file: str | PathLike[str], title: str = "") -> None:
         """Write it to a new archive, from which it is read again as it is; only ``trace(archive=...)`` can be resumed.
@@ -263,11 +278,26 @@ class Path:
             Must not exist.
         title : str
         """
-        late("archive.memory", "save")(self, file, title)
+        from continuation.archive import memory
+
+        memory.save(self, file, title)
 
     def _repr_html_(self) -> str:
-        html: str = late("html", "path_page")(self)
-        return html
+        from continuation.plot.html import TABLE_ROWS, table
+
+        rows: list[Sequence[object]] = [("message", self.message)]
+        name = self.labels.parameter()
+        if self.steps:
+            first, last = self.steps[0], self.steps[-1]
+            rows += [("points", len(self)), (name, f"{first.lam:.6g} to {last.lam:.6g}")]
+            rows += [("arclength", f"{last.arclength:.6g}")]
+        rows.append(("cost", f"{self.counts.factorizations} factorisations, {self.seconds:.3g} s"))
+        page = table(f"Path: {self.status.name}", rows)
+        if self.events:
+            found = [(e.name, f"{e.lam:.10g}", f"{e.arclength:.6g}") for e in self.events[:TABLE_ROWS]]
+            more = len(self.events) - TABLE_ROWS
+            page += table("Events" if more <= 0 else f"Events, {more} more", found, ("event", name, "arclength"))
+        return page
 
     def summary(self) -> dict[str, Any]:
         """The end in numbers, for tables and logs."""

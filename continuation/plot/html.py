@@ -1,12 +1,10 @@
-"""Paths, archives and answers as small tables for notebooks."""
+"""Small tables for notebooks: what paths, archives and answers are shown as."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
-
-from continuation.path import Path
 
 TABLE_ROWS = 10
 
@@ -28,24 +26,6 @@ def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = 
     names = "".join(f"<th style='text-align:left'>{escape(name)}</th>" for name in head)
     top = f"<tr>{names}</tr>" if names else ""
     return f"<table><caption style='text-align:left'><b>{escape(caption)}</b></caption>{top}{cells}</table>"
-
-
-def path_page(path: Path) -> str:
-    """How a path went: its end, its events, its cost."""
-    rows: list[Sequence[object]] = [("message", path.message)]
-    if path.steps:
-        first, last = path.steps[0], path.steps[-1]
-        name = path.labels.parameter()
-        rows += [("points", len(path)), (name, f"{first.lam:.6g} to {last.lam:.6g}"),
-                 ("arclength", f"{last.arclength:.6g}")]  # fmt: skip
-    rows.append(("cost", f"{path.counts.factorizations} factorisations, {path.seconds:.3g} s"))
-    page = table(f"Path: {path.status.name}", rows)
-    if path.events:
-        found = [(e.name, f"{e.lam:.10g}", f"{e.arclength:.6g}") for e in path.events[:TABLE_ROWS]]
-        more = len(path.events) - TABLE_ROWS
-        caption = "Events" if more <= 0 else f"Events, {more} more"
-        page += table(caption, found, ("event", path.labels.parameter(), "arclength"))
-    return page
 
 
 def archive_page(archive: Any) -> str:

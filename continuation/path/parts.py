@@ -1,20 +1,24 @@
-"""Parts of paths, paths turned round, and paths joined: all of them paths."""
+"""Parts of a path, a path turned round, and two joined: steps and events made of the steps and events of others."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.path import LocatedEvent, Path, Step
+from continuation.path.steps import LocatedEvent, Step
 from continuation.point.segment import Segment, hermite
 from continuation.status import Kind
 
 MEET = 1e-6
 """How near two ends must be, relative to the larger of the two paths' extents, to be one point."""
+
+Pieces: TypeAlias = tuple[list[Step], list[LocatedEvent]]
+"""The steps and the events of a path."""
 
 
 @frozen(eq=False)
@@ -45,23 +49,21 @@ class Backwards:
         return hermite(self.at(0.0), self.derivative(0.0), end, v, border)
 
 
-def part_of(path: Path, chosen: slice) -> Path:
+def part_of(steps: Sequence[Step], events: Sequence[LocatedEvent], chosen: slice) -> Pieces:
     """Some consecutive steps of a path, or every k-th of them, with the events between the first and the last.
 
     Raises `ValueError` if the step is negative: `Path.reversed` turns a path round.
     """
-    numbers = range(*chosen.indices(len(path.steps)))
+    numbers = range(*chosen.indices(len(steps)))
     if numbers.step < 0:
         raise ValueError("step: expected a positive one; path.reversed() turns a path round")
-    old = [path.steps[i] for i in numbers]
-    steps = [evolve(step, index=k) for k, step in enumerate(old)]
+    part = [evolve(steps[i], index=k) for k, i in enumerate(numbers)]
     if numbers.step > 1:
-        steps = steps[:1] + [evolve(b, segment=_cubic(a, b), weights=None) for a, b in pairwise(steps)]
-    events = [event for event in path.events if numbers and numbers[0] < event.step <= numbers[-1]]
-    after = [int(np.searchsorted(numbers, event.step)) for event in events]
-    ends = [event.ends_step and event.step in numbers for event in events]
-    moved = [evolve(event, step=k, ends_step=end) for event, k, end in zip(events, after, ends)]
-    return evolve(path, steps=steps, events=moved)
+        part = part[:1] + [evolve(b, segment=_cubic(a, b), weights=None) for a, b in pairwise(part)]
+    inside = [event for event in events if numbers and numbers[0] < event.step <= numbers[-1]]
+    after = [int(np.searchsorted(numbers, event.step)) for event in inside]
+    ends = [event.ends_step and event.step in numbers for event in inside]
+    return part, [evolve(event, step=k, ends_step=end) for event, k, end in zip(inside, after, ends)]
 
 
 def _cubic(a: Step, b: Step) -> Segment | None:
@@ -69,19 +71,19 @@ def _cubic(a: Step, b: Step) -> Segment | None:
     return hermite(a.u, a.tangent, b.u, b.tangent, a.tangent) if known else None
 
 
-def turned_round(path: Path) -> Path:
+def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Pieces:
     """The path from its end to its start."""
-    old, last = list(path.steps), len(path.steps) - 1
+    old, last = list(steps), len(steps) - 1
     whole = old[-1].arclength if old else 0.0
     # At a kink the tangent is that of the arc which comes there, and that is the other one now.
-    kinks = {e.step: -e.rays[1] for e in path.events if e.kind == Kind.KINK and e.rays is not None and len(e.rays) > 1}
-    steps = []
+    kinks = {e.step: -e.rays[1] for e in events if e.kind == Kind.KINK and e.rays is not None and len(e.rays) > 1}
+    turned = []
     for k, step in enumerate(reversed(old)):
         # What belongs to an arc is kept with the step at its end, which is the other one now.
         arc = old[last - k + 1] if k else None
         segment = None if arc is None or arc.segment is None else Backwards(arc.segment)
         kind = Kind.START if k == 0 else Kind.REGULAR if step.kind in (Kind.START, Kind.TARGET) else step.kind
-        steps.append(
+        turned.append(
             evolve(
                 step,
                 index=k,
@@ -94,7 +96,7 @@ def turned_round(path: Path) -> Path:
                 weights=None if arc is None else arc.weights,
             )
         )
-    events = [
+    met = [
         evolve(
             event,
             tangent=kinks[event.step] if event.kind == Kind.KINK and event.step in kinks else -event.tangent,
@@ -104,25 +106,22 @@ def turned_round(path: Path) -> Path:
             step=max(last - event.step + (not event.ends_step), 1),
             ends_step=event.ends_step and event.step < last,
         )
-        for event in reversed(path.events)
+        for event in reversed(events)
     ]
-    return evolve(path, steps=steps, events=events)
+    return turned, met
 
 
-def joined(first: Path, second: Path) -> Path:
-    """One path, and then another that begins where it ends; `ValueError` if they do not meet."""
-    if not len(first) or not len(second):
-        return first if len(first) else second
-    a, b = first.steps[-1], second.steps[0]
-    extent = max(float(np.ptp(path.u, axis=0).max()) for path in (first, second))
+def following(first: Sequence[Step], second: Sequence[Step], events: Sequence[LocatedEvent], extent: float) -> Pieces:
+    """The steps of a second path behind its start, and its events, counted on from the end of the first path.
+
+    `extent`: The larger of the two paths' extents. Raises `ValueError` if the second does not begin where the first
+    ends.
+    """
+    a, b = first[-1], second[0]
     if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):
         raise ValueError(f"other: expected a path that begins at lam = {a.lam:.6g}, found one from lam = {b.lam:.6g}")
     count, length = len(first) - 1, a.arclength
-    steps = [evolve(s, index=s.index + count, arclength=s.arclength + length) for s in list(second.steps)[1:]]
-    events: list[LocatedEvent] = [
-        evolve(event, step=event.step + count, arclength=event.arclength + length) for event in second.events
-    ]
-    whole = evolve(second, steps=[*first.steps, *steps], events=[*first.events, *events])
-    whole.counts, whole.seconds = first.counts + second.counts, first.seconds + second.seconds
-    whole.references = tuple(dict.fromkeys((*first.references, *second.references)))
-    return whole
+    return (
+        [evolve(s, index=s.index + count, arclength=s.arclength + length) for s in list(second)[1:]],
+        [evolve(event, step=event.step + count, arclength=event.arclength + length) for event in events],
+    )
