@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from attrs import evolve
+from attrs import asdict
 
 from continuation.chart import Answer, Error, Failure, Ladder, Method, Precision, Problem, Rung, Study, observed
 from continuation.chart.catalogue import Size
@@ -119,12 +119,12 @@ def _versioned(module: str) -> str:
 
 def _refined(problem: Problem, factor: float) -> Any:
     """The scene on a finer mesh, by a factor."""
-    scene = problem.subject
     if problem.name not in MESHES:
-        return scene
+        return problem.subject
+    values = asdict(problem.subject.parameters)
     # The put's errors in price and time are to fall alike.
-    more = {"steps": max(2, round(factor * scene.steps))} if hasattr(scene, "steps") else {}
-    return evolve(scene, n=max(4, round(factor * scene.n)), **more)
+    finer = {key: max(least, round(factor * values[key])) for key, least in (("n", 4), ("steps", 2)) if key in values}
+    return make(problem.name, {**values, **finer})
 
 
 def _method(

@@ -34,13 +34,12 @@ def run(arguments: argparse.Namespace) -> int:
     scene, values = homotopy_of(name, texts, group=SCENES)
     title = " ".join([name, *(f"{key}={value}" for key, value in values.items())])
     from problems.scenes import order, solve
-    from problems.scenes.scene import SupportsSolve
 
     with refused(name):
         problem = scene.problem()
         solution = solve(scene)
         # A path of a scene may end on a ray, as at a collapse: what that says the scene knows.
-        well = isinstance(scene, SupportsSolve) or bool(solution.success)
+        well = getattr(scene, "solve", None) is not None or bool(solution.success)
         answer = scene.answer(solution) if well else {}
     if arguments.json:
         found = {key: np.asarray(value, dtype=float).tolist() for key, value in answer.items()}

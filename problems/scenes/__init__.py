@@ -3,7 +3,28 @@
 The scenes themselves are the entry points of the group `continuation.scenes`, so that a package may add its own.
 """
 
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.registry import available, find, make
-from problems.scenes.scene import Point, Rival, Scene, Unknown, error, memory, order, solve
+from problems.scenes.scene import (
+    Finite,
+    Kind,
+    NotNegative,
+    Numbers,
+    Point,
+    Positive,
+    Rival,
+    Scene,
+    Seed,
+    Unknown,
+    at_least,
+    error,
+    memory,
+    order,
+    solve,
+    with_parameters,
+)
 
-__all__ = ["Point", "Rival", "Scene", "Unknown", "available", "error", "find", "make", "memory", "order", "solve"]
+__all__ = [
+    "Finite", "Kind", "NotNegative", "Numbers", "Picture", "Point", "Positive", "Rival", "Scene", "Seed", "Unknown",
+    "at_least", "available", "error", "find", "make", "mark", "memory", "order", "picture", "solve", "with_parameters",
+]  # fmt: skip

@@ -4,18 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import exp, log, sqrt
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
+from attrs import frozen
 
-from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.solver import solve
-from problems.scenes.scene import Point, Quantities, Rival, Units, Unknown, positive
+from problems.scenes.pictures import Picture, mark, picture
+from problems.scenes.scene import (
+    NotNegative,
+    Point,
+    Positive,
+    Quantities,
+    Rival,
+    Scene,
+    Unknown,
+    at_least,
+    with_parameters,
+)
 
 KNOWN = {
     (100.0, 100.0, 0.05, 0.2, 1.0): 6.09037,
@@ -37,8 +47,12 @@ class Exercise:
     success: bool
 
 
-@frozen
-class AmericanPut:
+@with_parameters
+def AmericanPut(
+    spot: Positive = 100.0, strike: Positive = 100.0, rate: NotNegative = 0.05, volatility: Positive = 0.2,
+    maturity: Positive = 1.0, n: Annotated[int, at_least(10)] = 400, steps: Annotated[int, at_least(2)] = 100,
+    width: Positive = 5.0,
+) -> Scene:  # fmt: skip
     """A put that may be exercised at any time: what is it worth, and below which price is it exercised?
 
     The equation of Black and Scholes in the logarithm of the price, by second-order differences, and the method of
@@ -67,68 +81,57 @@ class AmericanPut:
     Brennan and Schwartz, J. Finance 32 (1977); Forsyth and Vetzal, SIAM J. Sci. Comput. 23 (2002); Longstaff
     and Schwartz, Rev. Financial Studies 14 (2001).
     """
+    reach = width * volatility * sqrt(maturity)
+    # Logarithms of prices over the strike, both ends included.
+    x = np.linspace(-reach, reach, n + 2)
+    payoff = strike * np.maximum(1.0 - np.exp(x), 0.0)
+    h = 2.0 * reach / (n + 1)
+    a, b = 0.5 * volatility**2 / h**2, (rate - 0.5 * volatility**2) / (2.0 * h)
 
-    spot: float = positive(100.0)
-    strike: float = positive(100.0)
-    rate: float = field(default=0.05, validator=NOT_NEGATIVE)
-    volatility: float = positive(0.2)
-    maturity: float = positive(1.0)
-    n: int = field(default=400, validator=integer(10))
-    steps: int = field(default=100, validator=integer(2))
-    width: float = positive(5.0)
-    units: ClassVar[Units] = {"price": "money", "delta": "", "exercise below": "money"}
+    def implicit(step: float) -> tuple[float, float, float]:
+        """The diagonals of an implicit step of that many years."""
+        return -step * (a - b), 1.0 + step * (2.0 * a + rate), -step * (a + b)
 
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """What the put is worth beyond its payoff: zero is where it is exercised."""
-        return (Unknown("values above the payoff", self.n, "where to exercise, and the price elsewhere"),)
-
-    @property
-    def rivals(self) -> tuple[Rival, ...]:
-        """The elimination of the field."""
-        return (Rival("Brennan-Schwartz", "", lambda scene: scene.answer(scene._march(_eliminated))),)
-
-    @property
-    def _reach(self) -> float:
-        return self.width * self.volatility * sqrt(self.maturity)
-
-    def grid(self) -> Array:
-        """Logarithms of prices over the strike, both ends included, shape (n + 2,)."""
-        return np.linspace(-self._reach, self._reach, self.n + 2)
-
-    def implicit(self, step: float) -> tuple[Array, Array, Array]:
-        """The diagonals of one implicit step: below, main and above, shapes (n,).
-
-        Parameters
-        ----------
-        step : float
-            Years.
-        """
-        h = 2.0 * self._reach / (self.n + 1)
-        a, b = 0.5 * self.volatility**2 / h**2, (self.rate - 0.5 * self.volatility**2) / (2.0 * h)
-        one = np.ones(self.n)
-        return -step * (a - b) * one, (1.0 + step * (2.0 * a + self.rate)) * one, -step * (a + b) * one
-
-    def _matrix(self, step: float) -> Any:
-        below, main, above = self.implicit(step)
-        return sp.diags_array([below[1:], main, above[:-1]], offsets=[-1, 0, 1], format="csr")
-
-    @property
-    def _payoff(self) -> Array:
-        return self.strike * np.maximum(1.0 - np.exp(self.grid()), 0.0)
-
-    def _lifted(self, step: float, values: Array) -> Array:
+    def lifted(step: float, values: Array) -> Array:
         """The implicit matrix times values at all points, inner and boundary."""
-        below, main, above = self.implicit(step)
+        below, main, above = implicit(step)
         return below * values[:-2] + main * values[1:-1] + above * values[2:]
 
-    def problem(self) -> LCP:
-        """The last time step before expiry, the first one that is solved."""
-        step = 0.5 * self.maturity / self.steps**2
-        return LCP(self._matrix(step), self._lifted(step, self._payoff) - self._payoff[1:-1])
+    def stepped(step: float, known: Array) -> LCP:
+        """For values above the payoff, the right side being known."""
+        A = sp.diags_array(implicit(step), offsets=[-1, 0, 1], shape=(n, n), format="csr")
+        return LCP(A, lifted(step, payoff) - known)
 
-    def solve(self) -> Exercise:
-        """All time steps."""
+    def march(solver: Callable[[LCP], Any]) -> Exercise:
+        """Back from expiry, by any solver of a time step."""
+        times = maturity * (np.arange(steps + 1) / steps) ** 2
+        # Four half steps, implicit: the payoff's kink makes Crank and Nicolson's method oscillate.
+        times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
+        values, edges, well = payoff.copy(), [strike], True
+        for k, dt in enumerate(np.diff(times)):
+            step = dt if k < 4 else 0.5 * dt
+            found = solver(stepped(step, values[1:-1] if k < 4 else 2.0 * values[1:-1] - lifted(step, values)))
+            well = bool(found.success) and found.x is not None
+            if not well:
+                break
+            values[1:-1] = payoff[1:-1] + found.x
+            # With more time left it is exercised at no higher price; in the first steps the mesh is too coarse to tell.
+            edges.append(min(edge(found.x), edges[-1]))
+        return Exercise(values, times[: len(edges)], np.array(edges), well)
+
+    def edge(above: Array) -> float:
+        """Where the value leaves the payoff: as a square, from the second and the fourth point where it does.
+
+        The first one has the error of an equation across the edge; without it the boundary is seven times as smooth.
+        """
+        beyond = above > 1e-12 * strike
+        k = int(np.argmax(beyond)) if beyond.any() else 0
+        second, fourth = np.sqrt(above[k + 1 : k + 4 : 2]) if k + 4 <= above.size else (0.0, 0.0)
+        away = min(max(2.0 * second / (fourth - second) - 1.0, 0.0), 1.5) if fourth > second else 0.0
+        return strike * exp(float(x[k + 1] - away * (x[1] - x[0])))
+
+    def solved() -> Exercise:
+        """All time steps, each from the active set of the one before."""
         found: Solution | None = None
 
         def step(problem: LCP) -> Solution:
@@ -136,65 +139,43 @@ class AmericanPut:
             found = solve(problem, guess=found)
             return found
 
-        return self._march(step)
+        return march(step)
 
-    def _march(self, solver: Callable[[LCP], Any]) -> Exercise:
-        """Back from expiry, by any solver of a time step."""
-        payoff, x = self._payoff, self.grid()
-        times = self.maturity * (np.arange(self.steps + 1) / self.steps) ** 2
-        # Four half steps, implicit: the payoff's kink makes Crank and Nicolson's method oscillate.
-        times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
-        values, edges, well = payoff.copy(), [self.strike], True
-        for k, dt in enumerate(np.diff(times)):
-            implicit = dt if k < 4 else 0.5 * dt
-            known = values[1:-1] if k < 4 else 2.0 * values[1:-1] - self._lifted(implicit, values)
-            found = solver(LCP(self._matrix(implicit), self._lifted(implicit, payoff) - known))
-            well = bool(found.success) and found.x is not None
-            if not well:
-                break
-            values[1:-1] = payoff[1:-1] + found.x
-            # With more time left it is exercised at no higher price; in the first steps the mesh is too coarse to tell.
-            edges.append(min(self._edge(found.x, x), edges[-1]))
-        return Exercise(values, times[: len(edges)], np.array(edges), well)
-
-    def _edge(self, above: Array, x: Array) -> float:
-        """Where the value leaves the payoff: as a square, from the second and the fourth point where it does.
-
-        The first one has the error of an equation across the edge; without it the boundary is seven times as smooth.
-        """
-        beyond = above > 1e-12 * self.strike
-        k = int(np.argmax(beyond)) if beyond.any() else 0
-        second, fourth = np.sqrt(above[k + 1 : k + 4 : 2]) if k + 4 <= above.size else (0.0, 0.0)
-        away = min(max(2.0 * second / (fourth - second) - 1.0, 0.0), 1.5) if fourth > second else 0.0
-        return self.strike * exp(float(x[k + 1] - away * (x[1] - x[0])))
-
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """By a cubic through the four points around the spot, which keeps the second order of the differences."""
-        x, place = self.grid(), log(self.spot / self.strike)
-        k = min(max(int(np.searchsorted(x, place)), 2), x.size - 2)
+        place = log(spot / strike)
+        k = min(max(int(np.searchsorted(x, place)), 2), n)
         cubic = np.polynomial.Polynomial.fit(x[k - 2 : k + 2], solution.prices[k - 2 : k + 2], 3)
         return {
-            "price": float(cubic(place)), "delta": float(cubic.deriv()(place)) / self.spot,
+            "price": float(cubic(place)), "delta": float(cubic.deriv()(place)) / spot,
             "exercise below": float(solution.boundary[-1]),
         }  # fmt: skip
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """For the cases of the tables."""
-        key = (self.spot, self.strike, self.rate, self.volatility, self.maturity)
+        key = (spot, strike, rate, volatility, maturity)
         return {"price": KNOWN[key]} if key in KNOWN else {}
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """The price below which to exercise, against the time that is left."""
-        axes.plot(solution.time_left, solution.boundary, color="#0072B2")
-        axes.fill_between(solution.time_left, 0.0, solution.boundary, color="#0072B2", alpha=0.12, label="exercise")
-        axes.plot(self.maturity, self.spot, "o", color="#D55E00", label=f"price {self.answer(solution)['price']:.4f}")
-        low = min(solution.boundary.min(), self.spot)
-        axes.set(
-            xlabel="time left (years)",
-            ylabel="price of the asset (money)",
-            ylim=(0.9 * low, 1.1 * max(self.strike, self.spot)),
-        )
-        axes.legend(frameon=False)
+        time, below = solution.time_left, solution.boundary
+        return picture(
+            mark("plot", time, below, color="#0072B2"),
+            mark("fill_between", time, 0.0, below, color="#0072B2", alpha=0.12, label="exercise"),
+            mark("plot", maturity, spot, "o", color="#D55E00", label=f"price {answer(solution)['price']:.4f}"),
+            xlabel="time left (years)", ylabel="price of the asset (money)",
+            ylim=(0.9 * min(below.min(), spot), 1.1 * max(strike, spot)),
+        )  # fmt: skip
+
+    return Scene(
+        units={"price": "money", "delta": "", "exercise below": "money"},
+        # Zero is where it is exercised.
+        unknowns=(Unknown("values above the payoff", n, "where to exercise, and the price elsewhere"),),
+        # The last time step before expiry, the first one that is solved.
+        problem=lambda: stepped(0.5 * maturity / steps**2, payoff[1:-1]),
+        solve=solved, answer=answer, exact=exact, picture=drawn,
+        rivals=(Rival("Brennan-Schwartz", "", lambda scene: answer(march(_eliminated))),),
+    )  # fmt: skip
 
 
 def _eliminated(problem: LCP) -> Point:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,24 +23,16 @@ NEWTON_ITERATIONS = 20
 """Steps of Newton's method at most: three or four are usual."""
 
 
-@frozen(eq=False)
-class Turns:
-    """Loads of the fold and of the first kink behind it, and the point z on the way up from there, at a load."""
-
-    fold: float
-    kink: float
-    z: Array
-
-
-def arc_length_method(load: Callable[[Any], float], named: Callable[[Any, Turns], Quantities]) -> Rival:
+def arc_length_method(load: float, named: Callable[[float, float, Array], Quantities]) -> Rival:
     """The rival for scenes whose path turns in a fold and then comes to a bound.
 
-    `load` takes a scene to the load at which its answer is asked for, `named` a scene and the turns to its quantities.
+    `load`: At which the answer is asked for. `named`: The loads of the fold and of the first kink behind it, and the
+    point z on the way up from there at the load, to quantities.
     """
-    return Rival("arc length (Crisfield)", "", lambda scene: named(scene, follow(scene.problem(), load(scene))))
+    return Rival("arc length (Crisfield)", "", lambda scene: named(*follow(scene.problem(), load)))
 
 
-def follow(problem: NormalMap, load: float) -> Turns:
+def follow(problem: NormalMap, load: float) -> tuple[float, float, Array]:
     """Follow the path on spheres about its last point, with the active set of that point.
 
     A step that leaves the set is made shorter, to end where it does; from there the next set goes on. Raises
@@ -78,8 +69,8 @@ def follow(problem: NormalMap, load: float) -> Turns:
             turned = brentq(lambda s, arc=arc: _tangent(arc.piece, arc.at(s), arc.along)[-1], 0.0, far)
             fold = float(arc.at(turned)[-1])
         if not np.isnan(kink) and new[-1] >= load:
-            end = arc.at(brentq(lambda s, arc=arc: arc.at(s)[-1] - load, 0.0, far, xtol=1e-15))
-            return Turns(fold, kink, end[:-1])
+            end = brentq(lambda s, arc=arc: arc.at(s)[-1] - load, 0.0, far, xtol=1e-15)
+            return fold, kink, arc.at(end)[:-1]
         if change >= 0:
             signs[change] = -signs[change]
             outward = signs[change] * growing[change] * np.eye(n + 1)[place[change]]

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
-from attrs import field, frozen
 
-from continuation.arguments.checks import FINITE, NOT_NEGATIVE
 from problems.lcp.data.problem import LCP
-from problems.scenes.pictures import arrow
+from problems.scenes.pictures import Picture, arrow, mark, picture
 from problems.scenes.planar import contact_unknowns, free_motion, impulses, time_step
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
+from problems.scenes.scene import Finite, NotNegative, Positive, Quantities, Scene, with_parameters
 
 
-@frozen
-class Block:
+@with_parameters
+def Block(
+    mass: Positive = 1.0, friction: NotNegative = 0.5, speed: Finite = 1.0, push: Finite = 0.0,
+    gravity: Positive = 9.81, step: Positive = 0.01,
+) -> Scene:  # fmt: skip
     """A block on a plane, pushed or not: does it slide, or does friction hold it?
 
     One time step. Its rotation is not modelled, so one contact is enough.
@@ -40,53 +41,41 @@ class Block:
     ----------
     Stewart and Trinkle, Int. J. Numer. Methods Eng. 39 (1996).
     """
+    A, _, _ = time_step([(mass, 1.0, 0.0, 0.0)], [(0, -1, 0.0, 0.0, 0.0, 1.0)], friction)
+    # The speed after the step without friction.
+    free = speed + step * push / mass
+    q = free_motion(np.array([-step * gravity, free]))
+    # Without friction the normal impulse is the one unknown.
+    n = 4 if friction else 1
 
-    mass: float = positive(1.0)
-    friction: float = field(default=0.5, validator=NOT_NEGATIVE)
-    speed: float = field(default=1.0, validator=FINITE)
-    push: float = field(default=0.0, validator=FINITE)
-    gravity: float = positive(9.81)
-    step: float = positive(0.01)
-    units: ClassVar[Units] = {"normal impulse": "N s", "friction impulse": "N s", "speed": "m/s"}
-    rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Four, or the normal impulse alone where there is no friction."""
-        return contact_unknowns(1) if self.friction else contact_unknowns(1)[:1]
-
-    def problem(self) -> LCP:
-        """Stewart and Trinkle's step."""
-        A, _, _ = time_step([(self.mass, 1.0, 0.0, 0.0)], [(0, -1, 0.0, 0.0, 0.0, 1.0)], self.friction)
-        q = free_motion(np.array([-self.step * self.gravity, self._free]))
-        n = sum(kind.count for kind in self.unknowns)
-        return LCP(A[:n, :n], q[:n])
-
-    @property
-    def _free(self) -> float:
-        """The speed after the step without friction."""
-        return self.speed + self.step * self.push / self.mass
-
-    def answer(self, solution: Any) -> Quantities:
+    def after(normal: float, along: float) -> Quantities:
         """Impulses of the plane on the block, and its speed after the step."""
-        normal, along = impulses(np.pad(solution.x, (0, 4 - solution.x.size)))
-        return {"normal impulse": normal, "friction impulse": along, "speed": self._free + along / self.mass}
+        return {"normal impulse": normal, "friction impulse": along, "speed": free + along / mass}
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """Friction stops the block, or is at its limit."""
-        normal = self.mass * self.gravity * self.step
-        along = -float(np.clip(self.mass * self._free, -self.friction * normal, self.friction * normal))
-        return {"normal impulse": normal, "friction impulse": along, "speed": self._free + along / self.mass}
+        normal = mass * gravity * step
+        return after(normal, -float(np.clip(mass * free, -friction * normal, friction * normal)))
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def answer(solution: Any) -> Quantities:
+        return after(*impulses(np.pad(solution.x, (0, 4 - solution.x.size))))
+
+    def drawn(solution: Any) -> Picture:
         """The block, the impulses on it, and its velocity after the step."""
-        found = self.answer(solution)
-        axes.fill([-0.5, 0.5, 0.5, -0.5], [0.0, 0.0, 0.6, 0.6], color="0.85")
-        axes.axhline(0.0, color="0.4", linewidth=1.0)
-        friction = found["friction impulse"] / found["normal impulse"]
-        arrow(axes, (0.0, 0.0), (0.0, 1.0), 0, f"normal impulse {found['normal impulse']:.4g} N s")
-        arrow(axes, (0.0, 0.0), (friction, 0.0), 1, f"friction impulse {found['friction impulse']:.4g} N s")
-        arrow(axes, (0.0, 0.3), (np.sign(found["speed"]), 0.0), 2, f"{found['speed']:.4g} m/s after the step")
-        axes.set(xlim=(-1.5, 1.5), ylim=(-0.2, 1.9), aspect="equal", xticks=[], yticks=[])
-        axes.set_title("slides" if found["speed"] else "sticks", fontsize="medium")
-        axes.legend(loc="upper right", fontsize="small", frameon=False)
+        normal, along, speed = answer(solution).values()
+        return picture(
+            mark("fill", [-0.5, 0.5, 0.5, -0.5], [0.0, 0.0, 0.6, 0.6], color="0.85"),
+            mark("axhline", 0.0, color="0.4", linewidth=1.0),
+            *arrow((0.0, 0.0), (0.0, 1.0), 0, f"normal impulse {normal:.4g} N s"),
+            *arrow((0.0, 0.0), (along / normal, 0.0), 1, f"friction impulse {along:.4g} N s"),
+            *arrow((0.0, 0.3), (np.sign(speed), 0.0), 2, f"{speed:.4g} m/s after the step"),
+            xlim=(-1.5, 1.5), ylim=(-0.2, 1.9), aspect="equal", xticks=[], yticks=[],
+            title="slides" if speed else "sticks", legend={"loc": "upper right", "fontsize": "small"},
+        )  # fmt: skip
+
+    return Scene(
+        units={"normal impulse": "N s", "friction impulse": "N s", "speed": "m/s"},
+        unknowns=contact_unknowns(1) if friction else contact_unknowns(1)[:1],
+        problem=lambda: LCP(A[:n, :n], q[:n]),
+        answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
+    )  # fmt: skip

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
-from attrs import field, frozen
 
-from continuation.arguments.checks import FINITE, NOT_NEGATIVE
-from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
-from problems.scenes.pictures import arrow, rectangle
+from problems.scenes.pictures import Picture, arrow, mark, picture, rectangle
 from problems.scenes.planar import contact_unknowns, free_motion, impulses, time_step
 from problems.scenes.rivals import LEMKE, TABLES
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
+from problems.scenes.scene import Finite, NotNegative, Positive, Quantities, Scene, with_parameters
 
 
-@frozen
-class Box:
+@with_parameters
+def Box(
+    width: Positive = 1.0, height: Positive = 2.0, mass: Positive = 1.0, friction: NotNegative = 0.5,
+    push: Finite = 2.0, gravity: Positive = 9.81, step: Positive = 0.01,
+) -> Scene:  # fmt: skip
     """A box that stands on a rough floor and is pushed at the height of its top: does it rest, slide, or tip?
 
     A flat floor bears on the two corners alone: what presses between them can be replaced by forces there.
@@ -36,72 +36,51 @@ class Box:
     step : float
         s.
     """
+    half, inertia, weight = 0.5 * width, mass * (width**2 + height**2) / 12.0, mass * gravity
+    corners = [(0, -1, side, 0.0, 0.0, 1.0) for side in (-half, half)]
+    A, J, inverse = time_step([(mass, inertia, 0.0, 0.5 * height)], corners, friction)
+    # The velocity after the step without a floor.
+    free = step * inverse * np.array([push, -mass * gravity, -0.5 * push * height])
 
-    width: float = positive(1.0)
-    height: float = positive(2.0)
-    mass: float = positive(1.0)
-    friction: float = field(default=0.5, validator=NOT_NEGATIVE)
-    push: float = field(default=2.0, validator=FINITE)
-    gravity: float = positive(9.81)
-    step: float = positive(0.01)
-    units: ClassVar[Units] = {
-        "left force": "N", "right force": "N", "friction force": "N", "speed": "m/s", "rotation": "rad/s",
-    }  # fmt: skip
-    rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES)
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Four a corner."""
-        return contact_unknowns(2)
-
-    def _step(self) -> tuple[Array, Array, Array, Array]:
-        """The matrix, J, the inverse masses, and the velocity after the step without a floor."""
-        inertia = self.mass * (self.width**2 + self.height**2) / 12.0
-        half = 0.5 * self.width
-        corners = [(0, -1, side, 0.0, 0.0, 1.0) for side in (-half, half)]
-        A, J, inverse = time_step([(self.mass, inertia, 0.0, 0.5 * self.height)], corners, self.friction)
-        load = np.array([self.push, -self.mass * self.gravity, -0.5 * self.push * self.height])
-        return A, J, inverse, self.step * inverse * load
-
-    def problem(self) -> LCP:
-        """One time step from rest."""
-        A, J, _, free = self._step()
-        return LCP(A, free_motion(J @ free))
-
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """Forces of the floor, and velocities after the step; to tip is to turn, which is a negative rotation."""
-        _, J, inverse, free = self._step()
         p = impulses(solution.x)
         velocity = free + inverse * (J.T @ p)
-        left, right = p[::2] / self.step
+        left, right = p[::2] / step
         return {
-            "left force": left, "right force": right, "friction force": float(p[1::2].sum()) / self.step,
+            "left force": left, "right force": right, "friction force": float(p[1::2].sum()) / step,
             "speed": velocity[0], "rotation": velocity[2],
         }  # fmt: skip
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """Of a box that rests; one that slides, or tips, has other forces."""
-        weight, moment = self.mass * self.gravity, self.push * self.height / self.width
-        if abs(self.push) >= self.friction * weight or abs(moment) >= 0.5 * weight:
+        moment = push * height / width
+        if abs(push) >= friction * weight or abs(moment) >= 0.5 * weight:
             return {}
         return {
-            "left force": 0.5 * weight - moment, "right force": 0.5 * weight + moment, "friction force": -self.push,
+            "left force": 0.5 * weight - moment, "right force": 0.5 * weight + moment, "friction force": -push,
             "speed": 0.0, "rotation": 0.0,
         }  # fmt: skip
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """The box with the forces at its corners and its top, in parts of its weight."""
-        found, unit = self.answer(solution), self.height / (self.mass * self.gravity)
-        rectangle(axes, np.array([0.0, 0.5 * self.height, 0.0]), self.width, self.height)
-        axes.axhline(0.0, color="0.4", linewidth=1.0)
-        half = 0.5 * self.width
-        arrow(axes, (-half, 0.0), (0.0, unit * found["left force"]), 0, f"left {found['left force']:.3g} N")
-        arrow(axes, (half, 0.0), (0.0, unit * found["right force"]), 1, f"right {found['right force']:.3g} N")
-        arrow(axes, (0.0, 0.0), (unit * found["friction force"], 0.0), 2, f"friction {found['friction force']:.3g} N")
-        arrow(axes, (-half, self.height), (unit * self.push, 0.0), 3, f"push {self.push:.3g} N")
-        axes.set(xlim=(-2 * self.width, 3 * self.width), ylim=(-0.1 * self.height, 1.2 * self.height))
-        axes.set(aspect="equal", xticks=[], yticks=[])
-        moves = 1e-9 * self.step * self.gravity
-        turns, slides = abs(found["rotation"]) * self.height > moves, abs(found["speed"]) > moves
-        axes.set_title("tips" if turns else "slides" if slides else "rests", fontsize="medium")
-        axes.legend(loc="center right", fontsize="small", frameon=False)
+        left, right, friction, speed, rotation = answer(solution).values()
+        unit, moves = height / weight, 1e-9 * step * gravity
+        return picture(
+            rectangle(np.array([0.0, 0.5 * height, 0.0]), width, height),
+            mark("axhline", 0.0, color="0.4", linewidth=1.0),
+            *arrow((-half, 0.0), (0.0, unit * left), 0, f"left {left:.3g} N"),
+            *arrow((half, 0.0), (0.0, unit * right), 1, f"right {right:.3g} N"),
+            *arrow((0.0, 0.0), (unit * friction, 0.0), 2, f"friction {friction:.3g} N"),
+            *arrow((-half, height), (unit * push, 0.0), 3, f"push {push:.3g} N"),
+            xlim=(-2 * width, 3 * width), ylim=(-0.1 * height, 1.2 * height), aspect="equal", xticks=[], yticks=[],
+            title="tips" if abs(rotation) * height > moves else "slides" if abs(speed) > moves else "rests",
+            legend={"loc": "center right", "fontsize": "small"},
+        )  # fmt: skip
+
+    return Scene(
+        units={"left force": "N", "right force": "N", "friction force": "N", "speed": "m/s", "rotation": "rad/s"},
+        unknowns=contact_unknowns(2),
+        problem=lambda: LCP(A, free_motion(J @ free)),
+        answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES),
+    )  # fmt: skip

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
-from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE
 from problems.lcp.data.problem import MixedLCP
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, numbers, positive
+from problems.scenes.scene import Kind, Numbers, Positive, Quantities, Scene, Unknown, with_parameters
 
 
-@frozen
-class Cournot:
+@with_parameters
+def Cournot(
+    costs: Numbers = (10.0, 20.0, 30.0, 80.0), intercept: Positive = 100.0, slope: Positive = 1.0,
+    capacity: Annotated[float, Kind(POSITIVE)] = inf,
+) -> Scene:  # fmt: skip
     """Producers with different costs sell one good at the price that their total leaves: who sells how much?
 
     The price is intercept - slope * total. Each maximises its own profit, given what the others sell.
@@ -35,43 +38,35 @@ class Cournot:
     ----------
     Cournot, Recherches sur les principes mathematiques de la theorie des richesses, 1838.
     """
+    cost, n = np.array(costs), len(costs)
+    A = slope * (np.eye(n) + np.ones((n, n)))
 
-    costs: tuple[float, ...] = numbers("costs", (10.0, 20.0, 30.0, 80.0))
-    intercept: float = positive(100.0)
-    slope: float = positive(1.0)
-    capacity: float = field(default=inf, validator=POSITIVE)
-    units: ClassVar[Units] = {"quantities": "units", "price": "money a unit", "profits": "money"}
-    rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, *QUADRATIC)
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Quantities alone: a capacity is a bound, which needs no multiplier, and the price follows."""
-        return (Unknown("quantities", len(self.costs), "who sells how much"),)
-
-    def problem(self) -> MixedLCP:
-        """Marginal profits, with their signs changed."""
-        n = len(self.costs)
-        A = self.slope * (np.eye(n) + np.ones((n, n)))
-        return MixedLCP(A, np.array(self.costs) - self.intercept, np.zeros(n), np.full(n, self.capacity))
-
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """Quantities, price and profits."""
         sold = np.asarray(solution.x)
-        price = self.intercept - self.slope * float(sold.sum())
-        return {"quantities": sold, "price": price, "profits": (price - np.array(self.costs)) * sold}
+        price = intercept - slope * float(sold.sum())
+        return {"quantities": sold, "price": price, "profits": (price - cost) * sold}
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """Without a binding capacity: producers enter in the order of their costs as long as it pays."""
-        costs = np.sort(self.costs)
-        prices = (self.intercept + np.cumsum(costs)) / (np.arange(costs.size) + 2.0)
-        price = float(min(self.intercept, prices.min()))
-        sold = np.maximum(price - np.array(self.costs), 0.0) / self.slope
-        return {} if (sold > self.capacity).any() else {"quantities": sold, "price": price}
+        price = float(min(intercept, ((intercept + np.cumsum(np.sort(cost))) / (np.arange(n) + 2.0)).min()))
+        sold = np.maximum(price - cost, 0.0) / slope
+        return {} if (sold > capacity).any() else {"quantities": sold, "price": price}
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """What each sells, against its cost, below the price."""
-        found = self.answer(solution)
-        axes.bar(range(len(self.costs)), found["quantities"], color="#0072B2")
-        axes.set(xlabel="producer", ylabel="units sold", xticks=range(len(self.costs)))
-        axes.set_xticklabels([f"cost {cost:g}" for cost in self.costs], fontsize="small")
-        axes.set_title(f"price {found['price']:.4g}", fontsize="medium")
+        found = answer(solution)
+        return picture(
+            mark("bar", range(n), found["quantities"], color="#0072B2"),
+            mark("set_xticks", range(n), [f"cost {one:g}" for one in costs], fontsize="small"),
+            xlabel="producer", ylabel="units sold", title=f"price {found['price']:.4g}",
+        )  # fmt: skip
+
+    return Scene(
+        units={"quantities": "units", "price": "money a unit", "profits": "money"},
+        # A capacity is a bound, which needs no multiplier, and the price follows.
+        unknowns=(Unknown("quantities", n, "who sells how much"),),
+        # Marginal profits, with their signs changed.
+        problem=lambda: MixedLCP(A, cost - intercept, np.zeros(n), np.full(n, capacity)),
+        answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+    )  # fmt: skip

@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from attrs import frozen
 from scipy.optimize import brentq
 
-from continuation.arrays import Array
 from continuation.tracing import solve_at
 from problems.nonlinear.normal_map import NormalMap
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
+from problems.scenes.pictures import Picture, mark, picture
+from problems.scenes.scene import Positive, Quantities, Rival, Scene, Unknown, with_parameters
 
 ANTOINE = ((6.90565, 1211.033, 220.790), (6.95464, 1344.800, 219.482))
 """Of benzene and toluene, for mm Hg and degrees Celsius: log10 p = A - B / (T + C) (Perry's handbook)."""
-
-MM_HG = 101.325 / 760.0
-"""kPa."""
-
-WARMEST = 120.0
-"""Degrees Celsius, where the path ends; it begins at COLDEST."""
-
-COLDEST = 70.0
 
 
 @frozen
@@ -33,17 +25,16 @@ class RachfordRice:
     pressure: float
 
     def volatilities(self, temperature: Any) -> Any:
-        """K_i - 1 = p_i / p - 1, by Raoult's law, in a list; jets pass through it."""
-        return [10.0 ** (a - b / (temperature + c)) * (MM_HG / self.pressure) - 1.0 for a, b, c in ANTOINE]
+        """K_i - 1 = p_i / p - 1, by Raoult's law, in a list; 760 mm Hg are 101.325 kPa. Jets pass through it."""
+        return [10.0 ** (a - b / (temperature + c)) * (101.325 / 760.0 / self.pressure) - 1.0 for a, b, c in ANTOINE]
 
     def __call__(self, x: Any, lam: Any) -> Any:
         """-sum z_i (K_i - 1) / (1 + x (K_i - 1)), shape (1,)."""
-        k = self.volatilities(lam)
-        return -sum(z * ki / (1.0 + x * ki) for z, ki in zip(self.feed, k))
+        return -sum(z * k / (1.0 + x * k) for z, k in zip(self.feed, self.volatilities(lam)))
 
 
-@frozen
-class FlashDrum:
+@with_parameters
+def FlashDrum(benzene: Positive = 0.5, pressure: Positive = 101.325, temperature: Positive = 95.0) -> Scene:
     """Benzene and toluene in a drum: which part is vapour at each temperature?
 
     The part of vapour is between 0 and 1. At 0 no vapour can appear, at 1 no liquid: complementarity with two bounds,
@@ -62,79 +53,62 @@ class FlashDrum:
     ----------
     Rachford and Rice, J. Petroleum Technology 4 (1952); Perry's Chemical Engineers' Handbook.
     """
+    cold, warm = 70.0, 120.0
+    balance = RachfordRice((benzene, 1.0 - benzene), pressure)
+    if benzene >= 1.0:
+        raise ValueError(f"benzene: expected a number between 0 and 1, found {benzene}")
+    if not cold <= temperature <= warm:
+        raise ValueError(f"temperature: expected {cold:g} to {warm:g}, found {temperature}")
+    if not balance(0.0, cold) > 0.0 > balance(1.0, warm):
+        raise ValueError(f"pressure: expected one at which the mixture boils from {cold:g} to {warm:g} "
+                         f"degrees, found {pressure}")  # fmt: skip
 
-    benzene: float = positive(0.5)
-    pressure: float = positive(101.325)
-    temperature: float = positive(95.0)
-    units: ClassVar[Units] = {
-        "bubble point": "degrees C", "dew point": "degrees C", "vapour": "", "benzene in vapour": "",
-        "benzene in liquid": "",
-    }  # fmt: skip
-
-    def __attrs_post_init__(self) -> None:
-        if self.benzene >= 1.0:
-            raise ValueError(f"benzene: expected a number between 0 and 1, found {self.benzene}")
-        if not COLDEST <= self.temperature <= WARMEST:
-            raise ValueError(f"temperature: expected {COLDEST:g} to {WARMEST:g}, found {self.temperature}")
-        low, high = self._curve(COLDEST)[0] < 0.0, self._curve(WARMEST)[1] > 0.0
-        if not (low and high):
-            raise ValueError(f"pressure: expected one at which the mixture boils from {COLDEST:g} to {WARMEST:g} "
-                             f"degrees, found {self.pressure}")  # fmt: skip
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """The part of vapour; compositions follow from it, and no phase needs a switch of its own."""
-        return (Unknown("part of vapour", 1, "which phases there are"),)
-
-    @property
-    def rivals(self) -> tuple[Rival, ...]:
-        """Brent's method at each of the three temperatures, with phases tested one by one."""
-        return (Rival("Brent, phase by phase (scipy)", "", lambda scene: scene.exact()),)
-
-    @property
-    def _function(self) -> RachfordRice:
-        return RachfordRice((self.benzene, 1.0 - self.benzene), self.pressure)
-
-    def _curve(self, temperature: float) -> tuple[float, float]:
-        """Rachford and Rice's function, with its sign, without vapour and with nothing else."""
-        f = self._function
-        return -float(f(0.0, temperature)), -float(f(1.0, temperature))
-
-    def problem(self) -> NormalMap:
+    def problem() -> NormalMap:
         """The path of the part of vapour, from cold to warm."""
-        return NormalMap(self._function, x0=np.zeros(1), lam0=COLDEST, lower=0.0, upper=1.0, target=WARMEST)
+        return NormalMap(balance, x0=np.zeros(1), lam0=cold, lower=0.0, upper=1.0, target=warm)
 
-    def answer(self, solution: Any) -> Quantities:
-        """Temperatures at which a phase appears or vanishes, and the phases at one temperature."""
-        bubble, dew = (kink.lam for kink in solution.kinks)
-        z = solve_at(self.problem(), self.temperature, solution(t=self.temperature)[:-1])
-        part = float(np.clip(z[0], 0.0, 1.0))
-        return {"bubble point": bubble, "dew point": dew, **self._phases(part)}
-
-    def _phases(self, part: float) -> Quantities:
-        k = self._function.volatilities(self.temperature)
-        liquid: Array = np.array([z / (1.0 + part * ki) for z, ki in zip((self.benzene, 1.0 - self.benzene), k)])
-        vapour = liquid * (1.0 + np.array(k))
-        # A phase that is not there has the composition in which it would appear.
+    def phases(bubble: float, dew: float, part: float) -> Quantities:
+        """A phase that is not there has the composition in which it would appear."""
+        k = np.array(balance.volatilities(temperature))
+        liquid = np.array([z / (1.0 + part * ki) for z, ki in zip(balance.feed, k)])
+        vapour = liquid * (1.0 + k)
         return {
-            "vapour": part, "benzene in vapour": float(vapour[0] / vapour.sum()),
-            "benzene in liquid": float(liquid[0] / liquid.sum()),
+            "bubble point": bubble, "dew point": dew, "vapour": part,
+            "benzene in vapour": float(vapour[0] / vapour.sum()), "benzene in liquid": float(liquid[0] / liquid.sum()),
         }  # fmt: skip
 
-    def exact(self) -> Quantities:
-        """By Brent's method, phase by phase."""
-        bubble, dew = (float(brentq(lambda T, k=k: self._curve(T)[k], COLDEST, WARMEST, xtol=1e-13)) for k in (0, 1))
-        f, T = self._function, self.temperature
-        inside = bubble < T < dew
-        part = float(brentq(lambda x: float(f(x, T)), 0.0, 1.0, xtol=1e-15)) if inside else float(dew <= T)
-        return {"bubble point": bubble, "dew point": dew, **self._phases(part)}
+    def answer(solution: Any) -> Quantities:
+        """Temperatures at which a phase appears or vanishes, and the phases at one temperature."""
+        z = solve_at(problem(), temperature, solution(t=temperature)[:-1])
+        bubble, dew = (kink.lam for kink in solution.kinks)
+        return phases(bubble, dew, float(np.clip(z[0], 0.0, 1.0)))
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def exact() -> Quantities:
+        """By Brent's method, phase by phase."""
+        bubble, dew = (brentq(lambda T, x=x: float(balance(x, T)), cold, warm, xtol=1e-13) for x in (0.0, 1.0))
+        inside = bubble < temperature < dew
+        part = brentq(lambda x: float(balance(x, temperature)), 0.0, 1.0, xtol=1e-15) if inside else dew <= temperature
+        return phases(bubble, dew, float(part))
+
+    def drawn(solution: Any) -> Picture:
         """The part of vapour against the temperature."""
         u = solution(np.linspace(0.0, solution.arclength[-1], 400))
-        axes.plot(u[:, -1], np.clip(u[:, 0], 0.0, 1.0), color="#0072B2")
-        for kink, name in zip(solution.kinks, ("bubble point", "dew point")):
-            axes.plot(kink.lam, np.clip(kink.y[0], 0.0, 1.0), "kD", markersize=5)
-            axes.annotate(f"{name} {kink.lam:.2f}", (kink.lam, np.clip(kink.y[0], 0.0, 1.0)), (0, 8), ha="right",
-                          textcoords="offset points")  # fmt: skip
-        axes.set(xlabel="temperature (degrees Celsius)", ylabel="part of vapour", ylim=(-0.05, 1.15))
+        kinks = [(kink.lam, np.clip(kink.y[0], 0.0, 1.0)) for kink in solution.kinks]
+        return picture(
+            mark("plot", u[:, -1], np.clip(u[:, 0], 0.0, 1.0), color="#0072B2"),
+            *(mark("plot", *kink, "kD", markersize=5) for kink in kinks),
+            *(mark("annotate", f"{name} {kink[0]:.2f}", kink, (0, 8), ha="right", textcoords="offset points")
+              for kink, name in zip(kinks, ("bubble point", "dew point"))),
+            xlabel="temperature (degrees Celsius)", ylabel="part of vapour", ylim=(-0.05, 1.15),
+        )  # fmt: skip
+
+    return Scene(
+        units={
+            "bubble point": "degrees C", "dew point": "degrees C", "vapour": "", "benzene in vapour": "",
+            "benzene in liquid": "",
+        },
+        # Compositions follow from it, and no phase needs a switch of its own.
+        unknowns=(Unknown("part of vapour", 1, "which phases there are"),),
+        problem=problem, answer=answer, exact=exact, picture=drawn,
+        rivals=(Rival("Brent, phase by phase (scipy)", "", lambda scene: exact()),),
+    )  # fmt: skip

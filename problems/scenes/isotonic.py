@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from importlib import import_module
+from typing import Annotated, Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
 
-from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Units, Unknown
+from problems.scenes.scene import NotNegative, Quantities, Rival, Scene, Seed, Unknown, at_least, with_parameters
 
 
-@frozen
-class Isotonic:
+@with_parameters
+def Isotonic(samples: Annotated[int, at_least(2)] = 100, noise: NotNegative = 0.3, seed: Seed = 0) -> Scene:
     """A noisy response that can only rise with the dose: which rising curve is nearest to it?
 
     Parameters
@@ -30,68 +30,53 @@ class Isotonic:
     ----------
     Barlow, Bartholomew, Bremner and Brunk, Statistical Inference under Order Restrictions, 1972.
     """
+    n, place = samples - 1, np.linspace(-3.0, 3.0, samples)
+    data = 1.0 / (1.0 + np.exp(-2.0 * place)) + noise * np.random.default_rng(seed).normal(size=samples)
 
-    samples: int = field(default=100, validator=integer(2))
-    noise: float = field(default=0.3, validator=NOT_NEGATIVE)
-    seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Units] = {"fit": "", "steps": ""}
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Forces between neighbours: the fit is the data moved by these, so no value of the curve is an unknown."""
-        return (Unknown("forces between neighbours", self.samples - 1, "which samples are pooled"),)
-
-    @property
-    def rivals(self) -> tuple[Rival, ...]:
-        """Pooling of adjacent violators, of scikit-learn and in Python, and methods for the quadratic program."""
-        return (Rival("IsotonicRegression (sklearn)", "sklearn", _sklearn),
-                Rival("pool adjacent violators", "", _pooled), GAUSS_SEIDEL, *QUADRATIC)  # fmt: skip
-
-    def data(self) -> Array:
-        """The measurement, shape (samples,)."""
-        place = np.linspace(-3.0, 3.0, self.samples)
-        return 1.0 / (1.0 + np.exp(-2.0 * place)) + self.noise * np.random.default_rng(self.seed).normal(
-            size=place.size
-        )
-
-    def problem(self) -> LCP:
+    def problem() -> LCP:
         """D D' z + D y >= 0, D the differences of neighbours."""
-        n = self.samples - 1
-        one = np.ones(n - 1)
-        A = sp.diags_array([-one, np.full(n, 2.0), -one], offsets=[-1, 0, 1], format="csr")
-        return LCP(A, np.diff(self.data()))
+        A = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(n, n), format="csr")
+        return LCP(A, np.diff(data))
 
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """The fit y + D'z, and the number of its different values."""
-        z = np.pad(np.asarray(solution.x), 1)
-        fit = self.data() - np.diff(z)
-        return {"fit": fit, "steps": 1.0 + float((np.asarray(solution.x) == 0.0).sum())}
+        z = np.asarray(solution.x)
+        return {"fit": data - np.diff(np.pad(z, 1)), "steps": 1.0 + float((z == 0.0).sum())}
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """By pooling adjacent violators, which is exact."""
-        fit = _pooled(self)["fit"]
+        fit = _pooled(data)
         return {"fit": fit, "steps": 1.0 + float((np.diff(fit) > 0.0).sum())}
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """Data and fit."""
-        axes.plot(self.data(), ".", color="0.6", label="measured")
-        axes.step(range(self.samples), self.answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit")
-        axes.set(xlabel="sample", ylabel="response")
-        axes.legend(frameon=False)
+        return picture(
+            mark("plot", data, ".", color="0.6", label="measured"),
+            mark("step", range(samples), answer(solution)["fit"], where="mid", color="#0072B2", label="rising fit"),
+            xlabel="sample", ylabel="response",
+        )  # fmt: skip
+
+    def sklearn(scene: Any) -> Quantities:
+        regression = import_module("sklearn.isotonic").IsotonicRegression()
+        return {"fit": regression.fit_transform(np.arange(samples), data)}
+
+    return Scene(
+        units={"fit": "", "steps": ""},
+        # The fit is the data moved by these, so no value of the curve is an unknown.
+        unknowns=(Unknown("forces between neighbours", n, "which samples are pooled"),),
+        problem=problem, answer=answer, exact=exact, picture=drawn,
+        rivals=(Rival("IsotonicRegression (sklearn)", "sklearn", sklearn),
+                Rival("pool adjacent violators", "", lambda scene: {"fit": _pooled(data)}), GAUSS_SEIDEL, *QUADRATIC),
+    )  # fmt: skip
 
 
-def _pooled(scene: Isotonic) -> Quantities:
+def _pooled(data: Array) -> Array:
+    """The rising curve nearest to the data, by pooling adjacent violators."""
     blocks: list[tuple[float, int]] = []
-    for value in scene.data().tolist():
+    for value in data.tolist():
         total, size = value, 1
         while blocks and blocks[-1][0] * size >= total * blocks[-1][1]:
             before, many = blocks.pop()
             total, size = total + before, size + many
         blocks.append((total, size))
-    return {"fit": np.repeat([total / size for total, size in blocks], [size for _, size in blocks])}
-
-
-def _sklearn(scene: Isotonic) -> Quantities:
-    from sklearn.isotonic import IsotonicRegression
-
-    return {"fit": IsotonicRegression().fit_transform(np.arange(scene.samples), scene.data())}
+    return np.repeat([total / size for total, size in blocks], [size for _, size in blocks])

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
-from attrs import field, frozen
 from scipy.linalg import solve_discrete_are
 
-from continuation.arguments.checks import FINITE, integer
-from continuation.arrays import Array
 from continuation.path import Path
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.parametric.along import along
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
+from problems.scenes.scene import Finite, Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
 
-@frozen
-class Regulator:
+@with_parameters
+def Regulator(
+    distance: Finite = 3.0, limit: Positive = 1.0, mass: Positive = 1.0, step: Positive = 0.5,
+    weight: Positive = 0.1, horizon: Annotated[int, at_least(1)] = 12,
+) -> Scene:  # fmt: skip
     """A cart is brought to rest by a drive of limited force: which force now, for every distance it starts from?
 
     The best forces over a horizon are piecewise affine in the state at the start. Their path along one line of states
@@ -43,88 +44,62 @@ class Regulator:
     ----------
     Bemporad, Morari, Dua and Pistikopoulos, Automatica 38 (2002).
     """
+    # Of x' = F x + G u, of the weights of states, and of the last one, which is the value without limits.
+    F, G = np.array([[1.0, step], [0.0, 1.0]]), np.array([[0.5 * step**2], [step]]) / mass
+    Q = np.diag([1.0, 0.0])
+    last = solve_discrete_are(F, G, Q, np.array([[weight]]))
+    # Min u'Hu / 2 + t f'u + t^2 c, t the distance.
+    state, H = np.array([1.0, 0.0]), weight * np.eye(horizon)
+    f, c, reach = np.zeros(horizon), 0.0, np.zeros((2, horizon))
+    for k in range(horizon):
+        c += 0.5 * state @ Q @ state
+        reach, state = F @ reach, F @ state
+        reach[:, k] += G[:, 0]
+        W = last if k == horizon - 1 else Q
+        H, f = H + reach.T @ W @ reach, f + reach.T @ W @ state
+    # The first state's weight is in c once, the last state's beside it.
+    H, c = 0.5 * (H + H.T), float(c + 0.5 * state @ last @ state)
+    bound, none = np.full(horizon, limit), np.zeros(horizon)
 
-    distance: float = field(default=3.0, validator=FINITE)
-    limit: float = positive(1.0)
-    mass: float = positive(1.0)
-    step: float = positive(0.5)
-    weight: float = positive(0.1)
-    horizon: int = field(default=12, validator=integer(1))
-    units: ClassVar[Units] = {"force": "N", "value": "", "free up to": "m", "kinks at": "m"}
-    rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, *QUADRATIC)
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Forces; states follow from them, limits are bounds."""
-        return (Unknown("forces", self.horizon, "what the drive does, now and later"),)
-
-    def _model(self) -> tuple[Array, Array, Array, Array]:
-        """Of x' = F x + G u: F, G, the weights of states, and of the last one (the value without limits)."""
-        F, G = np.array([[1.0, self.step], [0.0, 1.0]]), np.array([[0.5 * self.step**2], [self.step]]) / self.mass
-        Q = np.diag([1.0, 0.0])
-        return F, G, Q, solve_discrete_are(F, G, Q, np.array([[self.weight]]))
-
-    def _condensed(self) -> tuple[Array, Array, float]:
-        """Min u'Hu / 2 + t f'u + t^2 c, t the distance."""
-        F, G, Q, last = self._model()
-        start, H = np.array([1.0, 0.0]), self.weight * np.eye(self.horizon)
-        f, c, reach = np.zeros(self.horizon), 0.0, np.zeros((2, self.horizon))
-        for k in range(self.horizon):
-            c += 0.5 * start @ Q @ start
-            reach, start = F @ reach, F @ start
-            reach[:, k] += G[:, 0]
-            W = last if k == self.horizon - 1 else Q
-            H, f = H + reach.T @ W @ reach, f + reach.T @ W @ start
-        # The first state's weight is in c once, the last state's beside it.
-        return 0.5 * (H + H.T), f, float(c + 0.5 * start @ last @ start)
-
-    def problem(self) -> MixedLCP:
-        """At the distance."""
-        H, f, _ = self._condensed()
-        bound = np.full(self.horizon, self.limit)
-        return MixedLCP(H, self.distance * f, -bound, bound)
-
-    def solve(self) -> Path:
+    def solved() -> Path:
         """The forces for all distances from zero to twice that of the scene."""
-        H, f, _ = self._condensed()
-        bound = np.full(self.horizon, self.limit)
-        far = 2.0 * self.distance or 1.0
-        return along(MixedLCP(H, np.zeros(self.horizon), -bound, bound), f, (0.0, far), x=np.zeros(self.horizon))
+        return along(MixedLCP(H, none, -bound, bound), f, (0.0, 2.0 * distance or 1.0), x=none)
 
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """The force now and the value, at the distance; distances at which forces meet or leave their limits."""
-        H, f, c = self._condensed()
-        path = isinstance(solution, Path)
-        u = solution(t=self.distance)[:-1] if path else np.asarray(solution.x)
-        t = self.distance
+        path, t = isinstance(solution, Path), distance
+        u = solution(t=t)[:-1] if path else np.asarray(solution.x)
         found = {"force": float(u[0]), "value": float(0.5 * u @ H @ u + t * f @ u + t * t * c)}
         if not path:
             return found
         kinks = np.array([kink.lam for kink in solution.kinks])
         return {**found, "free up to": float(kinks[0]) if kinks.size else float(solution.lam[-1]), "kinks at": kinks}
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """Before the first kink that of Riccati's equation, which has no limits."""
-        F, G, _, last = self._model()
-        gain = np.linalg.solve(self.weight + G.T @ last @ G, G.T @ last @ F)[0]
+        gain = np.linalg.solve(weight + G.T @ last @ G, G.T @ last @ F)[0]
         # The largest force of the closed loop says how far that holds.
         state, largest = np.array([1.0, 0.0]), 0.0
-        for _ in range(self.horizon):
+        for _ in range(horizon):
             u = -float(gain @ state)
             state, largest = F @ state + G[:, 0] * u, max(largest, abs(u))
-        free = self.limit / largest
-        known = {"free up to": free}
-        if abs(self.distance) > free:
-            return known if 2.0 * abs(self.distance) > free else {}
-        value = 0.5 * self.distance**2 * last[0, 0]
-        return {"force": -float(gain[0]) * self.distance, "value": value} if 2.0 * abs(self.distance) <= free else {
-            **known, "force": -float(gain[0]) * self.distance, "value": value}  # fmt: skip
+        free, far = limit / largest, abs(distance)
+        near = {"force": -float(gain[0]) * distance, "value": 0.5 * distance**2 * last[0, 0]} if far <= free else {}
+        return {"free up to": free, **near} if 2.0 * far > free else near
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """The first three forces against the distance, with all kinks."""
-        for k in range(min(3, self.horizon)):
-            axes.plot(solution.lam, solution.y[:, k], label=("now", "a step later", "two steps later")[k])
-        for kink in solution.kinks:
-            axes.axvline(kink.lam, color="0.85", linewidth=0.8, zorder=0)
-        axes.set(xlabel="distance (m)", ylabel="force (N)")
-        axes.legend(frameon=False)
+        first = zip(solution.y.T, ("now", "a step later", "two steps later"))
+        return picture(
+            *(mark("plot", solution.lam, force, label=label) for force, label in first),
+            *(mark("axvline", kink.lam, color="0.85", linewidth=0.8, zorder=0) for kink in solution.kinks),
+            xlabel="distance (m)", ylabel="force (N)",
+        )  # fmt: skip
+
+    return Scene(
+        units={"force": "N", "value": "", "free up to": "m", "kinks at": "m"},
+        # States follow from forces, limits are bounds.
+        unknowns=(Unknown("forces", horizon, "what the drive does, now and later"),),
+        problem=lambda: MixedLCP(H, distance * f, -bound, bound),
+        solve=solved, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+    )  # fmt: skip

@@ -1,22 +1,28 @@
-"""What a scene is: a question of physics, economics or data, the smallest problem that answers it, and its picture."""
+"""A scene is data: a question with its parameters, the smallest problem that answers it, what is known, a picture.
+
+A function of the parameters makes it, in which all its parts share what the parameters determine.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial, wraps
 from importlib import import_module
-from typing import Any, ClassVar, Protocol, runtime_checkable
+from inspect import signature
+from typing import Annotated, Any, ParamSpec, get_type_hints
 
 import numpy as np
-from attrs import field, frozen
+from attrs import asdict, evolve, field, frozen, make_class
 
-from continuation.arguments.checks import POSITIVE_FINITE
+from continuation.arguments.checks import FINITE, NOT_NEGATIVE, POSITIVE_FINITE, Validator, integer
 from continuation.arrays import Array
 from continuation.tracing import trace
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.search.solver import solve as solve_problem
 from problems.options import finite_vector
+from problems.scenes.pictures import Picture
 
 Quantities = Mapping[str, Any]
 """Named numbers, or arrays of them."""
@@ -76,42 +82,43 @@ class Point:
     success: bool = True
 
 
-class Scene(Protocol):
-    """A frozen class of physical parameters, each with a default; `solve` solves it.
+@frozen(eq=False)
+class Scene:
+    """A question, for parameters that are chosen; any object with these attributes can be registered as a scene.
 
-    A scene may also have ``solve()``, where its answer takes more than one solution of its problem: steps in time, a
-    path, all equilibria.
+    Attributes
+    ----------
+    units : mapping
+        Of the answer, by the names of its quantities.
+    unknowns : tuple of Unknown
+        What is modelled, and why: together as many as the problem has unknowns.
+    problem : callable
+        ``problem()``: the smallest problem that answers the question: an `LCP`, a `MixedLCP`, a `Program`, or a
+        homotopy.
+    answer : callable
+        What `solve` returns for this scene to physical quantities by name.
+    picture : callable
+        What `solve` returns for this scene to a `Picture`.
+    exact : callable
+        ``exact()``: those quantities that have a closed form, or are published, for these parameters; perhaps none.
+    solve : callable, optional
+        ``solve()``, where the answer takes more than one solution of the problem: steps in time, a path, all
+        equilibria.
+    rivals : tuple of Rival
+        What the field uses.
+    parameters : object
+        The parameters, by name: a frozen value that can be compared.
     """
 
-    units: ClassVar[Units]
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """What is modelled, and why: together as many as the problem has unknowns."""
-        ...
-
-    @property
-    def rivals(self) -> tuple[Rival, ...]:
-        """What the field uses."""
-        ...
-
-    def problem(self) -> Any:
-        """The smallest problem that answers the question: an `LCP`, a `MixedLCP`, a `Program`, or a homotopy."""
-        ...
-
-    def answer(self, solution: Any) -> Quantities:
-        """Physical quantities by name, in the units of `units`.
-
-        Parameters
-        ----------
-        solution : Solution, Path or other
-            What `solve` returns for this scene.
-        """
-        ...
-
-    def exact(self) -> Quantities:
-        """Those quantities that have a closed form, or are published, for these parameters; perhaps none."""
-        ...
+    units: Units
+    unknowns: tuple[Unknown, ...]
+    problem: Callable[[], Any]
+    answer: Callable[[Any], Quantities]
+    picture: Callable[[Any], Picture]
+    exact: Callable[[], Quantities] = dict
+    solve: Callable[[], Any] | None = None
+    rivals: tuple[Rival, ...] = ()
+    parameters: Any = None
 
     def draw(self, solution: Any, axes: Any) -> None:
         """Draw the solution.
@@ -122,16 +129,60 @@ class Scene(Protocol):
             What `solve` returns for this scene.
         axes : matplotlib Axes
         """
-        ...
+        self.picture(solution).on(axes)
 
 
-@runtime_checkable
-class SupportsSolve(Protocol):
-    """Capability: a solution that is more than one solution of one problem."""
+@frozen
+class Kind:
+    """What a parameter may be: `check` validates it, `convert` makes what is kept of its name and its value."""
 
-    def solve(self) -> Any:
-        """What `answer` and `draw` take."""
-        ...
+    check: Validator | None = None
+    convert: Callable[[str, Any], Any] | None = None
+
+
+def at_least(least: int) -> Kind:
+    """An integer.
+
+    Parameters
+    ----------
+    least : int
+    """
+    return Kind(integer(least))
+
+
+Positive = Annotated[float, Kind(POSITIVE_FINITE)]
+NotNegative = Annotated[float, Kind(NOT_NEGATIVE)]
+Finite = Annotated[float, Kind(FINITE)]
+Seed = Annotated[int, at_least(0)]
+Numbers = Annotated[Sequence[float], Kind(convert=lambda name, value: tuple(finite_vector(name, value).tolist()))]
+"""A tuple of finite numbers, so that parameters can be compared."""
+
+P = ParamSpec("P")
+
+
+def with_parameters(build: Callable[P, Scene]) -> Callable[P, Scene]:
+    """A function that makes a scene, with its arguments checked by their annotations; the scene keeps them.
+
+    Parameters
+    ----------
+    build : callable
+        Its arguments are annotated by ``Annotated[type, Kind(...)]``, as `Positive` is, or not checked.
+    """
+    hints = get_type_hints(build, include_extras=True)
+    parts = {}
+    for name, parameter in signature(build).parameters.items():
+        kind = getattr(hints.get(name), "__metadata__", (Kind(),))[0]
+        parts[name] = field(default=parameter.default, validator=kind.check,
+                            converter=kind.convert and partial(kind.convert, name))  # fmt: skip
+    of_values: Callable[..., Scene] = build
+    checked: Any = make_class(build.__name__, parts, frozen=True)
+
+    @wraps(build)
+    def made(*args: P.args, **kwargs: P.kwargs) -> Scene:
+        parameters = checked(*args, **kwargs)
+        return evolve(of_values(**asdict(parameters, recurse=False)), parameters=parameters)
+
+    return made
 
 
 def solve(scene: Any) -> Any:
@@ -146,8 +197,9 @@ def solve(scene: Any) -> Any:
     Solution, Path or other
         By ``scene.solve()`` where there is one; else `problems.lcp.solve` of the problem, or the path of a homotopy.
     """
-    if isinstance(scene, SupportsSolve):
-        return scene.solve()
+    own = getattr(scene, "solve", None)
+    if own is not None:
+        return own()
     problem = scene.problem()
     return solve_problem(problem) if isinstance(problem, MixedLCP | Program) else trace(problem)
 
@@ -191,25 +243,6 @@ def memory(problem: Any) -> int:
     parts = (A.data, A.indices, A.indptr) if found.sparse else (A,)
     bounds = () if found.standard else (found.lower, found.upper)
     return sum(int(part.nbytes) for part in (*parts, found.q, *bounds))
-
-
-def numbers(name: str, default: tuple[float, ...]) -> Any:
-    """A field with a tuple of finite numbers, so that a scene is a value that can be compared."""
-
-    def convert(value: Any) -> tuple[float, ...]:
-        return tuple(finite_vector(name, value).tolist())
-
-    return field(default=default, converter=convert)
-
-
-def positive(default: float) -> Any:
-    """A field with a positive number."""
-    return field(default=default, validator=POSITIVE_FINITE)
-
-
-def mismatch(scene: Any, solution: Any) -> float:
-    """How far an answer is from the exact one, relative to each quantity; NaN where none is known."""
-    return error(scene.answer(solution), scene.exact())
 
 
 def error(found: Quantities, true: Quantities) -> float:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
-from attrs import field, frozen
 
-from continuation.arguments.checks import NOT_NEGATIVE
 from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import LEMKE, QUADRATIC, TABLES
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, numbers, positive
+from problems.scenes.scene import NotNegative, Numbers, Positive, Quantities, Scene, Unknown, with_parameters
 
 
 def trade(supply: tuple[Array, Array], demand: tuple[Array, Array], freight: Array) -> LCP:
@@ -25,8 +24,11 @@ def trade(supply: tuple[Array, Array], demand: tuple[Array, Array], freight: Arr
     return LCP(A, out.T @ a - to.T @ c + freight.ravel())
 
 
-@frozen
-class SpatialPrices:
+@with_parameters
+def SpatialPrices(
+    offers: Numbers = (4.0, 8.0, 12.0), rise: Positive = 1.0, bids: Numbers = (14.0, 30.0, 22.0), fall: Positive = 1.0,
+    freight: NotNegative = 2.0,
+) -> Scene:  # fmt: skip
     """Producers and markets in several places: who delivers where, and what does it cost there?
 
     Parameters
@@ -46,64 +48,47 @@ class SpatialPrices:
     ----------
     Samuelson, Amer. Econ. Review 42 (1952); Takayama and Judge, Spatial and Temporal Price and Allocation Models, 1971.
     """
+    sell, buy = np.array(offers), np.array(bids)
+    m, k = sell.size, buy.size
+    i, j = np.indices((m, k))
+    costs = freight * (1.0 + np.abs(i - j))
 
-    offers: tuple[float, ...] = numbers("offers", (4.0, 8.0, 12.0))
-    rise: float = positive(1.0)
-    bids: tuple[float, ...] = numbers("bids", (14.0, 30.0, 22.0))
-    fall: float = positive(1.0)
-    freight: float = field(default=2.0, validator=NOT_NEGATIVE)
-    units: ClassVar[Units] = {
-        "flows": "units",
-        "offers": "money a unit",
-        "bids": "money a unit",
-        "trade": "",
-    }
-    rivals: ClassVar[tuple[Rival, ...]] = (LEMKE, TABLES, *QUADRATIC)
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Flows alone: supplies, demands and prices are sums of them."""
-        return (Unknown("flows", len(self.offers) * len(self.bids), "who delivers where"),)
-
-    @property
-    def _costs(self) -> Array:
-        i, j = np.indices((len(self.offers), len(self.bids)))
-        return np.asarray(self.freight * (1.0 + np.abs(i - j)))
-
-    def problem(self) -> LCP:
-        """What a delivery costs more than it brings."""
-        m, k = len(self.offers), len(self.bids)
-        supply = np.array(self.offers), np.full(m, self.rise)
-        return trade(supply, (np.array(self.bids), np.full(k, self.fall)), self._costs)
-
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """Flows, and prices at both ends. Flows on ways of equal cost may be exchanged; prices and the trade not."""
-        flows = np.asarray(solution.x).reshape(len(self.offers), len(self.bids))
+        flows = np.asarray(solution.x).reshape(m, k)
         return {
-            "flows": flows, "offers": np.array(self.offers) + self.rise * flows.sum(axis=1),
-            "bids": np.array(self.bids) - self.fall * flows.sum(axis=0), "trade": float(flows.sum()),
+            "flows": flows, "offers": sell + rise * flows.sum(axis=1),
+            "bids": buy - fall * flows.sum(axis=0), "trade": float(flows.sum()),
         }  # fmt: skip
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """For one producer and one market."""
-        if len(self.offers) != 1 or len(self.bids) != 1:
-            return {}
-        flow = max((self.bids[0] - self.offers[0] - self.freight) / (self.rise + self.fall), 0.0)
-        return {"flows": np.array([[flow]]), "trade": flow}
+        flow = max((bids[0] - offers[0] - freight) / (rise + fall), 0.0)
+        return {"flows": np.array([[flow]]), "trade": flow} if m == k == 1 else {}
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """Producers on the left, markets on the right, and what goes between."""
-        found = self.answer(solution)
-        widest = max(float(found["flows"].max()), 1e-300)
-        for i, row in enumerate(found["flows"]):
-            for j, flow in enumerate(row):
-                if flow > 0.0:
-                    axes.plot([0.0, 1.0], [-i, -j], color="#0072B2", linewidth=8.0 * flow / widest, alpha=0.7)
-                    axes.text(0.3, -0.7 * i - 0.3 * j, f"{flow:.3g}", backgroundcolor="white", ha="center", va="center")
-        for x, prices, side in ((0.0, found["offers"], "right"), (1.0, found["bids"], "left")):
-            for i, price in enumerate(prices):
-                axes.text(x + (-0.03 if side == "right" else 0.03), -i, f"{price:.3g}", ha=side, va="center")
-            axes.plot(np.full(prices.size, x), -np.arange(prices.size), "ko")
-        axes.set(xlim=(-0.25, 1.25), xticks=[0.0, 1.0], yticks=[])
-        axes.set_xticklabels(["producers", "markets"])
-        axes.set_title("flows (units), and prices at both ends (money a unit)", fontsize="medium")
+        found = answer(solution)
+        flows, widest = found["flows"], max(float(found["flows"].max()), 1e-300)
+        ways = [(i, j, flows[i, j]) for i, j in np.argwhere(flows > 0.0)]
+        sides = ((0.0, -0.03, found["offers"], "right"), (1.0, 0.03, found["bids"], "left"))
+        return picture(
+            *(mark("plot", [0.0, 1.0], [-i, -j], color="#0072B2", linewidth=8.0 * flow / widest, alpha=0.7)
+              for i, j, flow in ways),
+            *(mark("text", 0.3, -0.7 * i - 0.3 * j, f"{flow:.3g}", backgroundcolor="white", ha="center", va="center")
+              for i, j, flow in ways),
+            *(mark("text", x + away, -i, f"{price:.3g}", ha=side, va="center")
+              for x, away, prices, side in sides for i, price in enumerate(prices)),
+            *(mark("plot", np.full(prices.size, x), -np.arange(prices.size), "ko") for x, _, prices, _ in sides),
+            xlim=(-0.25, 1.25), xticks=[0.0, 1.0], xticklabels=["producers", "markets"], yticks=[],
+            title="flows (units), and prices at both ends (money a unit)",
+        )  # fmt: skip
+
+    return Scene(
+        units={"flows": "units", "offers": "money a unit", "bids": "money a unit", "trade": ""},
+        # Supplies, demands and prices are sums of them.
+        unknowns=(Unknown("flows", m * k, "who delivers where"),),
+        # What a delivery costs more than it brings.
+        problem=lambda: trade((sell, np.full(m, rise)), (buy, np.full(k, fall)), costs),
+        answer=answer, exact=exact, picture=drawn, rivals=(LEMKE, TABLES, *QUADRATIC),
+    )  # fmt: skip

@@ -2,20 +2,49 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from importlib import import_module
+from typing import Annotated, Any
 
 import numpy as np
-from attrs import field, frozen
 
-from continuation.arguments.checks import NOT_NEGATIVE, integer
 from continuation.arrays import Array
 from problems.lcp.data.program import Program, from_qp
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import CLARABEL, PIQP
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
+from problems.scenes.scene import (
+    NotNegative,
+    Positive,
+    Quantities,
+    Rival,
+    Scene,
+    Seed,
+    Unknown,
+    at_least,
+    with_parameters,
+)
 
 
-@frozen
-class SVM:
+def clouds(samples: int, distance: float, seed: int) -> tuple[Array, Array]:
+    """Points, shape (n, 2), and their sides, -1 or 1."""
+    side = np.where(np.arange(samples) % 2, 1.0, -1.0)
+    X = np.random.default_rng(seed).normal(size=(samples, 2))
+    X[:, 0] += 0.5 * distance * side
+    return X, side
+
+
+def kernel(X: Array, Y: Array, width: float) -> Array:
+    """Products of points, shape (len(X), len(Y)); with a width Gaussian ones."""
+    if not width:
+        return X @ Y.T
+    square = ((X[:, None] - Y[None]) ** 2).sum(axis=2)
+    return np.asarray(np.exp(-0.5 * square / width**2))
+
+
+@with_parameters
+def SVM(
+    samples: Annotated[int, at_least(2)] = 60, distance: NotNegative = 3.0, cost: Positive = 1.0,
+    width: NotNegative = 0.0, seed: Seed = 0,
+) -> Scene:  # fmt: skip
     """Two clouds of points: which line tells them apart with the widest margin, at a price on errors?
 
     Parameters
@@ -34,96 +63,57 @@ class SVM:
     ----------
     Cortes and Vapnik, Machine Learning 20 (1995).
     """
+    X, side = clouds(samples, distance, seed)
+    K = kernel(X, X, width)
 
-    samples: int = field(default=60, validator=integer(2))
-    distance: float = field(default=3.0, validator=NOT_NEGATIVE)
-    cost: float = positive(1.0)
-    width: float = field(default=0.0, validator=NOT_NEGATIVE)
-    seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Units] = {"weights": "", "offset": "", "support vectors": "", "objective": ""}
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """A weight a point, between 0 and the cost, which is a bound and needs no multiplier."""
-        return (Unknown("weights of points", self.samples, "which points decide"),
-                Unknown("offset", 1, "where the border is: the multiplier of balance"))  # fmt: skip
-
-    @property
-    def rivals(self) -> tuple[Rival, ...]:
-        """Libsvm, by way of scikit-learn, and methods for the quadratic program."""
-        return (Rival("SVC (sklearn)", "sklearn", _libsvm), PIQP, CLARABEL)
-
-    def data(self) -> tuple[Array, Array]:
-        """Points, shape (n, 2), and their sides, -1 or 1."""
-        random = np.random.default_rng(self.seed)
-        side = np.where(np.arange(self.samples) % 2, 1.0, -1.0)
-        X = random.normal(size=(self.samples, 2))
-        X[:, 0] += 0.5 * self.distance * side
-        return X, side
-
-    def kernel(self, X: Array, Y: Array) -> Array:
-        """Products of points, shape (len(X), len(Y)).
-
-        Parameters
-        ----------
-        X, Y : ndarray, shape (k, 2)
-        """
-        if not self.width:
-            return X @ Y.T
-        square = ((X[:, None] - Y[None]) ** 2).sum(axis=2)
-        return np.asarray(np.exp(-0.5 * square / self.width**2))
-
-    def problem(self) -> Program:
+    def problem() -> Program:
         """The dual program."""
-        X, side = self.data()
-        P = self.kernel(X, X) * np.outer(side, side)
-        n = self.samples
-        return from_qp(0.5 * (P + P.T), -np.ones(n), A_eq=side[None], b_eq=[0.0], lower=0.0, upper=self.cost)
+        P = K * np.outer(side, side)
+        return from_qp(0.5 * (P + P.T), -np.ones(samples), A_eq=side[None], b_eq=[0.0], lower=0.0, upper=cost)
 
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """Weights, the offset, how many weights are not zero, and the objective."""
-        X, side = self.data()
-        weights = np.asarray(solution.x)[: self.samples]
-        force = self.kernel(X, X) @ (weights * side)
-        inside = (weights > 1e-7 * self.cost) & (weights < (1.0 - 1e-7) * self.cost)
+        weights = np.asarray(solution.x)[:samples]
+        force = K @ (weights * side)
+        inside = (weights > 1e-7 * cost) & (weights < (1.0 - 1e-7) * cost)
         # From points on the margin; without any the multiplier, which is one of several offsets, would have to do.
         offset = float(np.median((side - force)[inside])) if inside.any() else 0.0
         return {
-            "weights": weights, "offset": offset, "support vectors": float((weights > 1e-7 * self.cost).sum()),
+            "weights": weights, "offset": offset, "support vectors": float((weights > 1e-7 * cost).sum()),
             "objective": float(0.5 * (weights * side) @ force - weights.sum()),
         }  # fmt: skip
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """Of two points: 2 over the square of their distance."""
-        if self.samples != 2 or self.width:
-            return {}
-        X, _ = self.data()
-        weight = min(2.0 / float(((X[0] - X[1]) ** 2).sum()), self.cost)
-        return {"weights": np.full(2, weight)}
+        weight = min(2.0 / float(((X[0] - X[1]) ** 2).sum()), cost)
+        return {} if samples != 2 or width else {"weights": np.full(2, weight)}
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """Points, border and margins; support vectors have a ring."""
-        X, side = self.data()
-        found = self.answer(solution)
-        for s, colour in ((-1.0, "#0072B2"), (1.0, "#D55E00")):
-            axes.plot(*X[side == s].T, ".", color=colour)
-        chosen = found["weights"] > 1e-7 * self.cost
-        axes.plot(*X[chosen].T, "o", markerfacecolor="none", markeredgecolor="0.3", label="support vectors")
-        low, high = X.min(axis=0) - 0.5, X.max(axis=0) + 0.5
+        found = answer(solution)
+        chosen, (low, high) = X[found["weights"] > 1e-7 * cost], (X.min(axis=0) - 0.5, X.max(axis=0) + 0.5)
         across, up = np.meshgrid(np.linspace(low[0], high[0], 80), np.linspace(low[1], high[1], 80))
-        there = np.column_stack([across.ravel(), up.ravel()])
-        value = self.kernel(there, X) @ (found["weights"] * side) + found["offset"]
-        axes.contour(across, up, value.reshape(across.shape), levels=[-1.0, 0.0, 1.0], colors="0.4",
-                     linestyles=[":", "-", ":"])  # fmt: skip
-        axes.set(aspect="equal", xlabel="first feature", ylabel="second feature")
-        axes.legend(frameon=False, fontsize="small")
+        there = kernel(np.column_stack([across.ravel(), up.ravel()]), X, width)
+        value = there @ (found["weights"] * side) + found["offset"]
+        return picture(
+            *(mark("plot", *X[side == s].T, ".", color=colour) for s, colour in ((-1.0, "#0072B2"), (1.0, "#D55E00"))),
+            mark("plot", *chosen.T, "o", markerfacecolor="none", markeredgecolor="0.3", label="support vectors"),
+            mark("contour", across, up, value.reshape(across.shape), levels=[-1.0, 0.0, 1.0], colors="0.4",
+                 linestyles=[":", "-", ":"]),
+            aspect="equal", xlabel="first feature", ylabel="second feature", legend={"fontsize": "small"},
+        )  # fmt: skip
 
+    def libsvm(scene: Any) -> Quantities:
+        model = import_module("sklearn.svm").SVC(C=cost, kernel="precomputed", tol=1e-10).fit(K, side)
+        weights = np.zeros(samples)
+        weights[model.support_] = np.abs(model.dual_coef_[0])
+        return {"weights": weights, "offset": float(model.intercept_[0]), "support vectors": float(model.support_.size)}
 
-def _libsvm(scene: SVM) -> Quantities:
-    from sklearn.svm import SVC
-
-    X, side = scene.data()
-    model = SVC(C=scene.cost, kernel="precomputed", tol=1e-10).fit(scene.kernel(X, X), side)
-    weights = np.zeros(scene.samples)
-    weights[model.support_] = np.abs(model.dual_coef_[0])
-    return {"weights": weights, "offset": float(model.intercept_[0]), "support vectors": float(model.support_.size)}
+    return Scene(
+        units={"weights": "", "offset": "", "support vectors": "", "objective": ""},
+        # Between 0 and the cost, which is a bound and needs no multiplier.
+        unknowns=(Unknown("weights of points", samples, "which points decide"),
+                  Unknown("offset", 1, "where the border is: the multiplier of balance")),
+        problem=problem, answer=answer, exact=exact, picture=drawn,
+        rivals=(Rival("SVC (sklearn)", "sklearn", libsvm), PIQP, CLARABEL),
+    )  # fmt: skip

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
-from numpy.typing import NDArray
 
-from continuation.arguments.checks import integer
-from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import GAUSS_SEIDEL, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
-
-Indices = NDArray[np.int_]
+from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
 
-@frozen
-class Torsion:
+@with_parameters
+def Torsion(
+    side: Positive = 1.0, modulus: Positive = 1.0, yield_stress: Positive = 1.0, twist: Positive = 2.5,
+    n: Annotated[int, at_least(2)] = 24,
+) -> Scene:  # fmt: skip
     """A square bar of an elastic, perfectly plastic material under a twist: which torque does it bear?
 
     Prandtl's stress function u: -lap u = 2 G twist where it is elastic, and u is at most the yield stress times the
@@ -43,78 +41,56 @@ class Torsion:
     Ting, "Elastic-plastic torsion of a square bar", Trans. AMS 123 (1966); Timoshenko and Goodier, Theory of
     Elasticity, for .1406.
     """
+    h = 0.5 * side / n
+    # Column and row of each point, 1 <= j <= i <= n, and how many points of the square it stands for.
+    i, j = (k + 1 for k in np.tril_indices(n))
+    size, weight = i.size, 8.0 / (2.0 ** (i == j) * 2.0 ** ((i == n).astype(int) + (j == n)))
+    limit = np.asarray(yield_stress * h * j, dtype=float)
 
-    side: float = positive(1.0)
-    modulus: float = positive(1.0)
-    yield_stress: float = positive(1.0)
-    twist: float = positive(2.5)
-    n: int = field(default=24, validator=integer(2))
-    units: ClassVar[Units] = {"torque": "N m", "plastic part": ""}
-    rivals: ClassVar[tuple[Rival, ...]] = (GAUSS_SEIDEL, *QUADRATIC)
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """The square's eight symmetries leave a triangle."""
-        return (
-            Unknown("stress function", self.n * (self.n + 1) // 2, "stresses are its slopes, the torque its volume"),
-        )
-
-    def _triangle(self) -> tuple[Indices, Indices, Array]:
-        """Column and row of each point, 1 <= j <= i <= n, and how many points of the square it stands for."""
-        i, j = np.tril_indices(self.n)
-        on_middle = (i == self.n - 1).astype(int) + (j == self.n - 1)
-        return i + 1, j + 1, 8.0 / (2.0 ** (i == j) * 2.0**on_middle)
-
-    def problem(self) -> MixedLCP:
+    def problem() -> MixedLCP:
         """Five-point differences over h^2 in the weights of the points, which keeps them symmetric."""
-        i, j, weight = self._triangle()
-        n, size = self.n, i.size
-        rows, columns = [], []
-        for di, dj in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            a, b = (np.where(k > n, 2 * n - k, k) for k in (i + di, j + dj))
-            a, b = np.maximum(a, b), np.minimum(a, b)
-            inside = b > 0
-            rows.append(np.flatnonzero(inside))
-            columns.append((a * (a - 1) // 2 + b - 1)[inside])
-        row, column = np.concatenate(rows), np.concatenate(columns)
-        beside = sp.coo_array((-weight[row], (row, column)), shape=(size, size))
-        h = 0.5 * self.side / n
-        limit = np.asarray(self.yield_stress * h * j, dtype=float)
-        load = 2.0 * self.modulus * self.twist * h * h
+        # Neighbours on all four sides, by reflection at the middle and at the diagonal; on the surface u is zero.
+        a, b = (n - np.abs(n - np.add.outer(ways, k)) for ways, k in (((1, -1, 0, 0), i), ((0, 0, 1, -1), j)))
+        a, b = np.maximum(a, b), np.minimum(a, b)
+        row, inside = np.broadcast_to(np.arange(size), a.shape)[b > 0], b > 0
+        beside = sp.coo_array((-weight[row], (row, (a * (a - 1) // 2 + b - 1)[inside])), shape=(size, size))
+        load = 2.0 * modulus * twist * h * h
         return MixedLCP((beside + sp.diags_array(4.0 * weight)).tocsr(), -load * weight, np.full(size, -np.inf), limit)
 
-    def answer(self, solution: Any) -> Quantities:
+    def yields(x: Any) -> Any:
+        return x >= yield_stress * h * j * (1.0 - 1e-9)
+
+    def answer(solution: Any) -> Quantities:
         """The torque, and the part of the section in which it yields."""
-        _, j, weight = self._triangle()
-        h = 0.5 * self.side / self.n
-        yields = solution.x >= self.yield_stress * h * j * (1.0 - 1e-9)
-        whole = (2 * self.n) ** 2
+        x = solution.x
         return {
-            "torque": 2.0 * h * h * float(weight @ solution.x), "plastic part": float(weight @ yields) / whole,
+            "torque": 2.0 * h * h * float(weight @ x), "plastic part": float(weight @ yields(x)) / (2 * n) ** 2,
         }  # fmt: skip
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """As long as nothing yields (Saint-Venant); the rest has no closed form."""
-        if 0.6753 * self.modulus * self.twist * self.side > self.yield_stress:
-            return {}
-        return {"torque": 0.14057701495515551 * self.modulus * self.twist * self.side**4, "plastic part": 0.0}
+        elastic = {"torque": 0.14057701495515551 * modulus * twist * side**4, "plastic part": 0.0}
+        return {} if 0.6753 * modulus * twist * side > yield_stress else elastic
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """The stress function on the whole section, and where it yields."""
-        i, j, _ = self._triangle()
-        quarter, yields = np.zeros((self.n + 1, self.n + 1)), np.zeros((self.n + 1, self.n + 1))
-        on = solution.x >= self.yield_stress * 0.5 * self.side / self.n * j * (1.0 - 1e-9)
-        for a, b in ((i, j), (j, i)):
-            quarter[a, b], yields[a, b] = solution.x, on
+        quarter = np.zeros((2, n + 1, n + 1))
+        quarter[:, i, j] = quarter[:, j, i] = solution.x, yields(solution.x)
         # On the surface the stress is that of the points beside it.
-        yields[0], yields[:, 0] = yields[1], yields[:, 1]
-        whole, plastic = (np.block([[k, k[:, -2::-1]], [k[-2::-1], k[-2::-1, -2::-1]]]) for k in (quarter, yields))
-        place = np.linspace(0.0, self.side, 2 * self.n + 1)
-        axes.contourf(place, place, plastic, levels=[0.5, 1.5], colors=["#E69F00"], alpha=0.5)
-        axes.contour(
-            place, place, whole, levels=np.linspace(0.0, whole.max(), 13)[1:], colors="#0072B2", linewidths=0.8
-        )
-        axes.set(aspect="equal", xlabel="m", ylabel="m")
-        axes.set_title(
-            f"yields in {100.0 * self.answer(solution)['plastic part']:.0f} % of the section", fontsize="medium"
-        )
+        quarter[1, 0], quarter[1, :, 0] = quarter[1, 1], quarter[1, :, 1]
+        whole, plastic = (np.block([[k, k[:, -2::-1]], [k[-2::-1], k[-2::-1, -2::-1]]]) for k in quarter)
+        place = np.linspace(0.0, side, 2 * n + 1)
+        return picture(
+            mark("contourf", place, place, plastic, levels=[0.5, 1.5], colors=["#E69F00"], alpha=0.5),
+            mark("contour", place, place, whole, levels=np.linspace(0.0, whole.max(), 13)[1:], colors="#0072B2",
+                 linewidths=0.8),
+            aspect="equal", xlabel="m", ylabel="m",
+            title=f"yields in {100.0 * answer(solution)['plastic part']:.0f} % of the section",
+        )  # fmt: skip
+
+    return Scene(
+        units={"torque": "N m", "plastic part": ""},
+        # The square's eight symmetries leave a triangle.
+        unknowns=(Unknown("stress function", size, "stresses are its slopes, the torque its volume"),),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(GAUSS_SEIDEL, *QUADRATIC),
+    )  # fmt: skip

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import field, frozen
 from scipy.sparse.csgraph import dijkstra
 
-from continuation.arguments.checks import integer
-from continuation.arrays import Array
 from problems.lcp.data.program import Program, from_qp
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import CLARABEL, PIQP
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
+from problems.scenes.scene import Positive, Quantities, Scene, Seed, Unknown, at_least, with_parameters
 
 
-@frozen
-class Traffic:
+@with_parameters
+def Traffic(side: Annotated[int, at_least(2)] = 5, cars: Positive = 10.0, seed: Seed = 0) -> Scene:
     """A grid of streets whose times grow with their loads: which ways do drivers take from corner to corner?
 
     Beckmann's program: its multipliers are the times from the crossings to the goal. Every street has times of its own,
@@ -36,76 +34,56 @@ class Traffic:
     ----------
     Beckmann, McGuire and Winsten, Studies in the Economics of Transportation, 1956.
     """
+    place, streets = np.arange(side**2).reshape(side, side), 2 * side * (side - 1)
+    # From and to which crossing.
+    begin = np.concatenate([place[:, :-1].ravel(), place[:-1].ravel()])
+    end = np.concatenate([place[:, 1:].ravel(), place[1:].ravel()])
+    # Minutes on an empty street, and by how many each hundred cars lengthens them.
+    random = np.random.default_rng(seed)
+    empty, slope = random.uniform(1.0, 5.0, streets), random.uniform(0.1, 1.0, streets)
 
-    side: int = field(default=5, validator=integer(2))
-    cars: float = positive(10.0)
-    seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Units] = {"time": "minutes", "quickest way": "minutes", "loads": "hundred cars an hour"}
-    rivals: ClassVar[tuple[Rival, ...]] = (PIQP, CLARABEL)
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Loads of streets, not of routes, of which there are far more; one goal, so one flow."""
-        return (
-            Unknown("loads of streets", 2 * self.side * (self.side - 1), "who drives where"),
-            Unknown("times to the goal", self.side**2 - 1, "cars that come to a crossing leave it"),
-        )
-
-    def _streets(self) -> tuple[Array, Array]:
-        """From and to which crossing."""
-        place = np.arange(self.side**2).reshape(self.side, self.side)
-        begin = np.concatenate([place[:, :-1].ravel(), place[:-1].ravel()])
-        end = np.concatenate([place[:, 1:].ravel(), place[1:].ravel()])
-        return begin, end
-
-    def _times(self) -> tuple[Array, Array]:
-        """Minutes on an empty street, and by how many each hundred cars lengthens them."""
-        random = np.random.default_rng(self.seed)
-        streets = 2 * self.side * (self.side - 1)
-        return random.uniform(1.0, 5.0, streets), random.uniform(0.1, 1.0, streets)
-
-    def problem(self) -> Program:
+    def problem() -> Program:
         """Min sum of slope load^2 / 2 + empty load: what leaves a crossing less what comes is what starts there."""
-        begin, end = self._streets()
-        empty, slope = self._times()
-        one, street = np.ones(begin.size), np.arange(begin.size)
+        one, street = np.ones(streets), np.arange(streets)
         whole = sp.coo_array((np.concatenate([one, -one]), (np.concatenate([begin, end]), np.tile(street, 2))))
-        starts = np.zeros(self.side**2 - 1)
-        starts[0] = self.cars
+        starts = np.append(cars, np.zeros(side**2 - 2))
         return from_qp(sp.diags_array(slope, format="csr"), empty, A_eq=whole.tocsr()[:-1], b_eq=starts, lower=0.0)
 
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """The mean time of the cars, which is that of the quickest way, and the loads."""
-        begin, end = self._streets()
-        empty, slope = self._times()
-        loads = np.maximum(np.asarray(solution.x)[: begin.size], 0.0)
+        loads = np.maximum(np.asarray(solution.x)[:streets], 0.0)
         minutes = empty + slope * loads
-        graph = sp.csr_array((minutes, (begin, end)), shape=(self.side**2,) * 2)
-        quickest = dijkstra(graph, indices=0)[-1]
-        return {"time": float(minutes @ loads) / self.cars, "quickest way": float(quickest), "loads": loads}
+        quickest = dijkstra(sp.csr_array((minutes, (begin, end)), shape=(side**2,) * 2), indices=0)[-1]
+        return {"time": float(minutes @ loads) / cars, "quickest way": float(quickest), "loads": loads}
 
-    def exact(self) -> Quantities:
+    def exact() -> Quantities:
         """On two by two crossings the two ways share the cars so that they take the same time."""
-        if self.side > 2:
+        if side > 2:
             return {}
-        empty, slope = self._times()
-        ways = [[0, 3], [2, 1]]
-        fixed, each = (np.array([part[way].sum() for way in ways]) for part in (empty, slope))
-        first = float(np.clip((fixed[1] - fixed[0] + each[1] * self.cars) / each.sum(), 0.0, self.cars))
-        time = fixed[0] + each[0] * first if first > 0.0 else fixed[1] + each[1] * self.cars
-        return {"time": time, "quickest way": time, "loads": np.array([first, self.cars - first] * 2)[[0, 1, 1, 0]]}
+        fixed, each = (part[[0, 2]] + part[[3, 1]] for part in (empty, slope))
+        first = float(np.clip((fixed[1] - fixed[0] + each[1] * cars) / each.sum(), 0.0, cars))
+        time = fixed[0] + each[0] * first if first > 0.0 else fixed[1] + each[1] * cars
+        return {"time": time, "quickest way": time, "loads": np.array([first, cars - first, cars - first, first])}
 
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """The streets, as wide as their loads."""
-        begin, end = self._streets()
-        found = self.answer(solution)
-        for a, b, load in zip(begin, end, found["loads"]):
-            (y0, x0), (y1, x1) = divmod(int(a), self.side), divmod(int(b), self.side)
-            axes.plot([x0, x1], [-y0, -y1], color="#0072B2", linewidth=0.4 + 10.0 * load / self.cars, zorder=1,
-                      solid_capstyle="round")  # fmt: skip
-        across, down = np.meshgrid(range(self.side), range(self.side))
-        axes.plot(across.ravel(), -down.ravel(), "o", color="0.3", markersize=4)
-        axes.set(aspect="equal", xticks=[], yticks=[])
-        axes.set_title(
-            f"each takes {found['time']:.4g} minutes from the upper left to the lower right", fontsize="medium"
-        )
+        found = answer(solution)
+        (y0, x0), (y1, x1) = (np.divmod(ends, side) for ends in (begin, end))
+        across, down = np.meshgrid(range(side), range(side))
+        return picture(
+            *(mark("plot", x, y, color="#0072B2", linewidth=0.4 + 10.0 * load / cars, zorder=1,
+                   solid_capstyle="round") for x, y, load in zip(np.c_[x0, x1], -np.c_[y0, y1], found["loads"])),
+            mark("plot", across.ravel(), -down.ravel(), "o", color="0.3", markersize=4),
+            aspect="equal", xticks=[], yticks=[],
+            title=f"each takes {found['time']:.4g} minutes from the upper left to the lower right",
+        )  # fmt: skip
+
+    return Scene(
+        units={"time": "minutes", "quickest way": "minutes", "loads": "hundred cars an hour"},
+        # Loads of streets, not of routes, of which there are far more; one goal, so one flow.
+        unknowns=(
+            Unknown("loads of streets", streets, "who drives where"),
+            Unknown("times to the goal", side**2 - 1, "cars that come to a crossing leave it"),
+        ),
+        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(PIQP, CLARABEL),
+    )  # fmt: skip

@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
-from attrs import field, frozen
 from scipy.optimize import nnls
 
-from continuation.arguments.checks import NOT_NEGATIVE, integer
-from continuation.arrays import Array
 from problems.lcp.data.problem import LCP
+from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.rivals import GAUSS_SEIDEL, LEMKE, QUADRATIC
-from problems.scenes.scene import Quantities, Rival, Units, Unknown, positive
+from problems.scenes.scene import (
+    NotNegative,
+    Positive,
+    Quantities,
+    Rival,
+    Scene,
+    Seed,
+    Unknown,
+    at_least,
+    with_parameters,
+)
 
 
-@frozen
-class Unmixing:
+@with_parameters
+def Unmixing(
+    substances: Annotated[int, at_least(1)] = 12, channels: Annotated[int, at_least(2)] = 200, width: Positive = 0.8,
+    noise: NotNegative = 0.0, seed: Seed = 0,
+) -> Scene:  # fmt: skip
     """A spectrum of several substances whose own spectra overlap: how much of each is there?
 
     Nonnegative least squares. Each spectrum is one peak; every third substance is not there at all.
@@ -36,64 +47,38 @@ class Unmixing:
     ----------
     Lawson and Hanson, Solving Least Squares Problems, 1974.
     """
+    place, k = np.linspace(-1.0, substances, channels), np.arange(substances)
+    amounts = np.where(k % 3 == 2, 0.0, 1.0 + 0.5 * np.sin(2.0 * k))
+    # The known spectra, one a column, and the one that is measured.
+    spectra = np.exp(-0.5 * ((place[:, None] - k) / width) ** 2)
+    measured = spectra @ amounts + noise * np.random.default_rng(seed).normal(size=channels)
 
-    substances: int = field(default=12, validator=integer(1))
-    channels: int = field(default=200, validator=integer(2))
-    width: float = positive(0.8)
-    noise: float = field(default=0.0, validator=NOT_NEGATIVE)
-    seed: int = field(default=0, validator=integer(0))
-    units: ClassVar[Units] = {"amounts": "", "misfit": ""}
-
-    @property
-    def unknowns(self) -> tuple[Unknown, ...]:
-        """Amounts; the misfit of the channels follows."""
-        return (Unknown("amounts", self.substances, "how much of each substance"),)
-
-    @property
-    def rivals(self) -> tuple[Rival, ...]:
-        """Lawson and Hanson's method, of scipy, and methods for the quadratic program."""
-        return (Rival("nnls (scipy)", "", _lawson_hanson), GAUSS_SEIDEL, LEMKE, *QUADRATIC)
-
-    def data(self) -> tuple[Array, Array]:
-        """The known spectra, one a column, and the one that is measured."""
-        place = np.linspace(-1.0, self.substances, self.channels)
-        spectra = np.exp(-0.5 * ((place[:, None] - np.arange(self.substances)) / self.width) ** 2)
-        random = np.random.default_rng(self.seed)
-        return spectra, spectra @ self._amounts + self.noise * random.normal(size=self.channels)
-
-    @property
-    def _amounts(self) -> Array:
-        k = np.arange(self.substances)
-        return np.where(k % 3 == 2, 0.0, 1.0 + 0.5 * np.sin(2.0 * k))
-
-    def problem(self) -> LCP:
-        """The normal equations as inequalities."""
-        spectra, measured = self.data()
-        return LCP(spectra.T @ spectra, -spectra.T @ measured)
-
-    def answer(self, solution: Any) -> Quantities:
+    def answer(solution: Any) -> Quantities:
         """Amounts, and what they leave unexplained."""
-        spectra, measured = self.data()
         x = np.asarray(solution.x)
         return {"amounts": x, "misfit": float(np.linalg.norm(spectra @ x - measured))}
 
-    def exact(self) -> Quantities:
-        """What the spectrum was made of, where there is no noise."""
-        return {} if self.noise else {"amounts": self._amounts, "misfit": 0.0}
-
-    def draw(self, solution: Any, axes: Any) -> None:
+    def drawn(solution: Any) -> Picture:
         """The measured spectrum, and its parts."""
-        spectra, measured = self.data()
         x = np.asarray(solution.x)
-        place = np.linspace(-1.0, self.substances, self.channels)
-        axes.plot(place, measured, "k.", markersize=2, label="measured")
-        axes.plot(place, spectra @ x, color="#D55E00", linewidth=1.0, label="sum of the parts (blue)")
-        axes.plot(place, spectra * x, color="#0072B2", linewidth=0.7)
-        axes.set(xlabel="channel", ylabel="intensity")
-        axes.legend(frameon=False)
+        return picture(
+            mark("plot", place, measured, "k.", markersize=2, label="measured"),
+            mark("plot", place, spectra @ x, color="#D55E00", linewidth=1.0, label="sum of the parts (blue)"),
+            mark("plot", place, spectra * x, color="#0072B2", linewidth=0.7),
+            xlabel="channel", ylabel="intensity",
+        )  # fmt: skip
 
+    def lawson_hanson(scene: Any) -> Quantities:
+        return dict(zip(("amounts", "misfit"), nnls(spectra, measured)))
 
-def _lawson_hanson(scene: Unmixing) -> Quantities:
-    spectra, measured = scene.data()
-    x, misfit = nnls(spectra, measured)
-    return {"amounts": x, "misfit": misfit}
+    return Scene(
+        units={"amounts": "", "misfit": ""},
+        # The misfit of the channels follows.
+        unknowns=(Unknown("amounts", substances, "how much of each substance"),),
+        # The normal equations as inequalities.
+        problem=lambda: LCP(spectra.T @ spectra, -spectra.T @ measured),
+        answer=answer, picture=drawn,
+        # What the spectrum was made of, where there is no noise.
+        exact=lambda: {} if noise else {"amounts": amounts, "misfit": 0.0},
+        rivals=(Rival("nnls (scipy)", "", lawson_hanson), GAUSS_SEIDEL, LEMKE, *QUADRATIC),
+    )  # fmt: skip

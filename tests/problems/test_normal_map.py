@@ -77,7 +77,7 @@ def test_bratu_with_a_low_obstacle_has_no_fold():
 
 
 def test_painleves_rod_goes_back():
-    a = -PainleveRod().a
+    a = -PainleveRod().problem().A[0, 0]
     rod = NormalMap.affine([[-a]], [0.0], [1.0], x0=[0.0], lam0=1.0, target=None)
     path = trace(rod, direction=-1, events=[OFF])
     (kink,) = path.kinks

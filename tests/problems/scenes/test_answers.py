@@ -16,11 +16,11 @@ from problems.scenes.flash_drum import FlashDrum
 from problems.scenes.game import Game
 from problems.scenes.lasso import Lasso, penalised
 from problems.scenes.pile import Pile
-from problems.scenes.portfolio import Portfolio
+from problems.scenes.portfolio import Portfolio, critical_line
 from problems.scenes.regulator import Regulator
 from problems.scenes.snap_through import SnapThrough
 from problems.scenes.spatial_prices import SpatialPrices
-from problems.scenes.svm import SVM
+from problems.scenes.svm import SVM, clouds, kernel
 from problems.scenes.traffic import Traffic
 from problems.scenes.truss import Truss
 
@@ -37,7 +37,7 @@ def test_a_pile_gains_no_energy_and_nothing_overlaps(boxes):
     assert fall.success
     # Round-off of energies of some 80 J, and of places of some metres.
     assert np.diff(fall.energies).max() <= 1e-15 * fall.energies[0]
-    assert fall.gaps.min() >= -1e-15 * boxes * pile.side
+    assert fall.gaps.min() >= -1e-15 * boxes
     found = pile.answer(fall)
     assert found["heights"] == pytest.approx(0.5 + np.arange(boxes), abs=1e-12)
     assert np.abs(fall.velocities[-1]).max() <= 1e-12
@@ -77,7 +77,9 @@ def test_portfolios():
     capped = answered(Portfolio(cap=0.4))["weights"]
     assert capped.max() == 0.4
     assert capped.sum() == pytest.approx(1.0, rel=1e-15)
-    line = Portfolio(correlation=0.3).frontier()
+    deviation = np.sqrt([0.04, 0.09, 0.16, 0.01])
+    covariance = np.outer(deviation, deviation) * (0.3 + 0.7 * np.eye(4))
+    line = critical_line(np.array([0.12, 0.10, 0.07, 0.03]), covariance)
     assert line.success
     assert answered(Portfolio(tolerance=0.0, correlation=0.3))["weights"] == pytest.approx(
         line.endpoint.y[:4], abs=1e-13
@@ -111,7 +113,8 @@ def test_cournot():
 def test_nothing_is_traded_at_a_loss():
     scene = SpatialPrices()
     found = answered(scene)
-    gain = found["bids"][None] - found["offers"][:, None] - scene._costs
+    costs = 2.0 * (1.0 + np.abs(np.subtract.outer(np.arange(3), np.arange(3))))
+    gain = found["bids"][None] - found["offers"][:, None] - costs
     assert gain.max() <= 1e-12
     assert np.abs(gain[found["flows"] > 0.0]).max() <= 1e-12
 
@@ -143,10 +146,10 @@ def test_two_points_and_a_cloud():
     assert answered(SVM(samples=2))["weights"] == pytest.approx(SVM(samples=2).exact()["weights"], rel=1e-13)
     scene = SVM(width=1.0)
     found = answered(scene)
-    X, side = scene.data()
-    margin = side * (scene.kernel(X, X) @ (found["weights"] * side) + found["offset"])
+    X, side = clouds(60, 3.0, 0)
+    margin = side * (kernel(X, X, 1.0) @ (found["weights"] * side) + found["offset"])
     assert margin[found["weights"] == 0.0].min() >= 1.0 - 1e-9
-    assert margin[found["weights"] == scene.cost].max() <= 1.0 + 1e-9
+    assert margin[found["weights"] == 1.0].max() <= 1.0 + 1e-9
 
 
 def test_denoising_moves_levels_by_the_weight_over_their_length():

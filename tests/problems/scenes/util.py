@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from problems import lcp
 from problems.lcp import MixedLCP
 from problems.scenes import Point, make, order
-from problems.scenes.scene import SupportsSolve, conditions
+from problems.scenes.scene import conditions
 
 SMALL = {
     "string": {"n": 20}, "membrane": {"n": 40}, "torsion": {"n": 8, "twist": 1.0}, "bratu-lid": {"n": 20},
@@ -72,7 +72,7 @@ FREE = {
 """How many unknowns have no bounds, and the equation that asks for each: any others could be eliminated."""
 
 
-TAKE_POINTS = ("DiodeBridge", "Game", "PainleveRod", "Regulator", "Truss")
+TAKE_POINTS = ("diode-bridge", "game", "painleve-rod", "regulator", "truss")
 """Scenes whose answers can be asked of one point too, though their solution is more."""
 
 
@@ -86,8 +86,11 @@ def dense(problem):
     return problem.A.toarray() if sp.issparse(problem.A) else problem.A
 
 
-def needless(scene):
-    """What a scene models beyond what its answer needs, as sentences; none if it is minimal."""
+def needless(scene, takes_points=False):
+    """What a scene models beyond what its answer needs, as sentences; none if it is minimal.
+
+    `takes_points`: Whether its answer can be asked of one point too, though its solution is more.
+    """
     problem = conditions(scene.problem())
     complaints = []
     counted = sum(kind.count for kind in scene.unknowns)
@@ -107,15 +110,18 @@ def needless(scene):
         alone = len(row) == len(column) == 1 and row[0] == column[0] != i
         if alone and problem.lower[i] == 0.0 and A[i, row[0]] * A[row[0], i] < 0.0:
             complaints.append(f"unknown {i} is the multiplier of a bound")
-    complaints += [f"unknown {i} is in no equation that the answer needs" for i in sorted(set(range(n)) - used(scene))]
+    complaints += [
+        f"unknown {i} is in no equation that the answer needs"
+        for i in sorted(set(range(n)) - used(scene, takes_points))
+    ]
     return complaints
 
 
-def used(scene):
+def used(scene, takes_points):
     """The unknowns that the answer reads, and those that the equations of these have, and so on."""
     problem = conditions(scene.problem())
     found = lcp.solve(problem)
-    if isinstance(scene, SupportsSolve) and type(scene).__name__ not in TAKE_POINTS:
+    if scene.solve is not None and not takes_points:
         read = set(range(problem.n))
     else:
         base = flat(scene.answer(Point(found.x)))
