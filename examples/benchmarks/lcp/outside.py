@@ -1,6 +1,7 @@
 """Families that the solver was not tuned on: what outsiders' problems cost, in processor seconds a problem.
 
     python examples/benchmarks/lcp/outside.py [FAMILY ...] [--seed S] [--limit S] [--before CHECKOUT] [--write PAGE]
+        [--homotopy NAME]
 
 Prints how many are decided, the median and the largest time, of another checkout too, and puts the table into a file in
 place of the one there. The steps of a stack are solved by `lcp.Solver` where there is one.
@@ -21,6 +22,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from bodies import arches, piles, stacks
 from scipy.optimize import linprog
 
 from continuation.arrays import Array
@@ -211,18 +213,21 @@ FAMILIES = {
     "small integers, n = 1 to 8": small,
     "grids, n = 12 to 900": grids,
     "steps of a stack, n = 200": stack,
+    "stacks, n = 40 to 480": stacks,
+    "arches, n = 48 to 496": arches,
+    "piles, n = 44 to 520": piles,
     "nonmonotone, sparse, n = 200": nonmonotone_sparse,
     "nonmonotone, dense, n = 200": nonmonotone_dense,
 }
 """All but the last two are tried where none is named."""
 
 
-def timed(problems: list[Data], limit: float, checkout: str) -> list[Any]:
+def timed(problems: list[Data], limit: float, homotopy: str, checkout: str) -> list[Any]:
     """(outcome, seconds) of each, in a process that has the package of a checkout."""
     with tempfile.NamedTemporaryFile(suffix=".pickle") as file:
         pickle.dump(problems, file)
         file.flush()
-        child = [sys.executable, str(Path(__file__).with_name("timed.py")), file.name, str(limit)]
+        child = [sys.executable, str(Path(__file__).with_name("timed.py")), file.name, str(limit), homotopy]
         environment = {**os.environ, "PYTHONPATH": checkout}
         done = subprocess.run(
             child, env=environment, check=True, capture_output=True, text=True, cwd=tempfile.gettempdir()
@@ -248,6 +253,7 @@ def main() -> None:
     parser.add_argument("families", nargs="*", default=[])
     parser.add_argument("--seed", type=int, default=2026)
     parser.add_argument("--limit", type=float, default=10.0)
+    parser.add_argument("--homotopy", default="auto")
     parser.add_argument("--before")
     parser.add_argument("--write")
     arguments = parser.parse_args()
@@ -259,8 +265,8 @@ def main() -> None:
         if not arguments.families and family in (nonmonotone_sparse, nonmonotone_dense):
             continue
         problems = list(family(arguments.seed))
-        now = timed(problems, arguments.limit, here)
-        before = timed(problems, arguments.limit, arguments.before) if arguments.before else []
+        now = timed(problems, arguments.limit, arguments.homotopy, here)
+        before = timed(problems, arguments.limit, arguments.homotopy, arguments.before) if arguments.before else []
         ratio = np.median([s for _, s in now]) / np.median([s for _, s in before]) if before else math.nan
         lines.append(f"| {len(problems)} {title} | {cell(before) if before else '-'} | {cell(now)} | {ratio:.2g} |")
         print(lines[-1], flush=True)

@@ -63,20 +63,28 @@ class Policy:
 class Tried:
     """The active sets that were tried on one problem: none is worth a second factorisation.
 
+    A singular face has many points, and the one taken is the nearest to where the iteration is: from elsewhere it is
+    tried again.
+
     `last`: The last of them.
     """
 
     last: State | None = field(default=None, init=False)
     _known: set[bytes] = field(factory=set, init=False)
 
-    def add(self, state: State) -> bool:
-        """Take a set in; whether it is new."""
+    def add(self, state: State, x: Array) -> bool:
+        """Take a set in; whether it is new at x."""
         key = _key(state)
-        if key in self._known:
+        if key in self._known or key + x.tobytes() in self._known:
             return False
         self._known.add(key)
         self.last = state
         return True
+
+    def singular(self, state: State, x: Array) -> None:
+        """Know the last set for one of a singular face, which was tried at x alone."""
+        self.forget(state)
+        self._known.add(_key(state) + x.tobytes())
 
     def forget(self, state: State) -> None:
         """Let a set be tried again."""
@@ -133,7 +141,7 @@ def iterate(
     changes: list[int] = []
     singular = 0
     for _ in range(policy.steps + 1):
-        if tried is not None and not tried.add(state):
+        if tried is not None and not tried.add(state, x):
             return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
@@ -144,6 +152,8 @@ def iterate(
             if tried is not None:
                 tried.forget(state)
             return Iterated(Ended.IRREGULAR, state, x)
+        if tried is not None and face is not None and not face.exact:
+            tried.singular(state, x)
         point = None if face is None else face.point(x)
         if face is None or point is None:
             return Iterated(Ended.SINGULAR, state, x)

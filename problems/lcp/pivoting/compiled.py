@@ -66,22 +66,19 @@ def pivots(
         for i in range(m):
             steepest = max(steepest, abs(slopes[i]))
             largest = max(largest, abs(table[i, k - 1]))
-        best, row = -np.inf, -1
+        limit = -np.inf
         for i in range(m):
             if slopes[i] < -zero * steepest:
-                ratio = max(table[i, k - 1], 0.0) / slopes[i]
-                if row < 0 or ratio > best:
-                    best, row = ratio, i
-        if row < 0:
-            return RAY, done, entering
+                limit = max(limit, (max(table[i, k - 1], 0.0) + tie * largest) / slopes[i])
         tied, number, stops = np.empty(m, np.intp), 0, -1
         for i in range(m):
-            falls = slopes[i] < -zero * steepest
-            if i == row or (falls and max(table[i, k - 1], 0.0) - best * slopes[i] <= tie * largest):
+            if slopes[i] < -zero * steepest and max(table[i, k - 1], 0.0) / slopes[i] >= limit:
                 tied[number] = i
                 number += 1
                 if stops < 0 and (basic[i] == stop[0] or basic[i] == stop[1]):
                     stops = i
+        if number == 0:
+            return RAY, done, entering
         if number > 1 and stops >= 0:
             row = stops
         else:

@@ -25,8 +25,10 @@ AT_FIRST = 512
 where all columns at once are no slower than a few."""
 
 TIE = 1e-11
-"""What a basic variable may be above zero, relative to the largest constant, where it counts as zero."""
+"""How far basic variables may fall below zero, relative to the largest constant, if another row leaves than the first.
 
+Rows are tied if any of them may leave so (Harris, "Pivot selection methods of the Devex LP code", Math. Programming 5,
+1973). That the leaving row itself is so near to zero is not enough: where it falls slowly, others fall far."""
 
 DELAYED = 32
 """Pivots of a large table that are put into it together, by one product of matrices;"""
@@ -143,11 +145,9 @@ class Dictionary:
         growing = np.flatnonzero(slopes > ZERO_PIVOT * np.abs(slopes).max(initial=0.0))
         if growing.size == 0:
             return None
-        at = constants[growing] / slopes[growing]
-        last = at.argmin()
-        zero = constants[growing] - at[last] * slopes[growing] <= TIE * largest(constants)
-        zero[last] = True  # also where that underflows
-        return self._least(growing[zero], slopes[growing[zero]])
+        values, rates = constants[growing], slopes[growing]
+        zero = values / rates <= ((values + TIE * largest(constants)) / rates).min()
+        return self._least(growing[zero], rates[zero])
 
     def first_zero(self, column: int, preferred: frozenset[int]) -> int | None:
         """The row that is the first to become zero as a nonbasic variable grows from zero.
@@ -162,11 +162,7 @@ class Dictionary:
         values, rates = constants[falling], slopes[falling]
         if values.item(values.argmin()) < 0.0:
             values = np.maximum(values, 0.0)
-        ratios = values / rates
-        last = ratios.argmax()
-        together = values - ratios[last] * rates <= TIE * largest(constants)
-        together[last] = True  # also where that underflows
-        zero = together.nonzero()[0]
+        zero = (values / rates >= ((values + TIE * largest(constants)) / rates).max()).nonzero()[0]
         if zero.size == 1:
             return int(falling[zero[0]])
         tied = falling[zero]

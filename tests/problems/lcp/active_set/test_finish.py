@@ -87,6 +87,16 @@ def test_no_active_set_is_tried_twice():
     assert finish.counts.factorizations == spent
 
 
+def test_a_singular_face_is_tried_again_from_elsewhere():
+    # Solutions are x1 + x2 = 1 with x1 <= 1 / 4: the point nearest to zero is none, that nearest to (0, 1) is one.
+    A, q = [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-4.0, 0.0, 0.0]], [-1.0, -1.0, 1.0]
+    finish, state = Finish(faces(A, q), 1e-10), state_of(np.array([True, True, False]))
+    assert finish.settle(state, Policy(0)) is None
+    assert finish.settle(state, Policy(0)) is None
+    assert finish.counts.factorizations == 1
+    assert finish.settle(state, Policy(0), np.array([0.0, 1.0, 0.0])) is not None
+
+
 def test_corrections_solve_a_p_matrix_from_any_guess():
     rng = np.random.default_rng(0)
     M, S = rng.standard_normal((2, 40, 40))
@@ -200,7 +210,7 @@ def test_the_iteration_says_why_it_ended():
     assert iterate(faces(np.eye(2), [-1.0, 1.0]), state_of(zero), Policy(0)).ended is Ended.STEPS
     assert iterate(faces([[0.0]], [-1.0]), state_of(np.array([True])), Policy(5)).ended is Ended.SINGULAR
     known = Tried()
-    assert known.add(state_of(zero))
+    assert known.add(state_of(zero), np.zeros(2))
     assert iterate(skew, state_of(zero), Policy(5), tried=known).ended is Ended.TRIED
     # x1 enters, leaves and enters again: one change each.
     turning = iterate(faces([[-1.0]], [-1.0]), state_of(np.array([False])), Policy(50, patience=3))

@@ -179,3 +179,11 @@ def test_the_ray_of_a_semidefinite_matrix_proves_that_nothing_is_feasible():
     assert found.outcome is lcp.Outcome.INFEASIBLE_TO_PRECISION
     assert "Lemke" in found.message
     np.testing.assert_allclose(found.float_farkas.y, y / y.max(), rtol=1e-9)
+
+
+def test_a_row_that_falls_slowly_is_not_tied_with_one_that_falls_fast():
+    # The first row is zero but for 5e-12, and 5e-8 of the other variable: the second would fall to -5e-8.
+    table = Dictionary(np.array([[-1e-4, 5e-12], [-1.0, 0.0], [1.0, 1.0]]), np.arange(3), np.array([3]))
+    assert table.first_zero(0, frozenset({0})) == 1
+    table = Dictionary(np.array([[1e-4, 0.0], [1.0, -5e-8], [1.0, 1.0]]), np.arange(3), np.array([3]))
+    assert table.last_zero(0) == 1

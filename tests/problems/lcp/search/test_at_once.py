@@ -67,7 +67,7 @@ def test_an_iteration_over_regular_faces_ends_before_a_singular_one_which_may_be
     ended = iterate(faces, state, Policy(steps=5, regular=True), tried=tried)
     assert ended.ended is Ended.IRREGULAR
     np.testing.assert_array_equal(ended.state, state)
-    assert tried.add(state)
+    assert tried.add(state, np.zeros(2))
     assert iterate(faces, state, Policy(steps=5)).ended is not Ended.IRREGULAR
 
 
