@@ -8,7 +8,7 @@ OUT    ?= build/paper
 # and each program that a test starts, would compile all that it imports.
 TESTENV := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 MPLBACKEND=Agg PYTHONDONTWRITEBYTECODE=
 
-.PHONY: demo test lint types suite reliability nightly chart docs clean
+.PHONY: kernels demo test lint types suite reliability nightly chart docs clean
 
 demo: $(VENV)/.demo
 	$(BIN)/continuation paper --output $(OUT)
@@ -23,6 +23,11 @@ types: $(VENV)/.dev
 
 suite: $(VENV)/.dev
 	$(TESTENV) $(BIN)/pytest -n 2 --dist loadfile
+
+# The suite under each kernel of OpenBLAS, with fewer instructions, more threads, the oldest packages and every Python:
+# one to two hours. `.ci/kernels NAME ... -- TESTS` runs some of it.
+kernels: $(VENV)/.dev
+	VENV=$(VENV) $(BIN)/python .ci/kernels
 
 # Kills, damage, bad input and the rest by the thousand, in two processes; the table is build/reliability/table.md.
 reliability: $(VENV)/.dev

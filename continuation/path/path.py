@@ -110,7 +110,7 @@ class Path:
 
     @property
     def arclength(self) -> Array:
-        """Accumulated arclength in the metric of the trace, shape (m,)."""
+        """The parameter of the path, shape (m,): accumulated lengths of circular arcs, as `Step` says."""
         return _column(self.steps, "arclength")
 
     @property

@@ -29,7 +29,10 @@ class Step:
         0 at the start.
     u, tangent : ndarray, shape (N + 1,)
     arclength : float
-        Accumulated in the metric of the trace.
+        The parameter of the path: the sum of the lengths of its steps, each that of the circular arc through its two
+        points with the angle between their tangents, in the metric of that step. A length of the curve to a relative
+        error of the fourth order in the angle (`continuation.arclength` measures it to 1e-9); traces whose steps end
+        elsewhere, if only by round-off, differ in it.
     step_length : float
         The predictor's step that led here; 0 at the start.
     residual_norm : float

@@ -214,8 +214,9 @@ def test_an_asymptote_is_no_end(preset):
     path = trace(homotopy, preset=preset)
     assert path.status is Status.DIVERGED
     assert "An asymptote: the parameter tends to 0 " in path.message
-    # No root is sought where lam is below round-off of any step: 78 .. 171, where it was 294 .. 919.
-    assert path.counts.factorizations <= 200
+    # No root is sought where lam is below round-off of any step: 48 to 204 under the kernels of OpenBLAS, where it was
+    # 294 to 919.
+    assert path.counts.factorizations <= 290
 
 
 @pytest.mark.parametrize(("preset", "steps"), [(FAST, 300), (SERIES, 60)], ids=["FAST", "SERIES"])

@@ -1,11 +1,12 @@
 """What the engine and the LCP solver do today, written down: status, events, ends and counts of about 300 runs.
 
     python tests/behaviour/record.py            compare with the record beside this file; exit 1 if anything differs
-    python tests/behaviour/record.py --counts   the same, with the counts that depend on the last bits of the BLAS too
+    python tests/behaviour/record.py --counts   the same, and the counts must lie in the recorded range itself
     python tests/behaviour/record.py --write    write the record anew, and say in the commit why it changed
 
-Statuses, events and ends must agree to 1e-10 on every machine. Counts must agree exactly, but for runs whose counts
-depend on the last bits of the BLAS at hand: `--write` measures which those are, by other kernels of OpenBLAS.
+Statuses, events and ends must agree to 1e-10 on every machine. Counts depend on the last bits of the BLAS: `--write`
+records their range over the kernels of OpenBLAS, and a run must stay within it and a margin. The arclength of an event
+is not compared: it is measured in steps whose ends differ. An LCP with several solutions may give any of them.
 """
 
 from __future__ import annotations
@@ -41,6 +42,8 @@ KERNELS = ("Prescott", "Sandybridge", "Haswell", "SkylakeX")
 """Kernels of OpenBLAS that sum in different orders; one that the processor lacks is replaced by OpenBLAS itself."""
 
 SIGNIFICANT = 1e-10
+MARGIN, FEW = 0.1, 3
+"""Counts of other processors may lie a tenth, or so few, outside the range of these kernels."""
 PROBLEMS = 200
 
 
@@ -72,7 +75,7 @@ def traced(name: str, preset: continuation.Preset) -> dict[str, Any]:
     return {
         "status": path.status.name,
         "end": path.endpoint.u.tolist()[-4:],
-        "events": [[e.name, e.arclength, *e.u.tolist()[-4:]] for e in path.events],
+        "events": [[e.name, *e.u.tolist()[-4:]] for e in path.events],
         "counts": path.counts.as_dict(),
     }
 
@@ -101,9 +104,10 @@ def problem(k: int) -> lcp.LCP:
 def solved(k: int) -> dict[str, Any]:
     """The answer to the k-th LCP, in numbers; a budget of work, so that no clock decides."""
     solution = lcp.solve(problem(k), restarts=3, budget=continuation.Budget(steps=2000))
+    x = [] if solution.x is None else solution.x.tolist()
     return {
         "status": solution.outcome.name,
-        "end": [] if solution.x is None else solution.x.tolist(),
+        "end": x if len(lcp.solve_by_enumeration(problem(k)).solutions) == 1 else [],
         "events": [],
         "counts": solution.counts.as_dict(),
     }
@@ -127,8 +131,8 @@ def same_numbers(found: list[Any], expected: list[Any]) -> bool:
     return all(abs(a - b) <= scale if isinstance(b, float) else a == b for a, b in zip(found, expected, strict=True))
 
 
-def differences(name: str, found: dict[str, Any], expected: dict[str, Any], every_count: bool) -> list[str]:
-    """What of a run is not as recorded; `every_count` asks for those, too, that the last bits decide."""
+def differences(name: str, found: dict[str, Any], expected: dict[str, Any], exactly: bool) -> list[str]:
+    """What of a run is not as recorded; `exactly` allows counts no margin."""
     said = []
     if found["status"] != expected["status"]:
         said.append(f"{name}: status {found['status']}, recorded {expected['status']}")
@@ -137,30 +141,33 @@ def differences(name: str, found: dict[str, Any], expected: dict[str, Any], ever
     events = found["events"], expected["events"]
     if len(events[0]) != len(events[1]) or not all(map(same_numbers, *events)):
         said.append(f"{name}: events {found['events']}, recorded {expected['events']}")
-    if (every_count or expected["exact"]) and found["counts"] != expected["counts"]:
-        said.append(f"{name}: counts {found['counts']}, recorded {expected['counts']}")
+    for count, (least, most) in expected["counts"].items():
+        n, margin = found["counts"][count], 0 if exactly else max(MARGIN * most, FEW)
+        if not least - margin <= n <= most + margin:
+            said.append(f"{name}: {n} {count}, recorded {least} to {most}")
     return said
 
 
-def compare(names: set[str] | None = None, every_count: bool = False) -> list[str]:
+def compare(names: set[str] | None = None, exactly: bool = False) -> list[str]:
     """All differences from the record, of the runs named or of all."""
     record = json.loads(RECORD.read_text())
     chosen = [(name, run) for name, run in runs() if names is None or name in names]
-    return [line for name, run in chosen for line in differences(name, run(), record[name], every_count)]
+    return [line for name, run in chosen for line in differences(name, run(), record[name], exactly)]
 
 
 def written() -> dict[str, Any]:
-    """The record: this process's runs, and which of them have the same counts under every kernel."""
-    others = []
+    """The record: this process's runs, and the range of their counts under every kernel."""
+    everywhere = [{name: run() for name, run in runs()}]
     for kernel in KERNELS:
         environment = {**os.environ, "OPENBLAS_CORETYPE": kernel}
         process = subprocess.run(
             [sys.executable, __file__, "--print"], env=environment, capture_output=True, check=True
         )
-        others.append(json.loads(process.stdout))
-    record = {name: run() for name, run in runs()}
+        everywhere.append(json.loads(process.stdout))
+    record = everywhere[0]
     for name, entry in record.items():
-        entry["exact"] = all(other[name]["counts"] == entry["counts"] for other in others)
+        counts = [other[name]["counts"] for other in everywhere]
+        entry["counts"] = {key: [min(c[key] for c in counts), max(c[key] for c in counts)] for key in counts[0]}
     return record
 
 
@@ -171,6 +178,6 @@ if __name__ == "__main__":
         lines = [f"{json.dumps(name)}: {json.dumps(entry)}" for name, entry in written().items()]
         RECORD.write_text("{\n" + ",\n".join(lines) + "\n}\n")
     else:
-        lines = compare(every_count="--counts" in sys.argv)
+        lines = compare(exactly="--counts" in sys.argv)
         print("\n".join(lines) or "as recorded")
         sys.exit(bool(lines))

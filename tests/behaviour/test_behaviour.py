@@ -19,6 +19,8 @@ def test_answers_are_as_recorded():
 
 
 def test_a_difference_is_noticed():
-    expected = {"status": "SOLVED", "end": [1.0], "events": [["fold", 0.5]], "counts": {"solves": 3}, "exact": True}
-    wrong = {"status": "CLOSED", "end": [1.0 + 1e-9], "events": [], "counts": {"solves": 4}}
-    assert len(record.differences("x", wrong, expected, every_count=False)) == 4
+    expected = {"status": "SOLVED", "end": [1.0], "events": [["fold", 0.5]], "counts": {"solves": [50, 60]}}
+    wrong = {"status": "CLOSED", "end": [1.0 + 1e-9], "events": [], "counts": {"solves": 67}}
+    assert len(record.differences("x", wrong, expected, exactly=False)) == 4
+    assert len(record.differences("x", {**expected, "counts": {"solves": 64}}, expected, exactly=False)) == 0
+    assert len(record.differences("x", {**expected, "counts": {"solves": 64}}, expected, exactly=True)) == 1

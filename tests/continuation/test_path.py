@@ -8,7 +8,7 @@ from continuation import Status
 from continuation.archive import open_archive
 from continuation.arguments import plugins
 from problems import lcp
-from problems.bifurcation import Bratu1D, FreudensteinRoth
+from problems.bifurcation import Bratu1D, Circle, Cusp, FreudensteinRoth
 
 BOX = {"lam": (-3.0, 3.0)}
 HIGH = 4.0 * np.sin(np.pi * np.arange(1, 21) / 21.0)
@@ -27,6 +27,15 @@ def ahead():
 def residuals(homotopy, path, count=200):
     s = np.linspace(path.arclength[0], path.arclength[-1], count)
     return max(np.abs(homotopy.residual(u[:-1], u[-1])).max() for u in path(s))
+
+
+@pytest.mark.parametrize("preset", [continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE])
+@pytest.mark.parametrize("homotopy", [Circle(), Cusp(), FreudensteinRoth()], ids=lambda h: type(h).__name__)
+def test_accumulated_arclength_is_the_length_to_the_fourth_order_in_the_angle(homotopy, preset):
+    path = continuation.trace(homotopy, preset=preset, metric=continuation.metric.Euclidean())
+    length, angle = continuation.arclength(homotopy, path), max(step.angle for step in path.steps)
+    # 5e-3 of the fourth power at most; of a circle the parts are exact, and quadrature is good to 1e-9.
+    assert abs(path.arclength[-1] - length) <= (1e-2 * angle**4 * (not isinstance(homotopy, Circle)) + 2e-9) * length
 
 
 def test_both_directions_are_one_path(both):
