@@ -29,6 +29,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.intervals.ends import Mask
+from continuation.linear.threads import one_thread
 from continuation.metric import Automatic, Metric, norm
 from continuation.path import Path, Step
 from continuation.path.path import require_path
@@ -71,6 +72,7 @@ def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
     return engine
 
 
+@one_thread
 def certify(path: Path, homotopy: Any) -> Proof:
     """Prove that a traced path is one path: what is proved, and gaps where it is not.
 

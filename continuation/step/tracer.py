@@ -22,6 +22,7 @@ from continuation.events.scan import monitored
 from continuation.homotopy import SupportsPieces, offers
 from continuation.kinks.start import begin
 from continuation.linear.silence import Silence
+from continuation.linear.threads import one_thread
 from continuation.path import LocatedEvent, Path, Step
 from continuation.path.interrupted import Interrupted
 from continuation.point.linearization import Anchor, Linearization
@@ -184,6 +185,7 @@ class Tracer:
                 self._end(abandoned(self._reason) if isinstance(error, GeneratorExit) else raised(error))
             raise
 
+    @one_thread
     def run(self) -> Path:
         """Trace to the end of the path.
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from continuation.arguments.checks import instance_with
 from continuation.arrays import Array
 from continuation.budget import Budget
+from continuation.linear.threads import one_thread
 from problems.lcp.data.problem import LCP
 from problems.lcp.pivoting.lockstep import lemke_bases
 from problems.lcp.proof.pieces import all_faces
@@ -71,6 +72,7 @@ class Answers:
         return f"<Answers: {int(self.solved.sum())} of {k} solved, n = {n}, {self.singly.size} one by one>"
 
 
+@one_thread
 def solve_many(
     A: Any, q: Any, *, tolerance: float = 1e-10, budget: Budget | None = None, executor: Executor | None = None
 ) -> Answers:

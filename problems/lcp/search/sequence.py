@@ -10,6 +10,7 @@ from attrs import define, field
 
 from continuation.arrays import Array, Matrix
 from continuation.budget import Budget
+from continuation.linear.threads import one_thread
 from problems.lcp.active_set.face import Face, Faces, Mask
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
@@ -63,6 +64,7 @@ class Solver:
     _active: Mask | None = field(default=None, init=False)
     _bases: list[tuple[Array, Mask]] = field(factory=list, init=False)
 
+    @one_thread
     def solve(self, q: Any, active: Any = None, **options: Any) -> Solution:
         """Solve LCP(q, A).
 

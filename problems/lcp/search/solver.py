@@ -24,6 +24,7 @@ from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.linear.factoring import check_method
 from continuation.linear.silence import Silence
+from continuation.linear.threads import one_thread
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
@@ -60,6 +61,7 @@ MOST_RESTARTS, WITHIN_BUDGET = 1000, 100_000
 
 
 @documented
+@one_thread
 def solve(
     problem: MixedLCP | Program,
     homotopy: str = "auto",
