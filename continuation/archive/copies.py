@@ -14,7 +14,7 @@ from continuation.archive.atomic import beside, like, publish
 from continuation.archive.contents import Contents
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
-from continuation.archive.schema import ORIGIN_COLUMNS, TEXT, Layout, text
+from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Layout, text
 from continuation.archive.store import Store
 from continuation.archive.tables import Table
 from continuation.status import Status
@@ -98,7 +98,7 @@ def write_copy(
     """
     sources = [share.source for share in shares]
     problem = leading(sources).problem()
-    store = Store(part, _joint(sources), attributes, problem, compression=compression)
+    store = Store(part, _joint(sources), {**attributes, "schema": SCHEMA}, problem, compression=compression)
     try:
         points = paths = 0
         for share in shares:

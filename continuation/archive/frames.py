@@ -40,4 +40,4 @@ def dataframe(points: Table) -> Any:
 
 
 def _text(values: Any) -> Any:
-    return np.char.decode(values, "utf-8") if values.dtype.kind == "S" else values
+    return np.char.decode(values, "utf-8", "replace") if values.dtype.kind == "S" else values

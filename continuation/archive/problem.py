@@ -11,7 +11,7 @@ import numpy as np
 
 from continuation.archive.checks import DamageError, digest
 from continuation.archive.codec import UnstorableError, encode, order
-from continuation.archive.datasets import dataset, names
+from continuation.archive.datasets import Allowance, dataset, names
 
 GROUP = "problem"
 
@@ -49,7 +49,7 @@ def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> Non
         stored.attrs["checksum"] = np.uint32(digest(array))
 
 
-def read_problem(group: Any, checked: bool, limit: int) -> tuple[str, dict[str, Any]]:
+def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, Mapping[str, Any]]:
     """The same two things, from a file; no description where it has none; `ValueError` where they were changed."""
     if group is None:
         return json.dumps({"unstorable": "the file holds no problem"}), {}
@@ -58,7 +58,7 @@ def read_problem(group: Any, checked: bool, limit: int) -> tuple[str, dict[str, 
         raise DamageError("the description of its problem is not what was written")
     arrays = {}
     for name in names(group):
-        found = dataset(group, name, None, None, limit)
+        found = dataset(group, name, None, None, allowance)
         lying: Literal["C", "F"] = "F" if found.attrs["order"] == "F" else "C"
         arrays[name] = np.asarray(found[()], order=lying)
         if checked and digest(arrays[name]) != found.attrs["checksum"]:

@@ -15,7 +15,6 @@ import numpy as np
 from continuation.archive import frames, record
 from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.datasets import DATASET_BYTES
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES
 from continuation.archive.selection import Selection, selected
@@ -32,6 +31,9 @@ from continuation.status import Status
 
 _AT_ONCE = 1 << 22
 """Numbers (of 8 bytes) that are read in one go when all paths are asked for: many short reads cost much more."""
+
+_STEP_BYTES, _COPIES = 1400, 6
+"""Of a step that is made of a row: its own and its segment's objects, and copies of its point and tangent."""
 
 
 class Archive(Sequence[Path]):
@@ -53,7 +55,7 @@ class Archive(Sequence[Path]):
         False for a file that is growing, or was left by a kill: `recover` makes it whole.
     """
 
-    def __init__(self, file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> None:
+    def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
         self.file = contents.file
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
@@ -129,13 +131,16 @@ class Archive(Sequence[Path]):
         index %= len(self)
         try:
             return self._path(index, keep == "all")
-        except (ValueError, IndexError) as error:
+        except (ValueError, LookupError) as error:
             raise self.contents.damaged(error) from error
 
     def _path(self, index: int, whole: bool) -> Path:
         steps: Any
         if whole:
-            block = self.points.block(self.rows(index))
+            rows = self.rows(index)
+            points = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
+            self.contents.allowance.take("the steps of the path", points)
+            block = self.points.block(rows)
             steps, events = from_columns(block, self.event_names, self.layout.observed)
         else:
             steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
@@ -145,7 +150,7 @@ class Archive(Sequence[Path]):
             steps,
             events,
             Status(int(row["status"])),
-            row["message"].decode(),
+            row["message"].decode(errors="replace"),
             Counts(**{name: int(row[column]) for name, column in COUNT_NAMES.items()}),
             float(row["wall_time"]),
             references=entries(str(self.attributes.get("references", ""))),
@@ -298,7 +303,7 @@ class Archive(Sequence[Path]):
         return row
 
 
-def open_archive(file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> Archive:
+def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:
     """Open an archive for reading; also one that is still growing, or was left by a kill.
 
     Nothing in the file is executed, imported or obeyed. Every block of rows is checked when it is read.
@@ -306,8 +311,9 @@ def open_archive(file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> Ar
     Parameters
     ----------
     file : path
-    limit : int
-        Bytes that one compressed dataset may unfold to. Others are no larger than the file.
+    limit : int, optional
+        Bytes of memory that all which is read may take, Python's objects included. By default 128 MiB, or 32 times as
+        many as the file has.
 
     Raises
     ------

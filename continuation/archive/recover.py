@@ -50,7 +50,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     name = as_file("file", file)
     with closing(Contents(name, salvage=True)) as contents:
         lost = {table: contents.unsound(table) for table in ("point", "path")}
-        damaged = any(lost.values())
+        damaged = any(lost.values()) or any(contents.cut_off.values())
         if not damaged and not contents.flaws:
             return _ended(name, force)
         real = File(os.path.realpath(name))
@@ -60,7 +60,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
                 shares = [nothing(contents)]
             if not shares:
                 raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
-            dropped = sum(stop - start for start, stop in lost["point"])
+            dropped = sum(stop - start for start, stop in lost["point"]) + contents.cut_off["point"]
             what = f"recovered: {'; '.join(contents.flaws) or 'damaged'}; {dropped} points were not what was written"
             attributes = _legible({**contents.attributes, **history(contents.attributes, what)})
             # What is dropped may be worth more to somebody else than it is to us.

@@ -32,7 +32,7 @@ def archive_page(archive: Any) -> str:
     """What an archive holds, path by path."""
     shown = range(min(len(archive), TABLE_ROWS))
     rows = [
-        (k, archive.status(k).name, int(archive.paths["n_points"][k]), archive.paths["message"][k].decode())
+        (k, archive.status(k).name, int(archive.paths["n_points"][k]), archive.paths["message"][k].decode(errors="replace"))
         for k in shown
     ]
     more = len(archive) - len(rows)
