@@ -35,6 +35,11 @@ class Share:
     points: slice
     first: int = 0
 
+    @property
+    def size(self) -> int:
+        """The number of points."""
+        return int(self.points.stop - self.points.start)
+
 
 def check_level(compression: Any) -> None:
     """Raise unless gzip knows the level."""
@@ -79,9 +84,9 @@ def interrupt(paths: Mapping[str, Any]) -> None:
     paths["message"][open_] = text(f"{Status.INTERRUPTED} Its writer was killed.", TEXT)
 
 
-def leading(sources: Sequence[Contents]) -> Contents:
-    """The first archive with a point in it: its settings and problem stand for all; one of failures alone has none."""
-    return next((source for source in sources if source.committed.points), sources[0])
+def leading(shares: Sequence[Share]) -> Contents:
+    """The archive of the first point: its settings and problem stand for all; one of failures alone has none."""
+    return next((share.source for share in shares if share.size), shares[0].source)
 
 
 def write_copy(
@@ -96,9 +101,8 @@ def write_copy(
 
     Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
     """
-    sources = [share.source for share in shares]
-    problem = leading(sources).problem()
-    store = Store(part, _joint(sources), {**attributes, "schema": SCHEMA}, problem, compression=compression)
+    problem = leading(shares).problem()
+    store = Store(part, _joint(shares), {**attributes, "schema": SCHEMA}, problem, compression=compression)
     try:
         points = paths = 0
         for share in shares:
@@ -110,17 +114,16 @@ def write_copy(
     return store
 
 
-def _joint(sources: Sequence[Contents]) -> Layout:
+def _joint(shares: Sequence[Share]) -> Layout:
     """One layout that holds them all: a column that only some have is missing elsewhere."""
-    head = leading(sources)
-    first = head.layout
-    for source in sources:
-        if source.layout.unknowns != first.unknowns and source.committed.points:
+    head = leading(shares)
+    first, layouts = head.layout, [share.source.layout for share in shares]
+    for share, layout in zip(shares, layouts):
+        if layout.unknowns != first.unknowns and share.size:
             raise ArchiveError(
-                f"{source.file}: holds paths of {source.layout.unknowns} unknowns, {head.file} of "
+                f"{share.source.file}: holds paths of {layout.unknowns} unknowns, {head.file} of "
                 f"{first.unknowns}; one file holds one number"
             )
-    layouts = [source.layout for source in sources]
     return evolve(
         first,
         controller=max(layout.controller for layout in layouts),

@@ -7,6 +7,9 @@ from contextlib import ExitStack
 from os import PathLike
 from pathlib import Path as File
 
+import numpy as np
+from attrs import evolve
+
 from continuation.archive.atomic import as_file, check_new
 from continuation.archive.copies import (
     Share,
@@ -21,6 +24,7 @@ from continuation.archive.copies import (
 from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
+from continuation.archive.schema import TEXT, text
 from continuation.arguments.checks import complain
 from continuation.status import Status
 
@@ -61,12 +65,12 @@ def merge(
     check_new(whole)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
-        first = leading([archive.contents for archive in archives]).attributes
+        shares = [everything(archive) for archive in archives]
+        first = leading(shares).attributes
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
         attributes = {**first, **process(), **history(first, f"merged from {len(archives)} files: {names}")}
         if title:
             attributes["title"] = title
-        shares = [everything(archive) for archive in archives]
         _refuse_duplicates(archives, shares)
         put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
     return whole
@@ -109,9 +113,23 @@ def gather(files: Sequence[File], target: File, *, finished: bool = False) -> No
             shares.append(Share(archive.contents, paths, rows, first[1]))
         if not shares:
             return
-        head = leading([archive.contents for archive in archives]).attributes
+        lead = leading(shares)
+        shares = [_of_size(share, lead.layout.unknowns, target) for share in shares]
+        head = lead.attributes
         attributes = {**head, **process(), **history(head, f"merged from the {len(archives)} files of a sweep")}
         put(target, lambda part: write_copy(shares, part, attributes=attributes))
+
+
+def _of_size(share: Share, unknowns: int, target: File) -> Share:
+    """The share; if its paths have another number of unknowns, what they would be in one file: refused."""
+    found = share.source.layout.unknowns
+    if found == unknowns or not share.size:
+        return share
+    reason = f"ValueError: homotopy: expected {unknowns} unknowns, as in {target} so far, found {found}"
+    begun, paths = share.paths["n_points"] > 0, dict(share.paths)
+    for name, value in {"status": int(Status.RAISED), "message": text(reason, TEXT), "n_points": 0}.items():
+        paths[name] = np.where(begun, np.array(value, dtype=paths[name].dtype), paths[name])
+    return evolve(share, paths=paths, points=slice(0, 0))
 
 
 def _runs(places: Sequence[tuple[int, int]]) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]:
