@@ -55,8 +55,6 @@ def leading_paths(archive: Archive, paths: int, points: int) -> Share:
 def with_origins(contents: Contents, numbers: slice, table: Table) -> dict[str, Any]:
     """The rows of some paths, each with its homotopy and its source: those of the file, where the rows do not say."""
     paths, about = table.block(numbers), contents.attributes
-    if len(paths["path"]) == 0:
-        return paths
     # Of files without an identifier the time, the process and the name must do.
     unnamed = f"{about.get('created', '')}/{about.get('process', '')}/{contents.file.name}".replace(" ", "_")
     identifier = about.get("identifier", unnamed)

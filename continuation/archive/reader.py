@@ -13,7 +13,7 @@ from typing import Any, overload
 import numpy as np
 
 from continuation.archive import frames, record
-from continuation.archive.checkpoint import Checkpoint, unpack
+from continuation.archive.checkpoint import Checkpoint, Foreign, unpack
 from continuation.archive.contents import Contents
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES
@@ -248,9 +248,16 @@ class Archive(Sequence[Path]):
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""
-        found = [unpack(raw) for raw in self.contents.slots()]
-        valid = [c for c in found if c is not None and self._covers(c)]
+        valid = [c for c in self._checkpoints() if isinstance(c, Checkpoint) and self._covers(c)]
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
+
+    def foreign_version(self) -> str:
+        """The version of the library that the state of the last path is of, if it is not this one's; else empty."""
+        last = len(self) - 1
+        return next((c.version for c in self._checkpoints() if isinstance(c, Foreign) and c.path == last), "")
+
+    def _checkpoints(self) -> list[Checkpoint | Foreign | None]:
+        return [unpack(raw) for raw in self.contents.slots()]
 
     def _covers(self, checkpoint: Checkpoint) -> bool:
         """Whether the rows before the checkpoint are all committed: it is written before the counters are."""

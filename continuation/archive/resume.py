@@ -31,6 +31,7 @@ from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
 from continuation.step.tracer import Observer, Tracer
+from continuation.version import __version__
 
 RESUMABLE = (
     Status.TRACING,
@@ -180,9 +181,16 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
             f"{source.file}: the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
         )
     checkpoint = source.checkpoint()
-    if checkpoint is None or checkpoint.path != last:
-        raise ArchiveError(f"{source.file}: path {last} has no state to resume from; trace it again")
-    return checkpoint
+    if checkpoint is not None and checkpoint.path == last:
+        return checkpoint
+    version = source.foreign_version()
+    if version:
+        raise ArchiveError(
+            f"{source.file}: the state of path {last} is that of version {version:.20}, and resumes within its major "
+            f"version, which is not that of {__version__}; go on from its last point by "
+            f"trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
+        )
+    raise ArchiveError(f"{source.file}: path {last} has no state to resume from; trace it again")
 
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:

@@ -1,46 +1,81 @@
-import os, sys
-from concurrent.futures import ThreadPoolExecutor
+"""Writes the archives of this folder: run it in an environment of commit 10905ca (0.1.0), with a new folder's name.
+
+Finished, out of budget, merged, exported with gzip, a sweep, observed scalars; killed between commits, before the
+first, and in the second path of a log. `told.json` is what that version reads from them.
+"""
+
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+
 import numpy as np
-from attrs import frozen
+
 from continuation import Budget, Tracer, trace
-from continuation.archive import *
+from continuation.archive import Limits, PathLog, export, merge, open_archive, trace_many
 from problems.bifurcation import Cusp, ExponentialCosine
-import continuation.archive.sweep
-out = sys.argv[1]
-os.makedirs(out, exist_ok=True)
-os.chdir(out)
+
+
 class Seen:
     target = 1.0
-    def start(self): return np.zeros(2), 0.0
-    def residual(self, y, lam): return y - lam
-    def jacobian(self, y, lam): return np.eye(2), -np.ones(2)
-    def observe(self, y, lam): return {"norm": float(np.abs(y).max()), "square": float(y @ y)}
-trace(Cusp(), archive="finished.h5")
-trace(Cusp(), archive="budget.h5", budget=Budget(steps=6))
-trace(Cusp(), archive=PathLog("tangents.h5", tangents=True))
-trace(Seen(), archive="observed.h5")
-for name, rows in (("killed.h5", 3), ("killed_early.h5", 256)):
-    pid = os.fork()
-    if pid == 0:
-        for i, _ in enumerate(Tracer(ExponentialCosine(4), observers=(PathLog(name, limits=Limits(rows=rows)),))):
-            if i == 15: os.kill(os.getpid(), 9)
-    os.waitpid(pid, 0)
-with trace_many([Cusp(.4), Cusp(.9), Cusp(1.5)], archive="sweep.h5"): pass
-with ThreadPoolExecutor(2) as ex, trace_many([Cusp(.4), Cusp(.9), Cusp(1.5)], ex, "pool.h5"): pass
-merge(["finished.h5", "budget.h5"], "merged.h5")
-export("finished.h5", "gzip.nc")
-# a killed sweep: one path finished, one begun
-pid = os.fork()
-if pid == 0:
+
+    def start(self):
+        return np.zeros(2), 0.0
+
+    def residual(self, y, lam):
+        return y - lam
+
+    def jacobian(self, y, lam):
+        return np.eye(2), -np.ones(2)
+
+    def observe(self, y, lam):
+        return {"norm": float(np.abs(y).max()), "square": float(y @ y)}
+
+
+def killed(write):
+    """Run it in a child that kills itself."""
+    child = os.fork()
+    if child == 0:
+        write()
+    os.waitpid(child, 0)
+
+
+def follow(homotopy, log, steps):
+    for index, _ in enumerate(Tracer(homotopy, observers=(log,))):
+        if index == steps:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+
+def two_paths():
     with PathLog("killed_sweep.h5", limits=Limits(rows=3)) as log:
-        for _ in Tracer(Cusp(), observers=(log,)): pass
-        for i, _ in enumerate(Tracer(Cusp(.4), observers=(log,))):
-            if i == 7: os.kill(os.getpid(), 9)
-os.waitpid(pid, 0)
-import json
-told = {}
-for f in sorted(os.listdir(".")):
-    if f.endswith((".h5", ".nc")):
-        with open_archive(f) as a:
-            told[f] = {"paths": len(a), "points": a.points.size, "statuses": [p.status.name for p in a], "end": [p.steps[-1].lam if len(p.steps) else None for p in a], "sum": float(a.points["y"].sum())}
-json.dump(told, open("told.json", "w"), indent=1)
+        follow(Cusp(), log, -1)
+        follow(Cusp(0.4), log, 7)
+
+
+def told(file):
+    with open_archive(file) as archive:
+        paths = list(archive)
+        return {
+            "paths": len(paths),
+            "points": archive.points.size,
+            "statuses": [path.status.name for path in paths],
+            "end": [path.steps[-1].lam if len(path.steps) else None for path in paths],
+            "sum": float(archive.points["y"].sum()),
+        }
+
+
+if __name__ == "__main__":
+    os.makedirs(sys.argv[1])
+    os.chdir(sys.argv[1])
+    trace(Cusp(), archive="finished.h5")
+    trace(Cusp(), archive="budget.h5", budget=Budget(steps=6))
+    trace(Seen(), archive="observed.h5")
+    killed(lambda: follow(ExponentialCosine(4), PathLog("killed.h5", limits=Limits(rows=3)), 15))
+    killed(lambda: follow(ExponentialCosine(4), PathLog("killed_early.h5"), 15))
+    killed(two_paths)
+    trace_many([Cusp(0.4), Cusp(0.9), Cusp(1.5)], archive="sweep.h5").close()
+    merge(["finished.h5", "budget.h5"], "merged.h5")
+    export("finished.h5", "gzip.nc")
+    found = {file.name: told(file) for file in sorted(Path().iterdir())}
+    Path("told.json").write_text(json.dumps(found, indent=1))
