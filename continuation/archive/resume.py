@@ -27,6 +27,8 @@ from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
@@ -246,7 +248,7 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
     ValueError
         If it is another homotopy.
     """
-    unknowns = np.size(homotopy.start()[0])
+    unknowns = Evaluator(homotopy, Counts()).start().size - 1
     if unknowns != u.size - 1:
         raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")
     found = float(np.abs(homotopy.residual(u[:-1].copy(), float(u[-1]))).max())
