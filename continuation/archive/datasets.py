@@ -70,14 +70,17 @@ def member(group: Any, name: str) -> Any:
         raise StructureError(f"{name} is a link to somewhere else")
     # As `group[name]`, which makes a new object of the whole file each time.
     found = h5o.open(group.id, raw)
-    if h5o.get_info(found).rc > 1:
-        raise StructureError(f"{name} is stored once and has several names")
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 
 def names(group: Any) -> list[str]:
-    """The names of all that is in a group."""
-    return [raw.decode(errors="surrogateescape") for raw in group.id]
+    """The names of all that is in a group; `StructureError` if two are names of one thing, which would count twice."""
+    known: dict[Any, str] = {}
+    for raw in group.id:
+        link, name = group.id.links.get_info(raw), raw.decode(errors="surrogateescape")
+        if known.setdefault((link.type, link.u if link.type == h5l.TYPE_HARD else raw), name) != name:
+            raise StructureError(f"{name} is stored once, under two names")
+    return list(known.values())
 
 
 def subgroup(group: Any, name: str) -> Any:
