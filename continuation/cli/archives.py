@@ -122,7 +122,9 @@ def _named(path: str) -> Any:
     """The class or function ``module:name``, which the user names and so trusts."""
     module, _, name = path.partition(":")
     from continuation.archive.trust import registry
+    from continuation.cli.making import importable
 
+    importable(path)
     try:
         found = attrgetter(name)(import_module(module))
         registry([found])
