@@ -33,7 +33,15 @@ from continuation.archive.files import FAULTS, WRITER_SECONDS, open_for_reading
 from continuation.archive.locks import is_held
 from continuation.archive.problem import GROUP as PROBLEM
 from continuation.archive.problem import read_problem
-from continuation.archive.schema import EVENT_NAME, KINK_COLUMNS, ORIGIN_COLUMNS, TANGENT_COLUMNS, Column, Layout, check_names
+from continuation.archive.schema import (
+    EVENT_NAME,
+    KINK_COLUMNS,
+    ORIGIN_COLUMNS,
+    TANGENT_COLUMNS,
+    Column,
+    Layout,
+    check_names,
+)
 from continuation.archive.structure import RESUME, SLOTS
 
 Array = np.ndarray[Any, Any]
@@ -43,11 +51,11 @@ _T = TypeVar("_T")
 class Contents:
     """An open file.
 
-    `limit`: Bytes that all which is read may take, as `Allowance` has it. `salvage`: Whether to go on where the end of the file is
-    missing, or its attributes, names or problem are not what was written: rows are checked all the same. `checked`:
-    Whether it has checksums; files of the schema `continuation-path-1` have none. `flaws`: What was passed over. `cut_off`: Committed rows of each
-    table whose checksums are missing. Raises
-    `ArchiveError` for anything wrong with it, here and in the methods.
+    `limit`: Bytes that all which is read may take, as `Allowance` has it. `salvage`: Whether to go on where the end of
+    the file is missing, or its attributes, names or problem are not what was written: rows are checked all the same.
+    `checked`: Whether it has checksums; files of the schema `continuation-path-1` have none. `flaws`: What was passed
+    over. `cut_off`: Committed rows of each table whose checksums are missing. Raises `ArchiveError` for anything wrong
+    with it, here and in the methods.
     """
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None, salvage: bool = False) -> None:
@@ -95,7 +103,7 @@ class Contents:
     def damaged(self, error: BaseException) -> ArchiveError:
         """The error for a file that cannot be read."""
         if isinstance(error, LimitError):
-            return ArchiveError(f"{self.file}: {short(error)}")
+            return ArchiveError(f"{self.file}: {short(error)}; say limit=")
         hint = "; `recover` keeps what is sound" if isinstance(error, DamageError) else ""
         return ArchiveError(f"{self.file}: truncated or damaged ({short(error)}){hint}")
 
@@ -183,8 +191,7 @@ class Contents:
                 raise
         parts, step = [np.empty((0, *found.shape[1:]), kind or found.dtype)], found.chunks[0] if found.chunks else count
         with suppress(*FAULTS):
-            for start in range(0, count, step):
-                parts.append(view[start : min(start + step, count)])
+            parts.extend(view[start : min(start + step, count)] for start in range(0, count, step))
         return np.concatenate(parts)
 
     def _read_names(self) -> tuple[str, ...]:

@@ -15,15 +15,15 @@ import numpy as np
 from h5py import h5d, h5l, h5o, h5z
 
 LEAST_BYTES = 1 << 27
-"""Bytes of memory that any file may ask for. Copying takes three times as much, with numpy and scipy 500 MB in all; with
-half as many a compressed path of 50,000 points is refused."""
+"""Bytes of memory that any file may ask for. Copying takes three times as much, with numpy and scipy 500 MB in all;
+with half as many a compressed path of 50,000 points is refused."""
 
 UNFOLDING = 32
-"""Times its own size that a larger file may ask for. Stored as it is, a point of two unknowns has 120 bytes or more, and
-as a `Step` 1.5 KiB: 13 times as many, and twice that where it is compressed. Of zeros gzip makes a thousandth."""
+"""Times its own size that a larger file may ask for. Stored as it is, a point of two unknowns has 120 bytes or more,
+and as a `Step` 1.5 KiB: 13 times as many, and twice that where it is compressed. Of zeros gzip makes a thousandth."""
 
 COLUMN_BYTES = 1 << 14
-"""Bytes of chunks that HDF5 keeps of each open dataset (tables are read from one end to the other), so what it costs."""
+"""Bytes of chunks that HDF5 keeps of each open dataset, so what one costs: tables are read from end to end."""
 
 _FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF)
 """Those that h5py brings itself; any other would be a library that is loaded to read the file."""
@@ -46,16 +46,17 @@ class Allowance:
     def __init__(self, size: int, limit: int | None = None) -> None:
         self.limit = max(LEAST_BYTES, UNFOLDING * size) if limit is None else limit
         self._taken: dict[str, int] = {}
+        self._total = 0
 
     def take(self, what: str, claimed: int) -> None:
         """Count what is to be read; the same thing again counts once, at its latest size.
 
         Raises `LimitError` if all together is more than the limit.
         """
-        self._taken[what] = claimed
-        if sum(self._taken.values()) > self.limit:
-            del self._taken[what]
-            raise LimitError(f"{what} claims {claimed} bytes, all of it more than the limit of {self.limit}; say limit=")
+        total = self._total - self._taken.get(what, 0) + claimed
+        if total > self.limit:
+            raise LimitError(f"{what} claims {claimed} bytes, all of it more than the limit of {self.limit}")
+        self._taken[what], self._total = claimed, total
 
 
 def member(group: Any, name: str) -> Any:
@@ -92,7 +93,11 @@ def subgroup(group: Any, name: str) -> Any:
 
 
 def dataset(
-    group: Any, name: str, kind: np.dtype[Any] | None, shape: Sequence[int | None] | None, allowance: Allowance,
+    group: Any,
+    name: str,
+    kind: np.dtype[Any] | None,
+    shape: Sequence[int | None] | None,
+    allowance: Allowance,
     rows: int | None = None,
 ) -> Any:
     """A dataset in a group, its storage checked, and what is to be read of it counted: all, or its first `rows`.
@@ -124,7 +129,7 @@ def dataset(
     # A chunk is unfolded whole, and each of two filters makes a copy of it.
     if layout == h5d.CHUNKED and 4 * math.prod(properties.get_chunk()) * stored.itemsize > allowance.limit:
         chunk = properties.get_chunk()
-        raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}; say limit=")
+        raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}")
     read = () if lengths is None else lengths if rows is None else (rows, *lengths[1:])
     allowance.take(f"{group.name}/{name}".lstrip("/"), stored.itemsize * math.prod(read))
     return found

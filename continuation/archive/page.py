@@ -210,7 +210,8 @@ def _failures(archive: Archive) -> list[str]:
     rows = np.flatnonzero(np.isin(archive.paths["status"], [int(status) for status in UNFINISHED]))
     lines = ["", "Not finished", "------------"] if rows.size else []
     for row in rows[:_LISTED]:
-        message = archive.paths["message"][row].decode(errors="replace") or "still being traced, or its writer was killed"
+        said = archive.paths["message"][row].decode(errors="replace")
+        message = said or "still being traced, or its writer was killed"
         lines.append(f"  path {row} (member {archive.paths['member'][row]}): {message}")
     return [*lines, f"  ... and {rows.size - _LISTED} more"] if rows.size > _LISTED else lines
 

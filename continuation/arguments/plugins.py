@@ -255,7 +255,7 @@ def _callable(name: str, factory: Any, kind: str) -> Factory:
     try:
         inspect.signature(factory)
     except (TypeError, ValueError):
-        raise PluginError(f"{name}: expected a class or function with known parameters, found {factory!r:.80}") from None
+        raise PluginError(f"{name}: expected something with known parameters, found {factory!r:.80}") from None
     loaded: Factory = factory
     return loaded
 

@@ -130,7 +130,8 @@ def _named(path: str) -> Any:
         registry([found])
     except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
         reason = f"{type(error).__name__}: {error}".removeprefix("TypeError: trust: ")
-        raise argparse.ArgumentTypeError(f"expected module:name of a class or function, found {path!r} ({reason})") from None
+        expected = "expected module:name of a class or function"
+        raise argparse.ArgumentTypeError(f"{expected}, found {path!r} ({reason})") from None
     return found
 
 

@@ -90,7 +90,7 @@ def _matrix_market(file: str) -> Mapping[str, Any]:
     if min(rows, columns) < 1 or found != claimed:
         raise ValueError(f"it claims {rows} x {columns} in {claimed} numbers, and holds {found}")
     # One thread: a child has room for no other's stack.
-    setattr(sys.modules.get("scipy.io._fast_matrix_market"), "PARALLELISM", 1)
+    getattr(sys.modules.get("scipy.io._fast_matrix_market"), "__dict__", {})["PARALLELISM"] = 1
     return {ALONE: scipy.io.mmread(file)}
 
 

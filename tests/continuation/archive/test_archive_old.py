@@ -1,4 +1,4 @@
-"""Files that version 0.1.0 left, in each state that it could leave one in (`old/make.py`): read, recovered, gone on with."""
+"""Files that version 0.1.0 left, in each state that it could leave one in (`old/make.py`): read, recovered, used."""
 
 import json
 import shutil
@@ -79,7 +79,8 @@ def test_what_it_observed(old):
 
 def test_a_state_resumes_within_its_major_version_and_a_path_goes_on_in_any(tmp_path, old):
     file = Path(shutil.copy(old / "budget.h5", tmp_path))
-    with pytest.raises(ArchiveError, match=r"version 0\.1\.0.*major version.*trace\(homotopy, start=open_archive\(.*\[0\]\)$"):
+    said = r"version 0\.1\.0.*major version.*trace\(homotopy, start=open_archive\(.*\[0\]\)$"
+    with pytest.raises(ArchiveError, match=said):
         resume(file, budget=Budget())
     with open_archive(file) as archive:
         before = archive[0]
