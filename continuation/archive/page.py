@@ -39,7 +39,7 @@ def describe(archive: Archive, width: int = WIDTH) -> str:
     ----------
     archive : Archive
     width : int
-        Columns, about.
+        Columns; a narrower page than the usual one has its lines broken.
 
     Raises
     ------
@@ -58,7 +58,8 @@ def describe(archive: Archive, width: int = WIDTH) -> str:
         raise archive.contents.damaged(error) from error
     # A title of somebody else's is no way to the terminal's control codes.
     plain = "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
-    return "\n".join(part for line in plain.split("\n") for part in _fitted(line, width))
+    fitted = (part for line in plain.split("\n") for part in _fitted(line, width))
+    return plain if width >= WIDTH else "\n".join(fitted)
 
 
 def _fitted(line: str, width: int) -> list[str]:
