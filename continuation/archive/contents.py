@@ -27,12 +27,12 @@ from continuation.archive.checks import (
     of_attributes,
     width,
 )
+from continuation.archive.codec import GROUP as PROBLEM
+from continuation.archive.codec import read_problem
 from continuation.archive.datasets import COLUMN_BYTES, Allowance, LimitError, dataset, names, subgroup
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import FAULTS, WRITER_SECONDS, open_for_reading
 from continuation.archive.locks import is_held
-from continuation.archive.problem import GROUP as PROBLEM
-from continuation.archive.problem import read_problem
 from continuation.archive.schema import (
     EVENT_NAME,
     KINK_COLUMNS,

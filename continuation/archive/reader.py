@@ -12,15 +12,14 @@ from typing import Any, overload
 
 import numpy as np
 
-from continuation.archive import frames, record
+from continuation.archive import record
 from continuation.archive.checkpoint import Checkpoint, Foreign, unpack
 from continuation.archive.contents import Contents
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES
-from continuation.archive.selection import Selection, selected
 from continuation.archive.stored import events as events_of
 from continuation.archive.stored import stored_path
-from continuation.archive.tables import Table
+from continuation.archive.tables import Selection, Table, dataframe, dataset, selected
 from continuation.arguments.checks import complain
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
@@ -238,11 +237,11 @@ class Archive(Sequence[Path]):
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
-        return frames.dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
+        return dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
 
     def to_dataframe(self) -> Any:
         """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
-        return frames.dataframe(self.points)
+        return dataframe(self.points)
 
     # -- for resuming and copying -----------------------------------------------------------------------------
 

@@ -16,13 +16,12 @@ from continuation.archive.atomic import as_file, beside, check_new, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
 from continuation.archive.copies import leading_paths, write_copy
 from continuation.archive.errors import ArchiveError
-from continuation.archive.live import publish_live
 from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own
 from continuation.archive.schema import ACCEPTED
-from continuation.archive.store import Store
+from continuation.archive.store import Store, publish_live
 from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog

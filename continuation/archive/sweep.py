@@ -17,7 +17,7 @@ from typing import Any, Unpack
 from attrs import define, field
 
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.parts import THREAD_SECONDS, collect, end_repeats, finished
+from continuation.archive.merge import THREAD_SECONDS, collect, end_repeats, finished
 from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
 from continuation.arguments.checks import complain, instance_with, is_number
