@@ -16,7 +16,6 @@ from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Layout, text
 from continuation.archive.store import Store
-from continuation.archive.tables import Table
 from continuation.status import Status
 
 _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
@@ -47,32 +46,27 @@ def check_level(compression: Any) -> None:
         raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
 
 
-def leading_paths(archive: Archive, paths: int, points: int) -> Share:
-    """The first paths of an archive, and so many points."""
-    return Share(archive.contents, with_origins(archive.contents, slice(0, paths), archive.paths), slice(0, points))
+def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
+    """Paths of an archive from number `first` to before `last`, or all, and their points, or so many from the first on.
 
-
-def with_origins(contents: Contents, numbers: slice, table: Table) -> dict[str, Any]:
-    """The rows of some paths, each with its homotopy and its source: those of the file, where the rows do not say."""
-    paths, about = table.block(numbers), contents.attributes
+    Each path has its homotopy and its source: those of the file, where its row does not say.
+    """
+    stop, contents = len(archive) if last is None else last, archive.contents
+    paths, about, count = archive.paths.block(slice(first, stop)), contents.attributes, stop - first
     # Of files without an identifier the time, the process and the name must do.
     unnamed = f"{about.get('created', '')}/{about.get('process', '')}/{contents.file.name}".replace(" ", "_")
     identifier = about.get("identifier", unnamed)
-    count = len(paths["path"])
     said = {
         "homotopy": [about.get("homotopy", "")] * count,
-        "source": [f"{identifier} {numbers.start + k} {contents.file.name}" for k in range(count)],
+        "source": [f"{identifier} {first + k} {contents.file.name}" for k in range(count)],
     }
     for column in ORIGIN_COLUMNS:
         own = paths.get(column.name, np.zeros(count, dtype=column.storage))
         filled = np.array([text(str(value), column.length) for value in said[column.name]], dtype=column.storage)
         paths[column.name] = np.where(own == b"", filled, own)
-    return paths
-
-
-def everything(archive: Archive) -> Share:
-    """All that was committed."""
-    return leading_paths(archive, len(archive), archive.points.size)
+    begin = archive.rows(first).start if count else 0
+    end = begin + points if points is not None else archive.rows(stop - 1).stop if count else 0
+    return Share(contents, paths, slice(begin, end), first)
 
 
 def interrupt(paths: Mapping[str, Any]) -> None:

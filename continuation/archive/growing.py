@@ -16,7 +16,7 @@ from attrs import define, evolve
 
 from continuation.archive import record
 from continuation.archive.atomic import as_file, beside, check_new
-from continuation.archive.copies import everything, put, write_copy
+from continuation.archive.copies import put, share_of, write_copy
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.recover import own
@@ -158,7 +158,7 @@ class Growing:
                 ends = path if self.keep == "all" else deepcopy(evolve(path, steps=[path.steps[0], path.steps[-1]]))
                 yield path, self._kept(ends, number, source.points.some("role", source.rows(number)))
             attributes = {**source.attributes, **process(), **history(source.attributes, "went on")}
-            store = write_copy([everything(source)], part, attributes=attributes)
+            store = write_copy([share_of(source)], part, attributes=attributes)
             self._store, self._identifier = publish_live(store, target, replace=True), attributes["identifier"]
 
     def add(self, path: Path) -> Path:

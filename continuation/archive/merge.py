@@ -16,11 +16,10 @@ from continuation.archive.atomic import as_file, check_new
 from continuation.archive.copies import (
     Share,
     check_level,
-    everything,
     interrupt,
     leading,
     put,
-    with_origins,
+    share_of,
     write_copy,
 )
 from continuation.archive.errors import ArchiveError
@@ -120,7 +119,7 @@ def merge(
     check_new(whole)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
-        shares = [everything(archive) for archive in archives]
+        shares = [share_of(archive) for archive in archives]
         first = leading(shares).attributes
         names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
         attributes = {**first, **process(), **history(first, f"merged from {len(archives)} files: {names}")}
@@ -161,11 +160,8 @@ def gather(files: Sequence[File], target: File, *, finished: bool = False) -> No
                 chosen[member] = min(chosen.get(member, candidate), candidate)
         shares = []
         for first, last in _runs([chosen[member][1:] for member in sorted(chosen)]):
-            archive = archives[first[0]]
-            rows = slice(archive.rows(first[1]).start, archive.rows(last[1]).stop)
-            paths = with_origins(archive.contents, slice(first[1], last[1] + 1), archive.paths)
-            interrupt(paths)
-            shares.append(Share(archive.contents, paths, rows, first[1]))
+            shares.append(share_of(archives[first[0]], first[1], last[1] + 1))
+            interrupt(shares[-1].paths)
         if not shares:
             return
         lead = leading(shares)

@@ -16,7 +16,7 @@ from continuation.archive import record
 from continuation.archive.atomic import as_file
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
-from continuation.archive.copies import Share, everything, interrupt, put, write_copy
+from continuation.archive.copies import Share, interrupt, put, share_of, write_copy
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import check_writable
 from continuation.archive.locks import Lock, locked
@@ -143,7 +143,7 @@ def _ended(name: File, force: bool) -> File:
         real = File(os.path.realpath(name))
         with closing(own(archive.contents, real, force=force)):
             attributes = {**archive.attributes, **history(archive.attributes, "recovered after its writer was killed")}
-            share = everything(archive)
+            share = share_of(archive)
             interrupt(share.paths)
             slots = kept(archive.checkpoint())
             put(real, lambda part: write_copy([share], part, attributes=attributes, checkpoints=slots), replace=True)

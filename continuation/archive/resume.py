@@ -14,7 +14,7 @@ import numpy as np
 
 from continuation.archive.atomic import as_file, beside, check_new, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
-from continuation.archive.copies import leading_paths, write_copy
+from continuation.archive.copies import share_of, write_copy
 from continuation.archive.errors import ArchiveError
 from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
@@ -260,7 +260,7 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
-    share = leading_paths(source, checkpoint.path, rows)
+    share = share_of(source, last=checkpoint.path, points=rows)
     with beside(target) as part:
         store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
         return publish_live(store, target, replace=replace)
