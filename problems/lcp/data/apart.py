@@ -24,12 +24,6 @@ from continuation.archive.datasets import Allowance
 BYTES_A_SECOND = 1 << 22
 """Of a file that a child reads in a second of the processor, after the first two: scipy reads 20 times as many."""
 
-_SPARSE = {
-    "coo": (sp.coo_array, ("data", "row", "col")), "csr": (sp.csr_array, ("data", "indices", "indptr")),
-    "csc": (sp.csc_array, ("data", "indices", "indptr")),
-}  # fmt: skip
-
-
 def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[str, Any]:
     """The arrays of a file by name, as `read` returns them; of what is no array of numbers a word for what it is.
 
@@ -100,13 +94,11 @@ def _put(found: Mapping[str, Any], out: BinaryIO, limit: int) -> None:
     arrays: list[Any] = []
     heads: list[list[Any]] = []
     for name, value in found.items():
-        sparse = sp.issparse(value) and value.format in _SPARSE
-        parts = [getattr(value, part) for part in _SPARSE[value.format][1]] if sparse else [value]
-        if not all(isinstance(part, np.ndarray) and part.dtype.kind in "fiubc" for part in parts):
-            heads.append([name, "no matrix of numbers", None])
-            continue
-        heads.append([name, value.format if sparse else "", list(value.shape)])
-        arrays += parts
+        whole = value.tocoo() if sp.issparse(value) else value
+        parts = [whole.data, whole.row, whole.col] if sp.issparse(value) else [value]
+        sound = all(isinstance(part, np.ndarray) and part.dtype.kind in "fiubc" for part in parts)
+        heads.append([name, len(parts) if sound else 0, value.shape if sound else None])
+        arrays += parts if sound else []
     claimed = sum(array.nbytes for array in arrays)
     if claimed > limit:
         raise ValueError(f"it unfolds to {claimed} bytes, expected at most {limit}")
@@ -114,18 +106,13 @@ def _put(found: Mapping[str, Any], out: BinaryIO, limit: int) -> None:
 
 
 def _taken(out: BinaryIO) -> Mapping[str, Any]:
+    found: dict[str, Any] = {}
     with np.load(out, allow_pickle=False) as stored:
-        parts = iter(stored.files)
-        heads = json.loads(str(stored[next(parts)]))
-        found: dict[str, Any] = {}
-        for name, form, shape in heads:
-            if shape is None:
-                found[name] = form
-            elif form:
-                make, names = _SPARSE[form]
-                data, *indices = (stored[next(parts)] for _ in names)
-                where = (tuple(indices),) if form == "coo" else tuple(indices)
-                found[name] = make((data, *where), shape=tuple(shape))
+        names = iter(stored.files)
+        for name, count, shape in json.loads(str(stored[next(names)])):
+            parts = [stored[next(names)] for _ in range(count)]
+            if count == 3:
+                found[name] = sp.coo_array((parts[0], tuple(parts[1:])), shape=tuple(shape))
             else:
-                found[name] = stored[next(parts)]
-        return found
+                found[name] = parts[0] if parts else "no matrix of numbers"
+    return found
