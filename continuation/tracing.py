@@ -131,7 +131,7 @@ def trace_both(
         raise ValueError(f"direction: expected none, since both are traced, found {options['direction']!r}")
     ahead: dict[str, Any] = {**options, "direction": 1}
     behind: dict[str, Any] = {**options, "direction": -1}
-    given = checked(options)["start"]
+    given: Any = checked(options)["start"]
     if given is not None and np.ndim(given[1]):
         ahead, behind = {**options}, {**options, "start": (given[0], -np.asarray(given[1], dtype=float))}
     log = nullcontext() if archive is None else _many(archive)

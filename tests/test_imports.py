@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 
-UPWARDS = {("continuation.path.path", "continuation.archive.memory")}
+UPWARDS = {("continuation.path.path", "continuation.archive.growing")}
 """`Path.save`, `to_xarray` and `to_dataframe`: a path is below the archive that reads paths. No other arrow runs up."""
 
 

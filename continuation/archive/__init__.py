@@ -8,16 +8,15 @@ from continuation.archive.certificates import add_proof, recheck
 from continuation.archive.codec import SupportsArchive
 from continuation.archive.errors import ArchiveError, ArchiveExistsError
 from continuation.archive.export import export
-from continuation.archive.limits import Limits
 from continuation.archive.merge import merge
 from continuation.archive.page import describe
 from continuation.archive.reader import Archive, open_archive
+from continuation.archive.record import Limits
 from continuation.archive.recover import recover
 from continuation.archive.resume import resume
 from continuation.archive.schema import SCHEMA
-from continuation.archive.selection import Selection
 from continuation.archive.sweep import trace_many
-from continuation.archive.tables import Table
+from continuation.archive.tables import Selection, Table
 from continuation.archive.writer import PathLog
 
 __all__ = [

@@ -19,7 +19,7 @@ import numpy as np
 
 from continuation.archive.atomic import as_file, beside, like, publish, short
 from continuation.archive.checks import DamageError, digest
-from continuation.archive.datasets import StructureError, dataset, names, subgroup
+from continuation.archive.datasets import Allowance, StructureError, dataset, names, subgroup
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import FAULTS
 from continuation.archive.reader import Archive, open_archive
@@ -77,14 +77,14 @@ def _write(group: Any, proof: Proof) -> None:
 def read_cells(archive: Archive, path: int) -> Cells | None:
     """The cells of a stored proof; None where the path has none; `ArchiveError` if they are not what was written."""
     try:
-        return _read(archive.contents.root, path)
+        return _read(archive.contents.root, path, archive.contents.allowance)
     except FAULTS as error:
         raise ArchiveError(
             f"{archive.contents.file}: the certificate of path {path} is damaged ({short(error)})"
         ) from None
 
 
-def _read(root: Any, path: int) -> Cells | None:
+def _read(root: Any, path: int, allowance: Allowance) -> Cells | None:
     if GROUP not in names(root):
         return None
     group = subgroup(root, GROUP)
@@ -96,8 +96,7 @@ def _read(root: Any, path: int) -> Cells | None:
         # As wide as the first is, which may be wider than the path (`continuation.certificate.lifting`).
         width = columns["begin"].shape[1] if columns else None
         shape: Sequence[int | None] = (None,) if column == "slabs" else (None, 2 if column == "place" else width)
-        found = dataset(group, column, _COLUMNS.get(column, np.dtype("f8")), shape)
-        found = dataset(group, column, None, found.shape)
+        found = dataset(group, column, _COLUMNS.get(column, np.dtype("f8")), shape, allowance)
         values = np.asarray(found[()])
         if digest(values) != found.attrs["checksum"]:
             raise DamageError(f"{column} is not what was written")

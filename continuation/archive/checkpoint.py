@@ -18,6 +18,7 @@ from continuation.archive.trust import UnknownError, decode
 from continuation.step.settings import Settings
 from continuation.step.state import State
 from continuation.step.tracer import Tracer
+from continuation.version import __version__
 
 HEAD = struct.Struct("<QQI")
 """Sequence, length of the body, CRC-32 of the body."""
@@ -43,6 +44,21 @@ class Checkpoint:
     counts: Mapping[str, int]
     seconds: float
     run: Mapping[str, Any]
+
+
+@frozen
+class Foreign:
+    """A checkpoint of another major version of the library, whose state this one cannot go on from."""
+
+    sequence: int
+    path: int
+    version: str
+
+
+def major(version: str) -> str:
+    """What two versions have in common that can resume each other's paths: "2" of 2.3.1, "0.2" of 0.2.5."""
+    first, second, *_ = (*version.split("."), "")
+    return first if first != "0" else f"0.{second}"
 
 
 class _Block:
@@ -139,6 +155,7 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
     """
     block = _Block()
     tree = {
+        "version": __version__,
         "path": checkpoint.path,
         "rows": checkpoint.rows,
         "counts": dict(checkpoint.counts),
@@ -151,11 +168,11 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
     return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
 
 
-def unpack(raw: bytes) -> Checkpoint | None:
-    """The checkpoint, or None where the bytes are not a whole one.
+def unpack(raw: bytes) -> Checkpoint | Foreign | None:
+    """The checkpoint, a `Foreign` one of another version, or None where the bytes are not a whole one.
 
-    It was never written, torn by a kill, or its state is that of another version of the library: then the points are as
-    good as ever, only resuming is over. The state is read as numbers; nothing that the bytes name is made.
+    It was never written, or torn by a kill: then the points are as good as ever, only resuming is over. The state is
+    read as numbers; nothing that the bytes name is made.
     """
     if len(raw) < HEAD.size:
         return None
@@ -166,6 +183,10 @@ def unpack(raw: bytes) -> Checkpoint | None:
     try:
         head, described, arrays = body.split(b"\n", 2)
         tree, run = json.loads(head), json.loads(described)
+        # Versions were not told apart before the second.
+        version = str(tree.get("version", "0.1.0"))
+        if major(version) != major(__version__):
+            return Foreign(sequence, int(tree["path"]), version)
         state = decode(tree["state"], _Arrays(arrays).fetch, hint=State)
         counts = {str(name): int(value) for name, value in tree["counts"].items()}
         path, rows, seconds = int(tree["path"]), int(tree["rows"]), float(tree["seconds"])

@@ -107,14 +107,19 @@ def width(columns: Sequence[str]) -> int:
 class Ledger:
     """The checksums of one table of `size` rows, as read from a file: what `seal` returned, one row a block.
 
-    Raises `DamageError` if the blocks are not those of so many rows.
+    Without a size the blocks are those up to the first that cannot be one, as in a file that is cut off. Raises
+    `DamageError` if the blocks are not those of so many rows.
     """
 
-    def __init__(self, rows: Array, columns: Sequence[str], size: int) -> None:
+    def __init__(self, rows: Array, columns: Sequence[str], size: int | None) -> None:
         stops = rows[:, 0].astype("i8") | (rows[:, 1].astype("i8") << 32)
-        self._bounds = np.concatenate(([0], stops))
-        if self._bounds[-1] != size or np.any(np.diff(self._bounds) <= 0):
+        bounds = np.concatenate(([0], stops))
+        wrong = np.flatnonzero(np.diff(bounds) <= 0)
+        if size is None:
+            bounds = bounds[: wrong[0] + 1] if wrong.size else bounds
+        elif bounds[-1] != size or wrong.size:
             raise DamageError("the checksums are damaged")
+        self._bounds, self.rows = bounds, int(bounds[-1])
         self._sums, self._place = rows[:, _STOP:], {name: k for k, name in enumerate(sorted(columns))}
 
     def covering(self, rows: slice) -> slice:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from os import PathLike
 from typing import Any, TypeVar
 
 import numpy as np
+from attrs import evolve
 
 from continuation.archive.atomic import as_file, short
 from continuation.archive.checkpoint import HEAD
@@ -24,13 +27,21 @@ from continuation.archive.checks import (
     of_attributes,
     width,
 )
-from continuation.archive.datasets import DATASET_BYTES, StructureError, check_size, dataset, names, subgroup
+from continuation.archive.codec import GROUP as PROBLEM
+from continuation.archive.codec import read_problem
+from continuation.archive.datasets import COLUMN_BYTES, Allowance, LimitError, dataset, names, subgroup
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import FAULTS, WRITER_SECONDS, open_for_reading
 from continuation.archive.locks import is_held
-from continuation.archive.problem import GROUP as PROBLEM
-from continuation.archive.problem import read_problem
-from continuation.archive.schema import EVENT_NAME, KINK_COLUMNS, ORIGIN_COLUMNS, TANGENT_COLUMNS, Column, Layout
+from continuation.archive.schema import (
+    EVENT_NAME,
+    KINK_COLUMNS,
+    ORIGIN_COLUMNS,
+    TANGENT_COLUMNS,
+    Column,
+    Layout,
+    check_names,
+)
 from continuation.archive.structure import RESUME, SLOTS
 
 Array = np.ndarray[Any, Any]
@@ -40,13 +51,14 @@ _T = TypeVar("_T")
 class Contents:
     """An open file.
 
-    `limit`: Bytes that one compressed dataset may unfold to. `salvage`: Whether to go on where the end of the file is
-    missing, or its attributes, names or problem are not what was written: rows are checked all the same. `checked`:
-    Whether it has checksums; files of the schema `continuation-path-1` have none. `flaws`: What was passed over. Raises
-    `ArchiveError` for anything wrong with it, here and in the methods.
+    `limit`: Bytes that all which is read may take, as `Allowance` has it. `salvage`: Whether to go on where the end of
+    the file is missing, or its attributes, names or problem are not what was written: rows are checked all the same.
+    `checked`: Whether it has checksums; files of the schema `continuation-path-1` have none. `flaws`: What was passed
+    over. `cut_off`: Committed rows of each table whose checksums are missing. Raises `ArchiveError` for anything wrong
+    with it, here and in the methods.
     """
 
-    def __init__(self, file: str | PathLike[str], *, limit: int = DATASET_BYTES, salvage: bool = False) -> None:
+    def __init__(self, file: str | PathLike[str], *, limit: int | None = None, salvage: bool = False) -> None:
         self.file, self._limit, self._salvage = as_file("file", file), limit, salvage
         self.flaws: list[str] = []
         self._open()
@@ -59,6 +71,7 @@ class Contents:
     def _open(self) -> None:
         self._h5, self._image = open_for_reading(self.file, truncated=self._salvage)
         self._datasets: dict[str, Any] = {}
+        self.allowance = Allowance(self._image.length - self._image.missing, self._limit)
         self.closed_by_writer = self._image.closed_by_writer
         if self._image.missing:
             self.flaws.append(f"its last {self._image.missing} bytes are missing")
@@ -89,8 +102,20 @@ class Contents:
 
     def damaged(self, error: BaseException) -> ArchiveError:
         """The error for a file that cannot be read."""
+        if isinstance(error, LimitError):
+            return ArchiveError(f"{self.file}: {short(error)}; say limit=")
         hint = "; `recover` keeps what is sound" if isinstance(error, DamageError) else ""
         return ArchiveError(f"{self.file}: truncated or damaged ({short(error)}){hint}")
+
+    def _or_else(self, what: str, read: Callable[[], _T], lost: _T) -> _T:
+        """What `read` returns, or what stands for it where it is to be salvaged and cannot be read."""
+        try:
+            return read()
+        except FAULTS:
+            if not self._salvage:
+                raise
+            self.flaws.append(f"{what} cannot be read")
+            return lost
 
     def _flaw(self, text: str) -> None:
         if not self._salvage:
@@ -112,24 +137,20 @@ class Contents:
     def _read_structure(self) -> None:
         file = self._h5
         self.checked = GROUP in file
-        self.layout = _layout(file, max(self._limit, self.size))
-        self._columns = {
-            "point": {column.name: column for column in self.layout.point_columns},
-            "path": {column.name: column for column in self.layout.path_columns},
-        }
+        self.layout = _layout(file, self.allowance)
+        columns = {"point": self.layout.point_columns, "path": self.layout.path_columns}
+        self._columns = {table: {column.name: column for column in held} for table, held in columns.items()}
         self._ledgers: dict[str, Ledger] = {}
+        self.cut_off = {"point": 0, "path": 0}
         self.committed = self._read_committed()
         if self.checked:
-            checks = subgroup(file, GROUP)
-            sizes = {
-                "point": (self.committed.point_blocks, self.committed.points),
-                "path": (self.committed.path_blocks, self.committed.paths),
-            }
-            for table, (blocks, rows) in sizes.items():
-                columns = list(self._columns[table])
-                sums = dataset(checks, table, np.dtype("u4"), (None, width(columns)), self._limit)
-                self._ledgers[table] = Ledger(_rows(sums, blocks, self._limit), columns, rows)
-        self.attributes: dict[str, Any] = dict(file.attrs)
+            point, path = (self._read_ledger(table) for table in ("point", "path"))
+            self.committed = evolve(self.committed, points=point, paths=path)
+        for table, rows in (("point", self.committed.points), ("path", self.committed.paths)):
+            held = columns[table]
+            row = sum(column.storage.itemsize * math.prod(self.layout.width(column)) for column in held)
+            self.allowance.take(f"the table of {table}s", rows * row + len(held) * COLUMN_BYTES)
+        self.attributes: dict[str, Any] = self._or_else("its attributes", lambda: dict(file.attrs), {})
         if self.checked and of_attributes(self.attributes) != int(subgroup(file, GROUP).attrs["attributes"]):
             self._flaw("its attributes are not what was written")
         self.event_names = self._read_names()
@@ -137,25 +158,54 @@ class Contents:
     def _read_committed(self) -> Committed:
         if self.checked:
             kind, shape = np.dtype("u1"), (2 * PLACES, RECORD_BYTES)
-            return latest(dataset(subgroup(self._h5, GROUP), RECORDS, kind, shape, self._limit)[()])
+            return latest(dataset(subgroup(self._h5, GROUP), RECORDS, kind, shape, self.allowance)[()])
         # Paths first: their rows are counted after the points they need, so this order sees no path without its points.
         paths, points = (
-            int(dataset(self._h5, f"committed_{name}", np.dtype("i8"), ())[()]) for name in ("paths", "points")
+            int(dataset(self._h5, f"committed_{name}", np.dtype("i8"), (), self.allowance)[()])
+            for name in ("paths", "points")
         )
         if points < 0 or paths < 0:
             raise DamageError(f"it has {points} points and {paths} paths")
         return Committed(points=points, paths=paths)
 
+    def _read_ledger(self, table: str) -> int:
+        """The checksums of a table; how many of its rows they cover, which is all but where the file is cut off."""
+        columns, rows = list(self._columns[table]), getattr(self.committed, f"{table}s")
+        blocks = getattr(self.committed, f"{table}_blocks")
+        checks, shape = subgroup(self._h5, GROUP), (None, width(columns))
+        sums = self._leading(dataset(checks, table, np.dtype("u4"), shape, self.allowance, blocks), blocks)
+        self._ledgers[table] = ledger = Ledger(sums, columns, None if self._salvage else rows)
+        self.cut_off[table] = rows - ledger.rows
+        if ledger.rows != rows:
+            self.flaws.append(f"the checksums of {rows - ledger.rows} {table}s are missing")
+        return ledger.rows
+
+    def _leading(self, found: Any, count: int, kind: Any = None) -> Array:
+        """The first rows of a dataset; of a file that is cut off those chunks that HDF5 can still find."""
+        view = found if kind is None else found.astype(kind)
+        try:
+            values: Array = view[:count]
+            return values
+        except FAULTS:
+            if not self._salvage:
+                raise
+        parts, step = [np.empty((0, *found.shape[1:]), kind or found.dtype)], found.chunks[0] if found.chunks else count
+        with suppress(*FAULTS):
+            parts.extend(view[start : min(start + step, count)] for start in range(0, count, step))
+        return np.concatenate(parts)
+
     def _read_names(self) -> tuple[str, ...]:
         # Raw bytes: h5netcdf, netCDF4 and h5py each decode text in their own way, HDF5 only stores it.
-        stored = dataset(self._h5, EVENT_NAME.name, EVENT_NAME.storage, (None,), self._limit)
-        count = self.committed.names if self.checked else stored.shape[0]
-        raw = _rows(stored.astype(EVENT_NAME.storage), count, self._limit, stored)
+        count = self.committed.names if self.checked else self._h5[EVENT_NAME.name].shape[0]
+        stored = dataset(self._h5, EVENT_NAME.name, EVENT_NAME.storage, (None,), self.allowance, count)
+        raw = self._leading(stored, count, EVENT_NAME.storage)
         if self.checked:
-            sums = _rows(dataset(subgroup(self._h5, GROUP), "event", np.dtype("u4"), (None,), self._limit), count)
-            if [digest(raw[k : k + 1]) for k in range(count)] != sums.tolist():
+            sums = dataset(subgroup(self._h5, GROUP), "event", np.dtype("u4"), (None,), self.allowance, count)
+            found = [digest(raw[k : k + 1]) for k in range(len(raw))]
+            if len(raw) < count or found != self._leading(sums, count).tolist():
                 self._flaw("the names of its events are not what was written")
-        return tuple(name.decode(errors="surrogateescape") for name in raw)
+        names = [name.decode(errors="replace") for name in raw]
+        return (*names, *(f"event {k}, whose name is lost" for k in range(len(names), count)))
 
     # -- tables -----------------------------------------------------------------------------------------------
 
@@ -201,15 +251,14 @@ class Contents:
         found = self._dataset(column)
         if found.shape[0] < rows.stop:
             raise DamageError(f"{name} has fewer rows than were committed")
-        row = column.storage.itemsize * int(np.prod(self.layout.width(column)))
-        check_size(found, rows.stop * row, self._limit)
         values: Array = (found.astype(column.storage) if column.length else found)[rows]
         return values
 
     def _dataset(self, column: Column) -> Any:
         if column.name not in self._datasets:
             shape = (None, *self.layout.width(column))
-            self._datasets[column.name] = dataset(self._h5, column.name, column.storage, shape, self._limit)
+            # Its rows are counted with the table's.
+            self._datasets[column.name] = dataset(self._h5, column.name, column.storage, shape, self.allowance, 0)
         return self._datasets[column.name]
 
     # -- for resuming -----------------------------------------------------------------------------------------
@@ -221,7 +270,7 @@ class Contents:
     def _read_slots(self) -> list[bytes]:
         if RESUME not in self._h5:
             return []
-        slots = dataset(subgroup(self._h5, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self._limit)
+        slots = dataset(subgroup(self._h5, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
         found = []
         for slot in range(SLOTS):
             head = slots[slot, : HEAD.size].tobytes()
@@ -234,37 +283,25 @@ class Contents:
         """The first homotopy's description (JSON), and its arrays."""
 
         def read() -> tuple[str, Mapping[str, Any]]:
-            return read_problem(subgroup(self._h5, PROBLEM) if PROBLEM in self._h5 else None, self.checked, self._limit)
+            group = subgroup(self._h5, PROBLEM) if PROBLEM in self._h5 else None
+            return read_problem(group, self.checked, self.allowance)
 
-        return self._guarded(read)
+        return self._guarded(lambda: self._or_else("its problem", read, read_problem(None, False, self.allowance)))
 
 
 _STRIDE = 1 << 16
 """Rows that are checked at once."""
 
 
-def _rows(found: Any, count: int, limit: int = DATASET_BYTES, stored: Any = None) -> Array:
-    """The first rows of a dataset, if they are there."""
-    base = found if stored is None else stored
-    if base.shape[0] < count:
-        raise DamageError(f"{base.name[1:]} has fewer rows than were committed")
-    check_size(base, count * int(np.prod(base.shape[1:], dtype=int)) * base.dtype.itemsize, limit)
-    values: Array = found[:count]
-    return values
-
-
-def _layout(file: Any, limit: int) -> Layout:
+def _layout(file: Any, allowance: Allowance) -> Layout:
     present = names(file)
 
     def named(prefix: str) -> tuple[str, ...]:
-        return tuple(sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix)))
+        found = tuple(sorted(name.removeprefix(prefix) for name in present if name.startswith(prefix)))
+        check_names(prefix, found)
+        return found
 
-    y, state = (
-        dataset(file, "y", np.dtype("f8"), (None, None)),
-        dataset(file, "controller_state", np.dtype("f8"), (None, None)),
-    )
-    if 8 * (y.shape[1] + state.shape[1]) > limit:
-        raise StructureError(f"it claims {y.shape[1]} unknowns, and is too small for one point of them")
+    y, state = (dataset(file, name, np.dtype("f8"), (None, None), allowance, 0) for name in ("y", "controller_state"))
     return Layout(
         unknowns=int(y.shape[1]),
         controller=int(state.shape[1]),

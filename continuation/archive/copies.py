@@ -14,9 +14,8 @@ from continuation.archive.atomic import beside, like, publish
 from continuation.archive.contents import Contents
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
-from continuation.archive.schema import ORIGIN_COLUMNS, TEXT, Layout, text
+from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Layout, text
 from continuation.archive.store import Store
-from continuation.archive.tables import Table
 from continuation.status import Status
 
 _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
@@ -35,6 +34,11 @@ class Share:
     points: slice
     first: int = 0
 
+    @property
+    def size(self) -> int:
+        """The number of points."""
+        return int(self.points.stop - self.points.start)
+
 
 def check_level(compression: Any) -> None:
     """Raise unless gzip knows the level."""
@@ -42,34 +46,27 @@ def check_level(compression: Any) -> None:
         raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
 
 
-def leading_paths(archive: Archive, paths: int, points: int) -> Share:
-    """The first paths of an archive, and so many points."""
-    return Share(archive.contents, with_origins(archive.contents, slice(0, paths), archive.paths), slice(0, points))
+def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
+    """Paths of an archive from number `first` to before `last`, or all, and their points, or so many from the first on.
 
-
-def with_origins(contents: Contents, numbers: slice, table: Table) -> dict[str, Any]:
-    """The rows of some paths, each with its homotopy and its source: those of the file, where the rows do not say."""
-    paths, about = table.block(numbers), contents.attributes
-    if len(paths["path"]) == 0:
-        return paths
+    Each path has its homotopy and its source: those of the file, where its row does not say.
+    """
+    stop, contents = len(archive) if last is None else last, archive.contents
+    paths, about, count = archive.paths.block(slice(first, stop)), contents.attributes, stop - first
     # Of files without an identifier the time, the process and the name must do.
     unnamed = f"{about.get('created', '')}/{about.get('process', '')}/{contents.file.name}".replace(" ", "_")
     identifier = about.get("identifier", unnamed)
-    count = len(paths["path"])
     said = {
         "homotopy": [about.get("homotopy", "")] * count,
-        "source": [f"{identifier} {numbers.start + k} {contents.file.name}" for k in range(count)],
+        "source": [f"{identifier} {first + k} {contents.file.name}" for k in range(count)],
     }
     for column in ORIGIN_COLUMNS:
         own = paths.get(column.name, np.zeros(count, dtype=column.storage))
         filled = np.array([text(str(value), column.length) for value in said[column.name]], dtype=column.storage)
         paths[column.name] = np.where(own == b"", filled, own)
-    return paths
-
-
-def everything(archive: Archive) -> Share:
-    """All that was committed."""
-    return leading_paths(archive, len(archive), archive.points.size)
+    begin = archive.rows(first).start if count else 0
+    end = begin + points if points is not None else archive.rows(stop - 1).stop if count else 0
+    return Share(contents, paths, slice(begin, end), first)
 
 
 def interrupt(paths: Mapping[str, Any]) -> None:
@@ -79,9 +76,9 @@ def interrupt(paths: Mapping[str, Any]) -> None:
     paths["message"][open_] = text(f"{Status.INTERRUPTED} Its writer was killed.", TEXT)
 
 
-def leading(sources: Sequence[Contents]) -> Contents:
-    """The first archive with a point in it: its settings and problem stand for all; one of failures alone has none."""
-    return next((source for source in sources if source.committed.points), sources[0])
+def leading(shares: Sequence[Share]) -> Contents:
+    """The archive of the first point: its settings and problem stand for all; one of failures alone has none."""
+    return next((share.source for share in shares if share.size), shares[0].source)
 
 
 def write_copy(
@@ -96,9 +93,8 @@ def write_copy(
 
     Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
     """
-    sources = [share.source for share in shares]
-    problem = leading(sources).problem()
-    store = Store(part, _joint(sources), attributes, problem, compression=compression)
+    problem = leading(shares).problem()
+    store = Store(part, _joint(shares), {**attributes, "schema": SCHEMA}, problem, compression=compression)
     try:
         points = paths = 0
         for share in shares:
@@ -110,17 +106,16 @@ def write_copy(
     return store
 
 
-def _joint(sources: Sequence[Contents]) -> Layout:
+def _joint(shares: Sequence[Share]) -> Layout:
     """One layout that holds them all: a column that only some have is missing elsewhere."""
-    head = leading(sources)
-    first = head.layout
-    for source in sources:
-        if source.layout.unknowns != first.unknowns and source.committed.points:
+    head = leading(shares)
+    first, layouts = head.layout, [share.source.layout for share in shares]
+    for share, layout in zip(shares, layouts):
+        if layout.unknowns != first.unknowns and share.size:
             raise ArchiveError(
-                f"{source.file}: holds paths of {source.layout.unknowns} unknowns, {head.file} of "
+                f"{share.source.file}: holds paths of {layout.unknowns} unknowns, {head.file} of "
                 f"{first.unknowns}; one file holds one number"
             )
-    layouts = [source.layout for source in sources]
     return evolve(
         first,
         controller=max(layout.controller for layout in layouts),

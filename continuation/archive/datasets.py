@@ -1,7 +1,7 @@
 """Datasets of a file that may come from anybody: of the type expected, stored in the file itself, as large as they say.
 
 External, soft and user-defined links, virtual and external storage, and filters that are not ours are refused: each of
-them lets a file show what is not in it. Sizes claimed are held against the bytes that are there.
+them lets a file show what is not in it. What is taken out of one file is counted by one `Allowance`.
 """
 
 from __future__ import annotations
@@ -14,11 +14,16 @@ import h5py
 import numpy as np
 from h5py import h5d, h5l, h5o, h5z
 
-DATASET_BYTES = 1 << 28
-"""Bytes that a compressed dataset may unfold to, unless the caller says more. Others are no larger than their file."""
+LEAST_BYTES = 1 << 27
+"""Bytes of memory that any file may ask for. Copying takes three times as much, with numpy and scipy 500 MB in all;
+with half as many a compressed path of 50,000 points is refused."""
 
-_CHUNK = 1 << 26
-"""Bytes of a chunk, or a quarter of the limit: HDF5 unfolds it whole. Ours have 512 KiB, or one row."""
+UNFOLDING = 32
+"""Times its own size that a larger file may ask for. Stored as it is, a point of two unknowns has 120 bytes or more,
+and as a `Step` 1.5 KiB: 13 times as many, and twice that where it is compressed. Of zeros gzip makes a thousandth."""
+
+COLUMN_BYTES = 1 << 14
+"""Bytes of chunks that HDF5 keeps of each open dataset, so what one costs: tables are read from end to end."""
 
 _FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF)
 """Those that h5py brings itself; any other would be a library that is loaded to read the file."""
@@ -26,6 +31,32 @@ _FILTERS = (h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.F
 
 class StructureError(ValueError):
     """Something that is in no archive; the message says what."""
+
+
+class LimitError(StructureError):
+    """A file that asks for more memory than it may; the message says how to let it."""
+
+
+class Allowance:
+    """The bytes of memory that all which is read from one file may take, in arrays and in Python's objects.
+
+    `limit`: By default `LEAST_BYTES`, or `UNFOLDING` times the file of `size` bytes.
+    """
+
+    def __init__(self, size: int, limit: int | None = None) -> None:
+        self.limit = max(LEAST_BYTES, UNFOLDING * size) if limit is None else limit
+        self._taken: dict[str, int] = {}
+        self._total = 0
+
+    def take(self, what: str, claimed: int) -> None:
+        """Count what is to be read; the same thing again counts once, at its latest size.
+
+        Raises `LimitError` if all together is more than the limit.
+        """
+        total = self._total - self._taken.get(what, 0) + claimed
+        if total > self.limit:
+            raise LimitError(f"{what} claims {claimed} bytes, all of it more than the limit of {self.limit}")
+        self._taken[what], self._total = claimed, total
 
 
 def member(group: Any, name: str) -> Any:
@@ -44,8 +75,13 @@ def member(group: Any, name: str) -> Any:
 
 
 def names(group: Any) -> list[str]:
-    """The names of all that is in a group."""
-    return [raw.decode(errors="surrogateescape") for raw in group.id]
+    """The names of all that is in a group; `StructureError` if two are names of one thing, which would count twice."""
+    known: dict[Any, str] = {}
+    for raw in group.id:
+        link, name = group.id.links.get_info(raw), raw.decode(errors="surrogateescape")
+        if known.setdefault((link.type, link.u if link.type == h5l.TYPE_HARD else raw), name) != name:
+            raise StructureError(f"{name} is stored once, under two names")
+    return list(known.values())
 
 
 def subgroup(group: Any, name: str) -> Any:
@@ -57,13 +93,17 @@ def subgroup(group: Any, name: str) -> Any:
 
 
 def dataset(
-    group: Any, name: str, kind: np.dtype[Any] | None, shape: Sequence[int | None] | None, limit: int = DATASET_BYTES
+    group: Any,
+    name: str,
+    kind: np.dtype[Any] | None,
+    shape: Sequence[int | None] | None,
+    allowance: Allowance,
+    rows: int | None = None,
 ) -> Any:
-    """A dataset in a group, its storage checked.
+    """A dataset in a group, its storage checked, and what is to be read of it counted: all, or its first `rows`.
 
-    Without a `kind` it holds any numbers; a length of None is checked when rows are read; `limit` counts the bytes that
-    it may unfold to where it is compressed. Raises `StructureError` if it is something else, or could be larger than
-    what is stored of it.
+    Without a `kind` it holds any numbers; a length of None may be any. Raises `StructureError` if it is something else,
+    has fewer rows, or claims more than what is left of the allowance.
     """
     found = member(group, name)
     if not isinstance(found, h5py.Dataset):
@@ -84,22 +124,12 @@ def dataset(
         code = properties.get_filter(k)[0]
         if code not in _FILTERS:
             raise StructureError(f"{name} is stored by the filter number {code}, which h5py does not bring itself")
-    if layout == h5d.CHUNKED and math.prod(properties.get_chunk()) * stored.itemsize > max(_CHUNK, limit >> 2):
-        raise StructureError(f"{name} is stored in chunks of {properties.get_chunk()}")
-    if lengths is not None and (shape is None or None not in shape):
-        check_size(found, math.prod(lengths) * stored.itemsize, limit)
+    if rows is not None and (not lengths or lengths[0] < rows):
+        raise StructureError(f"{name} has fewer rows than were committed")
+    # A chunk is unfolded whole, and each of two filters makes a copy of it.
+    if layout == h5d.CHUNKED and 4 * math.prod(properties.get_chunk()) * stored.itemsize > allowance.limit:
+        chunk = properties.get_chunk()
+        raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}")
+    read = () if lengths is None else lengths if rows is None else (rows, *lengths[1:])
+    allowance.take(f"{group.name}/{name}".lstrip("/"), stored.itemsize * math.prod(read))
     return found
-
-
-def check_size(found: Any, claimed: int, limit: int = DATASET_BYTES) -> None:
-    """Whether so many bytes may be read of a dataset.
-
-    Raises `StructureError` if less is stored, or more than the limit would unfold from what is.
-    """
-    stored = found.id.get_storage_size()
-    if claimed <= stored:
-        return
-    compressed = found.id.get_create_plist().get_nfilters() > 0
-    if claimed > (limit if compressed else stored):
-        where = f"more than the limit of {limit}; say limit=" if compressed else f"but only {stored} are stored"
-        raise StructureError(f"{found.name[1:]} claims {claimed} bytes, {where}")

@@ -12,7 +12,7 @@ from pathlib import Path as File
 from typing import Any, BinaryIO
 
 from continuation.archive.atomic import as_file, beside, check_new, publish
-from continuation.archive.copies import check_level, everything, put, write_copy
+from continuation.archive.copies import check_level, put, share_of, write_copy
 from continuation.archive.provenance import history
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.tables import Table
@@ -50,7 +50,7 @@ def export(file: str | PathLike[str], target: str | PathLike[str], *, compressio
         if name.suffix in (".nc", ".nc4", ".h5"):
             attributes = {**archive.attributes, **history(archive.attributes, f"exported from {archive.file.name}")}
             check_new(name)
-            share = everything(archive)
+            share = share_of(archive)
             put(name, lambda part: write_copy([share], part, attributes=attributes, compression=compression))
             return [name]
         for suffix in (".csv", ".csv.gz"):

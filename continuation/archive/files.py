@@ -12,6 +12,7 @@ import h5py
 
 from continuation.archive.atomic import short
 from continuation.archive.checks import GROUP, RECORDS
+from continuation.archive.datasets import COLUMN_BYTES
 from continuation.archive.errors import ArchiveError
 from continuation.archive.image import Image
 from continuation.archive.locks import is_held
@@ -21,9 +22,6 @@ WRITER_SECONDS = 2.0
 """Seconds for which a file that is being written may seem to be damaged: its writer is in the middle of something."""
 
 _PAUSE = 0.02
-_CACHE = 1 << 18
-"""Bytes of chunks that HDF5 keeps of each column: tables are read from one end to the other."""
-
 FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError, RecursionError)
 """What h5py raises for a file that is not what it should be."""
 
@@ -63,7 +61,7 @@ def _opened(name: File, image: Image, truncated: bool) -> Any:
 
 def _hdf5(name: File, image: Image) -> Any:
     try:
-        return h5py.File(image, "r", rdcc_nbytes=_CACHE)
+        return h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
     except FAULTS as error:
         raise ArchiveError(f"{name}: truncated or damaged, HDF5 cannot open it ({short(error)})") from None
 

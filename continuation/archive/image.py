@@ -60,7 +60,10 @@ class Image:
 
     def refresh(self) -> None:
         """Read the beginning anew, of a file that is being written."""
-        head = os.pread(self.descriptor, HEAD_BYTES, 0)
+        try:
+            head = os.pread(self.descriptor, HEAD_BYTES, 0)
+        except OSError as error:
+            raise ArchiveError(f"{self.file}: could not be read ({short(error)})") from error
         size = os.fstat(self.descriptor).st_size
         _check(self.file, head)
         self.closed_by_writer, self.missing, self.length = True, 0, size

@@ -23,7 +23,7 @@ UNFINISHED = Status.INTERRUPTED, Status.TRACING, Status.ABANDONED, Status.RAISED
 _DETAILED = 3
 _LISTED = 12
 _SHOWN = 4
-_WIDTH = 92
+WIDTH = 92
 _MOST_LINES = 5
 _UNBROKEN = "\N{NO-BREAK SPACE}"
 _SOFTWARE = {
@@ -32,12 +32,14 @@ _SOFTWARE = {
 _SETTINGS = ("predictor", "corrector", "controller", "metric", "tolerance", "budget", "target", "events")
 
 
-def describe(archive: Archive) -> str:
-    """The page, about 90 columns wide: one section a path where there are few, an overview where there are many.
+def describe(archive: Archive, width: int = WIDTH) -> str:
+    """The page: one section a path where there are few, an overview where there are many.
 
     Parameters
     ----------
     archive : Archive
+    width : int
+        Columns; a narrower page than the usual one has its lines broken.
 
     Raises
     ------
@@ -55,7 +57,17 @@ def describe(archive: Archive) -> str:
     except (ValueError, TypeError, AttributeError, LookupError, RecursionError, ArithmeticError) as error:
         raise archive.contents.damaged(error) from error
     # A title of somebody else's is no way to the terminal's control codes.
-    return "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
+    plain = "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
+    fitted = (part for line in plain.split("\n") for part in _fitted(line, width))
+    return plain if width >= WIDTH else "\n".join(fitted)
+
+
+def _fitted(line: str, width: int) -> list[str]:
+    """The line, or several if it is wider than the page."""
+    if len(line) <= width:
+        return [line]
+    indent = " " * min(len(line) - len(line.lstrip()) + 2, width // 2)
+    return textwrap.wrap(line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
 def _page(archive: Archive) -> str:
@@ -199,7 +211,8 @@ def _failures(archive: Archive) -> list[str]:
     rows = np.flatnonzero(np.isin(archive.paths["status"], [int(status) for status in UNFINISHED]))
     lines = ["", "Not finished", "------------"] if rows.size else []
     for row in rows[:_LISTED]:
-        message = archive.paths["message"][row].decode() or "still being traced, or its writer was killed"
+        said = archive.paths["message"][row].decode(errors="replace")
+        message = said or "still being traced, or its writer was killed"
         lines.append(f"  path {row} (member {archive.paths['member'][row]}): {message}")
     return [*lines, f"  ... and {rows.size - _LISTED} more"] if rows.size > _LISTED else lines
 
@@ -239,7 +252,7 @@ def _wrapped(name: str, text: str) -> str:
     """The text after its name, in lines of the page's width; a matrix that would fill the page is cut."""
     filled = textwrap.fill(
         text,
-        _WIDTH,
+        WIDTH,
         initial_indent=name,
         subsequent_indent=" " * len(name),
         max_lines=_MOST_LINES,

@@ -12,16 +12,14 @@ from typing import Any, overload
 
 import numpy as np
 
-from continuation.archive import frames, record
-from continuation.archive.checkpoint import Checkpoint, unpack
+from continuation.archive import record
+from continuation.archive.checkpoint import Checkpoint, Foreign, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.datasets import DATASET_BYTES
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import COUNT_NAMES
-from continuation.archive.selection import Selection, selected
 from continuation.archive.stored import events as events_of
 from continuation.archive.stored import stored_path
-from continuation.archive.tables import Table
+from continuation.archive.tables import Selection, Table, dataframe, dataset, selected
 from continuation.arguments.checks import complain
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
@@ -32,6 +30,9 @@ from continuation.status import Status
 
 _AT_ONCE = 1 << 22
 """Numbers (of 8 bytes) that are read in one go when all paths are asked for: many short reads cost much more."""
+
+_STEP_BYTES, _COPIES = 1400, 6
+"""Of a step that is made of a row: its own and its segment's objects, and copies of its point and tangent."""
 
 
 class Archive(Sequence[Path]):
@@ -53,7 +54,7 @@ class Archive(Sequence[Path]):
         False for a file that is growing, or was left by a kill: `recover` makes it whole.
     """
 
-    def __init__(self, file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> None:
+    def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
         self.file = contents.file
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
@@ -129,13 +130,16 @@ class Archive(Sequence[Path]):
         index %= len(self)
         try:
             return self._path(index, keep == "all")
-        except (ValueError, IndexError) as error:
+        except (ValueError, LookupError) as error:
             raise self.contents.damaged(error) from error
 
     def _path(self, index: int, whole: bool) -> Path:
         steps: Any
         if whole:
-            block = self.points.block(self.rows(index))
+            rows = self.rows(index)
+            points = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
+            self.contents.allowance.take("the steps of the path", points)
+            block = self.points.block(rows)
             steps, events = from_columns(block, self.event_names, self.layout.observed)
         else:
             steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
@@ -145,7 +149,7 @@ class Archive(Sequence[Path]):
             steps,
             events,
             Status(int(row["status"])),
-            row["message"].decode(),
+            row["message"].decode(errors="replace"),
             Counts(**{name: int(row[column]) for name, column in COUNT_NAMES.items()}),
             float(row["wall_time"]),
             references=entries(str(self.attributes.get("references", ""))),
@@ -233,19 +237,26 @@ class Archive(Sequence[Path]):
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
-        return frames.dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
+        return dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
 
     def to_dataframe(self) -> Any:
         """The points as a `pandas.DataFrame`, the unknowns as ``y_0``, ``y_1``, ..."""
-        return frames.dataframe(self.points)
+        return dataframe(self.points)
 
     # -- for resuming and copying -----------------------------------------------------------------------------
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""
-        found = [unpack(raw) for raw in self.contents.slots()]
-        valid = [c for c in found if c is not None and self._covers(c)]
+        valid = [c for c in self._checkpoints() if isinstance(c, Checkpoint) and self._covers(c)]
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
+
+    def foreign_version(self) -> str:
+        """The version of the library that the state of the last path is of, if it is not this one's; else empty."""
+        last = len(self) - 1
+        return next((c.version for c in self._checkpoints() if isinstance(c, Foreign) and c.path == last), "")
+
+    def _checkpoints(self) -> list[Checkpoint | Foreign | None]:
+        return [unpack(raw) for raw in self.contents.slots()]
 
     def _covers(self, checkpoint: Checkpoint) -> bool:
         """Whether the rows before the checkpoint are all committed: it is written before the counters are."""
@@ -298,7 +309,7 @@ class Archive(Sequence[Path]):
         return row
 
 
-def open_archive(file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> Archive:
+def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:
     """Open an archive for reading; also one that is still growing, or was left by a kill.
 
     Nothing in the file is executed, imported or obeyed. Every block of rows is checked when it is read.
@@ -306,8 +317,9 @@ def open_archive(file: str | PathLike[str], *, limit: int = DATASET_BYTES) -> Ar
     Parameters
     ----------
     file : path
-    limit : int
-        Bytes that one compressed dataset may unfold to. Others are no larger than the file.
+    limit : int, optional
+        Bytes of memory that all which is read may take, Python's objects included. By default 128 MiB, or 32 times as
+        many as the file has.
 
     Raises
     ------

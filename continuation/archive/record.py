@@ -1,4 +1,4 @@
-"""A finished path as a row of the path table."""
+"""What a log holds in memory: rows that wait for a commit, the path being written; a finished path as a row."""
 
 from __future__ import annotations
 
@@ -8,11 +8,57 @@ from operator import attrgetter
 from typing import Any
 
 import numpy as np
+from attrs import define, field, frozen
 
 from continuation.archive.provenance import class_path, scalars
+from continuation.archive.rows import Row
 from continuation.archive.schema import COUNT_NAMES, Layout, text
-from continuation.path import Path
+from continuation.arguments.checks import integer, number
+from continuation.path import Path, Step
+from continuation.step.state import State
 from continuation.step.tracer import Tracer
+
+
+@frozen(eq=False)
+class Mark:
+    """A point to resume from: the state, the counters there, and how many rows of the path come before it."""
+
+    state: State
+    counts: tuple[int, ...]
+    rows: int
+
+
+@define(eq=False)
+class Buffer:
+    """Rows not yet committed, and the number of the first: one object, so that a commit is one assignment."""
+
+    start: int
+    rows: list[Row] = field(factory=list)
+    nbytes: int = 0
+
+
+@define(eq=False)
+class OpenPath:
+    """The path being written."""
+
+    tracer: Tracer
+    number: int
+    rows: int = 0
+    seconds: float = 0.0
+    run: bytes | None = None
+    last: Mark | None = None
+    resume: Mark | None = None
+    skipped: Step | None = None
+
+
+@frozen
+class Limits:
+    """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
+
+    rows: int = field(default=256, validator=integer(1))
+    nbytes: int = field(default=4 << 20, validator=integer(1))
+    seconds: float = field(default=1.0, validator=number("at least 0", lambda x: x >= 0.0))
+
 
 counted = attrgetter(*COUNT_NAMES)
 """The counters of `Counts` as a tuple, in the order of `COUNT_NAMES`."""

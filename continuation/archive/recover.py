@@ -3,24 +3,89 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
+from itertools import pairwise
 from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
+import numpy as np
+
+from continuation.archive import record
 from continuation.archive.atomic import as_file
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
-from continuation.archive.copies import everything, interrupt, put, write_copy
+from continuation.archive.copies import Share, interrupt, put, share_of, write_copy
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import check_writable
 from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
-from continuation.archive.salvage import nothing, salvaged
+from continuation.archive.schema import TEXT, text
 from continuation.archive.structure import SLOTS
-from continuation.status import Status
+from continuation.path import Path
+from continuation.status import Kind, Status
+
+Spans = Sequence[tuple[int, int]]
+
+
+def salvaged(contents: Contents, lost: Mapping[str, Spans]) -> list[Share]:
+    """The sound rows, path by path: each from its first point to the one before its first damaged block.
+
+    `lost` has the unsound blocks of the tables ``"point"`` and ``"path"``.
+    """
+    committed = contents.committed
+    sound = _outside(lost["point"], committed.points)
+    rows = _outside(lost["path"], committed.paths)
+    runs = dict(_runs(contents, sound))
+    shares = []
+    for number in sorted({*runs, *np.flatnonzero(rows).tolist()}):
+        points = runs.get(number, slice(0, 0))
+        own = number < committed.paths and bool(rows[number])
+        shares.append(Share(contents, _row(contents, number, own, points.stop - points.start), points, number))
+    return shares
+
+
+def nothing(contents: Contents) -> Share:
+    """No row at all, of a file to which none was committed."""
+    columns = contents.layout.path_columns
+    empty = {column.name: contents.read("path", column.name, slice(0, 0)) for column in columns}
+    return Share(contents, empty, slice(0, 0))
+
+
+def _outside(spans: Spans, size: int) -> np.ndarray[Any, Any]:
+    mask = np.ones(size, dtype=bool)
+    for start, stop in spans:
+        mask[start:stop] = False
+    return mask
+
+
+def _runs(contents: Contents, sound: np.ndarray[Any, Any]) -> Iterator[tuple[int, slice]]:
+    """For each path with a sound first point: its number, and the rows up to the first damaged block."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], sound, [False])).astype("i1")))
+    for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist()):
+        rows = slice(start, stop)
+        paths, kinds = (contents.read("point", name, rows) for name in ("path_index", "kind"))
+        changes = np.concatenate(([0], np.flatnonzero(np.diff(paths)) + 1, [stop - start])).tolist()
+        for first, last in pairwise(changes):
+            # A run that begins in the middle of a path is that path's end, of no use without its beginning.
+            if kinds[first] == Kind.START:
+                yield int(paths[first]), slice(start + first, start + last)
+
+
+def _row(contents: Contents, number: int, own: bool, points: int) -> dict[str, Any]:
+    """The path's own row; where it is lost, or has lost points, with the status INTERRUPTED."""
+    columns = contents.layout.path_columns
+    if own:
+        row = {column.name: contents.read("path", column.name, slice(number, number + 1)) for column in columns}
+    else:
+        empty = {**record.of_path(Path(), None, ()), "path": number, "member": number, "n_points": points}
+        row = record.to_columns(empty, contents.layout)
+    if not own or row["n_points"][0] != points:
+        row["status"][:], row["n_points"][:] = int(Status.INTERRUPTED), points
+        row["message"][:] = text(f"{Status.INTERRUPTED} The rest of it was damaged.", TEXT)
+    return row
 
 
 def recover(file: str | PathLike[str], *, force: bool = False) -> File:
@@ -50,7 +115,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
     name = as_file("file", file)
     with closing(Contents(name, salvage=True)) as contents:
         lost = {table: contents.unsound(table) for table in ("point", "path")}
-        damaged = any(lost.values())
+        damaged = any(lost.values()) or any(contents.cut_off.values())
         if not damaged and not contents.flaws:
             return _ended(name, force)
         real = File(os.path.realpath(name))
@@ -60,7 +125,7 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
                 shares = [nothing(contents)]
             if not shares:
                 raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
-            dropped = sum(stop - start for start, stop in lost["point"])
+            dropped = sum(stop - start for start, stop in lost["point"]) + contents.cut_off["point"]
             what = f"recovered: {'; '.join(contents.flaws) or 'damaged'}; {dropped} points were not what was written"
             attributes = _legible({**contents.attributes, **history(contents.attributes, what)})
             # What is dropped may be worth more to somebody else than it is to us.
@@ -78,7 +143,7 @@ def _ended(name: File, force: bool) -> File:
         real = File(os.path.realpath(name))
         with closing(own(archive.contents, real, force=force)):
             attributes = {**archive.attributes, **history(archive.attributes, "recovered after its writer was killed")}
-            share = everything(archive)
+            share = share_of(archive)
             interrupt(share.paths)
             slots = kept(archive.checkpoint())
             put(real, lambda part: write_copy([share], part, attributes=attributes, checkpoints=slots), replace=True)

@@ -14,23 +14,25 @@ import numpy as np
 
 from continuation.archive.atomic import as_file, beside, check_new, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
-from continuation.archive.copies import leading_paths, write_copy
+from continuation.archive.copies import share_of, write_copy
 from continuation.archive.errors import ArchiveError
-from continuation.archive.live import publish_live
 from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own
 from continuation.archive.schema import ACCEPTED
-from continuation.archive.store import Store
+from continuation.archive.store import Store, publish_live
 from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
 from continuation.path import Path
 from continuation.status import Status
 from continuation.step.options import OBSERVER, Options, documented, each
 from continuation.step.tracer import Observer, Tracer
+from continuation.version import __version__
 
 RESUMABLE = (
     Status.TRACING,
@@ -180,9 +182,16 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
             f"{source.file}: the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
         )
     checkpoint = source.checkpoint()
-    if checkpoint is None or checkpoint.path != last:
-        raise ArchiveError(f"{source.file}: path {last} has no state to resume from; trace it again")
-    return checkpoint
+    if checkpoint is not None and checkpoint.path == last:
+        return checkpoint
+    version = source.foreign_version()
+    if version:
+        raise ArchiveError(
+            f"{source.file}: the state of path {last} is that of version {version:.20}, and resumes within its major "
+            f"version, which is not that of {__version__}; go on from its last point by "
+            f"trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
+        )
+    raise ArchiveError(f"{source.file}: path {last} has no state to resume from; trace it again")
 
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
@@ -238,7 +247,7 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
     ValueError
         If it is another homotopy.
     """
-    unknowns = np.size(homotopy.start()[0])
+    unknowns = Evaluator(homotopy, Counts()).start().size - 1
     if unknowns != u.size - 1:
         raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")
     found = float(np.abs(homotopy.residual(u[:-1].copy(), float(u[-1]))).max())
@@ -251,7 +260,7 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     parent = f"{source.file.name} ({source.attributes.get('created', '')})"
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
-    share = leading_paths(source, checkpoint.path, rows)
+    share = share_of(source, last=checkpoint.path, points=rows)
     with beside(target) as part:
         store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
         return publish_live(store, target, replace=replace)

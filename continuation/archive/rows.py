@@ -132,6 +132,7 @@ def from_columns(
     extras = {name: block[f"observed_{name}"].tolist() for name in observed}
     steps: list[Step] = []
     events: list[LocatedEvent] = []
+    parts: dict[int, list[int]] = {}
     for i in range(len(points)):
         if cells["event_index"][i] != NO_EVENT:
             seen = {name: column[i] for name, column in extras.items()}
@@ -139,8 +140,14 @@ def from_columns(
         if cells["role"][i] == ACCEPTED:
             seen = {name: column[i] for name, column in extras.items()}
             steps.append(_step(cells, i, points[i], tangents[i], seen, first + len(steps)))
-        if cells["role"][i] == KINK_PART and events:
-            events[-1] = _with_part(events[-1], int(block["switch"][i]), tangents[i])
+        if cells["role"][i] == KINK_PART and events and "switch" in block:
+            parts.setdefault(len(events) - 1, []).append(i)
+    for k, at in parts.items():
+        # Of both lists the longer decides how many parts there are; the other ends in -1, or in NaN.
+        switches, rays = block["switch"][at], tangents[at]
+        rays = rays[~np.isnan(rays).any(axis=1)]
+        named = tuple(switches[switches >= 0].tolist())
+        events[k] = evolve(events[k], switches=named, rays=rays if len(rays) else None)
     accepted = {step.index: step.u for step in steps}
     events = [evolve(e, ends_step=e.step in accepted and np.array_equal(e.u, accepted[e.step])) for e in events]
     return (_joined(steps, events) if "tangent_y" in block else steps), events
@@ -154,15 +161,6 @@ def _joined(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> list[Step]
         v = onward.get(before.index, before.tangent)
         joined.append(evolve(after, segment=hermite(before.u, v, after.u, after.tangent, v)))
     return joined
-
-
-def _with_part(event: LocatedEvent, switch: int, ray: Array) -> LocatedEvent:
-    """The kink with one more switch and ray, where there are such."""
-    if switch >= 0:
-        event = evolve(event, switches=(*event.switches, switch))
-    if not np.isnan(ray).any():
-        event = evolve(event, rays=ray[None] if event.rays is None else np.vstack([event.rays, ray]))
-    return event
 
 
 def _event(

@@ -17,15 +17,41 @@ import h5py
 import numpy as np
 from h5py import h5s
 
-from continuation.archive.atomic import short
+from continuation.archive.atomic import beside, check_new, like, publish, short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import GROUP, PLACES, RECORD_BYTES, RECORDS, Committed, digest, of_attributes, seal
+from continuation.archive.codec import write_problem
 from continuation.archive.errors import ArchiveError
 from continuation.archive.image import HEAD_BYTES, Sink, stated_length, to_nowhere
 from continuation.archive.locks import Lock
-from continuation.archive.problem import write_problem
 from continuation.archive.schema import EVENT_NAME, NAME, Layout, text
 from continuation.archive.structure import RESUME, SLOTS, build
+
+
+def create(target: File, *arguments: Any, **options: Any) -> Store:
+    """A new file, live from the moment on at which it has its name; arguments as for `Store`.
+
+    Raises `ArchiveError` if the file exists or cannot be made.
+    """
+    check_new(target)
+    with beside(target) as part:
+        return publish_live(Store(part, *arguments, **options), target)
+
+
+def publish_live(store: Store, target: File, *, replace: bool = False) -> Store:
+    """Let a file written beside go live, and give it its name, as `publish` does."""
+    part = store.file
+    try:
+        store.go_live()
+        if replace:
+            like(part, target)
+        publish(part, target, replace=replace)
+    except BaseException:
+        store.close()
+        raise
+    store.file = target
+    return store
+
 
 LIBVER = ("v110", "v110")
 

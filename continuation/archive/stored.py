@@ -7,14 +7,14 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path as File
-from typing import Any, Protocol, overload
+from typing import Any, overload
 
 import numpy as np
 
 from continuation.archive.rows import from_columns
 from continuation.archive.schema import ACCEPTED, KINK_PART
-from continuation.archive.tables import Table
-from continuation.path import LocatedEvent, Path, Step
+from continuation.archive.tables import OpenArchive
+from continuation.path import LocatedEvent, Step
 
 _WINDOW = 4096
 """Rows that are read at once."""
@@ -25,27 +25,6 @@ _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
 
 Opener = Callable[[File], AbstractContextManager[Any]]
 """Opens an archive: `continuation.archive.open_archive`, which this module is too low to know."""
-
-
-class OpenArchive(Protocol):
-    """What is asked of `continuation.archive.Archive` by the modules below it."""
-
-    file: File
-    points: Table
-    paths: Table
-    event_names: tuple[str, ...]
-    attributes: dict[str, Any]
-    layout: Any
-
-    def __len__(self) -> int: ...
-
-    def path(self, index: int) -> Path:
-        """One of its paths."""
-        ...
-
-    def rows(self, index: int) -> slice:
-        """The path's rows."""
-        ...
 
 
 def kept_every(keep: str) -> int:

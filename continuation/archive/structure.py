@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,16 +16,14 @@ SLOTS = 2
 RESUME = "resume"
 
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
+_ROWS, _PATHS = 64, 8
 _CHUNK_BYTES = 1 << 13
 """A chunk takes its whole room from its first row on: with 512 KiB eight points of 100 unknowns take 600 KB."""
 
-_ROWS, _PATHS = 64, 8
-
-
-def chunk_rows(unknowns: int) -> int:
-    """Rows a chunk of y: 8 KiB at most, a power of two."""
-    fitting = max(_CHUNK_BYTES // (8 * unknowns), 1)
-    return int(min(_ROWS, 1 << (fitting.bit_length() - 1)))
+def chunk_rows(width: tuple[int, ...], most: int = _ROWS) -> int:
+    """Rows a chunk, each of so many numbers: 8 KiB at most, a power of two."""
+    fitting = max(_CHUNK_BYTES // (8 * max(math.prod(width), 1)), 1)
+    return int(min(most, 1 << (fitting.bit_length() - 1)))
 
 
 def build(file: Any, layout: Layout, compression: int) -> None:
@@ -33,7 +32,6 @@ def build(file: Any, layout: Layout, compression: int) -> None:
     `compression`: Level of gzip; 0 for none.
     """
     filters = {"compression": "gzip", "compression_opts": compression, "shuffle": True} if compression else {}
-    rows = chunk_rows(layout.unknowns)
     _scale(file, "point", None, _ROWS)
     _variable(file, Column("path", "i8", "1", ""), (), _PATHS, {}).make_scale("path")
     _scale(file, "event", None, 16)
@@ -42,9 +40,10 @@ def build(file: Any, layout: Layout, compression: int) -> None:
     component.attrs.update(COMPONENT.attributes)
     component.make_scale("component")
     for column in layout.point_columns:
-        _variable(file, column, layout.width(column), rows if column.dimensions[1:] else _ROWS, filters)
+        _variable(file, column, layout.width(column), chunk_rows(layout.width(column)), filters)
     for column in layout.path_columns:
-        _variable(file, column, layout.width(column), _PATHS, filters if not column.length else {})
+        chunk = chunk_rows(layout.width(column), _PATHS)
+        _variable(file, column, layout.width(column), chunk, {} if column.length else filters)
     _variable(file, EVENT_NAME, (), 16, {})
     for name, what in (("points", "rows of the point table"), ("paths", "rows of the path table")):
         counter = file.create_dataset(f"committed_{name}", (), "i8")

@@ -17,7 +17,7 @@ from typing import Any, Unpack
 from attrs import define, field
 
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.parts import THREAD_SECONDS, collect, end_repeats, finished
+from continuation.archive.merge import THREAD_SECONDS, collect, end_repeats, finished
 from continuation.archive.reader import open_archive
 from continuation.archive.workers import Batch, Result, failed, work
 from continuation.arguments.checks import complain, instance_with, is_number
@@ -51,7 +51,8 @@ def trace_many(
     Parameters
     ----------
     homotopies : iterable of Homotopy
-        To be picklable where the executor needs it; all of one number of unknowns where there is an archive.
+        To be picklable where the executor needs it. Where there is an archive those of another number of unknowns than
+        the first have the status RAISED.
     executor : concurrent.futures.Executor, optional
         A process pool, dask's ``Client.get_executor()``, ...; without one, the calling process does it all.
     archive : path, optional
@@ -74,6 +75,8 @@ def trace_many(
     ------
     TypeError
         For an option that `continuation.Tracer` does not have, or for what is no homotopy.
+    ValueError
+        If there are no homotopies, and there is an archive.
     ArchiveError
         If a file to be written exists, or the disk is full.
     KeyboardInterrupt
@@ -94,6 +97,8 @@ def trace_many(
     target = None if archive is None else as_file("archive", archive)
     if target is not None:
         check_new(target)
+        if not tasks:
+            raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
     report = progress or (lambda done, total: None)
     if executor is None:
         result = work(Batch(tasks, 0, target, None, options), lambda done: report(done, len(tasks)))

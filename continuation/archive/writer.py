@@ -13,18 +13,15 @@ from typing import Any
 
 from continuation.archive import record
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.buffer import Buffer, Mark, OpenPath
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
+from continuation.archive.codec import problem_data
 from continuation.archive.errors import ArchiveError
-from continuation.archive.limits import Limits
-from continuation.archive.live import create
-from continuation.archive.problem import problem_data
 from continuation.archive.provenance import root_attributes, scalars
 from continuation.archive.reader import open_archive
-from continuation.archive.record import Record, counted, unknowns_of
+from continuation.archive.record import Buffer, Limits, Mark, OpenPath, Record, counted, unknowns_of
 from continuation.archive.rows import Row, parts_of, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
-from continuation.archive.store import Store
+from continuation.archive.store import Store, create
 from continuation.archive.stored import StoredSteps, kept_every
 from continuation.archive.structure import SLOTS
 from continuation.arguments.checks import complain

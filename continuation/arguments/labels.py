@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from attrs import field, frozen
@@ -12,6 +13,10 @@ from continuation.arguments.checks import complain
 
 ATTRIBUTES = ("parameter_name", "names", "units")
 """Of a homotopy, and of an archive's root."""
+
+_LONGEST = 100
+"""Characters of a name in a file that is taken for one. Of TeX, which matplotlib reads by recursion, so many hold 14
+nested roots: at 30, Python's stack is at its end."""
 
 
 @frozen
@@ -54,15 +59,15 @@ class Labels:
         for name in ATTRIBUTES:
             text = attributes.get(name)
             if isinstance(text, str) and text:
-                try:
+                with suppress(ValueError, RecursionError):
                     found[name] = text if name == "parameter_name" else json.loads(text)
-                except ValueError:
-                    continue
         made = type("Said", (), found)
         try:
-            return cls.of(made)
+            said = cls.of(made)
         except TypeError:
             return cls()
+        texts = (said.parameter_name, *said.names, *said.units, *said.units.values())
+        return said if max(map(len, texts)) <= _LONGEST else cls()
 
     def parameter(self, symbol: str = "lam") -> str:
         """What an axis or a column of the parameter is called."""

@@ -90,7 +90,7 @@ class Plugin:
         point = self.points[0]
         try:
             factory: Any = point.load()
-        except Exception as error:  # Whatever a foreign module raises while it is imported.
+        except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
             reason = f"{type(error).__name__}: {error}"
             raise PluginError(f"{self.name}: {self.origin} cannot be loaded: {reason}") from error
         return _callable(self.name, factory, self.kind)
@@ -244,7 +244,7 @@ def _imported(path: str, kind: str) -> Factory:
         found: Any = importlib.import_module(module)
         for part in attribute.split("."):
             found = getattr(found, part)
-    except Exception as error:  # Whatever a foreign module raises while it is imported.
+    except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
         raise PluginError(f"{path}: cannot be loaded: {type(error).__name__}: {error}") from error
     return _callable(path, found, kind)
 
@@ -252,6 +252,10 @@ def _imported(path: str, kind: str) -> Factory:
 def _callable(name: str, factory: Any, kind: str) -> Factory:
     if not callable(factory):
         raise PluginError(f"{name}: expected a class or function that makes a {kind}, found {type(factory).__name__}")
+    try:
+        inspect.signature(factory)
+    except (TypeError, ValueError):
+        raise PluginError(f"{name}: expected something with known parameters, found {factory!r:.80}") from None
     loaded: Factory = factory
     return loaded
 

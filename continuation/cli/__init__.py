@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 
 from continuation.cli.commands import register
-from continuation.cli.parser import BAD_INPUT, FAILURE, SUCCESS, Parser, Run, Subparsers, UsageError
+from continuation.cli.parser import BAD_INPUT, FAILURE, SUCCESS, Parser, Run, Subparsers, UsageError, told
 from continuation.version import __version__
 
 __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError", "main"]
@@ -16,12 +16,9 @@ __all__ = ["BAD_INPUT", "FAILURE", "SUCCESS", "Run", "Subparsers", "UsageError",
 INTERRUPTED = 130
 """The shell's status for a process that Ctrl-C ended."""
 
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
-"""What the machine says of a file that has no place; any other error of the system may be a defect, and is shown."""
-
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command.
+    """Run one command. Whatever it raises becomes one line on stderr, here and nowhere else.
 
     Parameters
     ----------
@@ -33,6 +30,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     int
         0 done (solved), 1 not solved, 2 bad input, after one line on stderr that names the argument.
     """
+    if sys.stdout is None:
+        print("continuation: stdout: is closed, expected a place for what the command says", file=sys.stderr)
+        return BAD_INPUT
+    if isinstance(sys.stdout, TextIOWrapper):
+        # A name that is no UTF-8 is written as it was read.
+        sys.stdout.reconfigure(errors="surrogateescape")
     parser = Parser(prog="continuation", description="Trace paths of solutions; inspect, plot and resume them.")
     parser.add_argument("--version", action="version", version=f"continuation {__version__}")
     register(parser.add_subparsers(title="commands", metavar="COMMAND", required=True))
@@ -44,25 +47,38 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         status = run(arguments)
         sys.stdout.flush()
-    except UsageError as error:
-        print(f"continuation: {error}", file=sys.stderr)
-        return error.status
-    except BrokenPipeError:
-        # The reader (head, a pager) has enough; without this, Python complains once more while it shuts down.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return SUCCESS
-    except KeyboardInterrupt as interrupt:
+        return status
+    except BaseException as error:
+        status, line = _ended(error, arguments)
+    _let_go()
+    if line:
+        print(f"continuation: {' '.join(line.split())}", file=sys.stderr)
+    return status
+
+
+def _ended(error: BaseException, arguments: object) -> tuple[int, str]:
+    """The status of a command that ended by an exception, and what is said of it."""
+    if isinstance(error, UsageError):
+        return error.status, str(error)
+    if isinstance(error, BrokenPipeError):
+        # The reader (head, a pager) has enough.
+        return SUCCESS, ""
+    if isinstance(error, KeyboardInterrupt):
         kept = getattr(arguments, "archive", None) or getattr(arguments, "grows", None)
         where = f"; what was traced is in {kept}" if kept is not None and os.path.exists(kept) else ""
-        print(f"continuation: {str(interrupt) or 'interrupted'}{where}", file=sys.stderr)
-        return INTERRUPTED
-    except OSError as error:
-        from continuation.archive.errors import ArchiveError
-
-        if not isinstance(error, ArchiveError) and error.errno not in NO_ROOM:
-            raise
+        return INTERRUPTED, f"{str(error) or 'interrupted'}{where}"
+    if isinstance(error, OSError):
         name = error.filename or "the output"
-        what = error if error.errno is None else f"{name}: could not be written ({os.strerror(error.errno)})"
-        print(f"continuation: {what}", file=sys.stderr)
-        return BAD_INPUT
-    return status
+        text = str(error) if error.errno is None else f"{name}: could not be read or written ({error.strerror})"
+        return BAD_INPUT, text
+    if isinstance(error, SystemExit):
+        return BAD_INPUT, f"a plug-in wanted to end the process: {told(error)}"
+    return BAD_INPUT, told(error)
+
+
+def _let_go() -> None:
+    """Let stdout be nowhere if it takes no more: Python would complain once more while it shuts down."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

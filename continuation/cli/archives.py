@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
@@ -70,9 +71,11 @@ def _add_trust(parser: argparse.ArgumentParser) -> None:
 
 def _inspect(arguments: argparse.Namespace) -> int:
     from continuation.archive import describe, open_archive
+    from continuation.archive.page import WIDTH
 
+    width = shutil.get_terminal_size((WIDTH, 24)).columns
     with complaints("FILE"), open_archive(arguments.file) as archive:
-        print(describe(archive), end="")
+        print(describe(archive, min(width, WIDTH)), end="")
     return SUCCESS
 
 
@@ -118,10 +121,18 @@ def _given(arguments: argparse.Namespace) -> Any:
 def _named(path: str) -> Any:
     """The class or function ``module:name``, which the user names and so trusts."""
     module, _, name = path.partition(":")
+    from continuation.archive.trust import registry
+    from continuation.cli.making import importable
+
+    importable(path)
     try:
-        return attrgetter(name)(import_module(module))
-    except (ImportError, AttributeError, ValueError) as error:
-        raise argparse.ArgumentTypeError(f"expected module:name, found {path!r} ({error})") from None
+        found = attrgetter(name)(import_module(module))
+        registry([found])
+    except (Exception, SystemExit) as error:  # Whatever a foreign module raises while it is imported.
+        reason = f"{type(error).__name__}: {error}".removeprefix("TypeError: trust: ")
+        expected = "expected module:name of a class or function"
+        raise argparse.ArgumentTypeError(f"{expected}, found {path!r} ({reason})") from None
+    return found
 
 
 def _recheck(arguments: argparse.Namespace) -> int:

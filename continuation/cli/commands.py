@@ -35,7 +35,7 @@ def _loaded(name: str, points: Sequence[EntryPoint]) -> Register:
         return _broken(name, f"expected one package that provides it, found {owners(points)}")
     try:
         loaded: Register = points[0].load()
-    except Exception as error:  # Anything may be raised by the import of a foreign module.
+    except (Exception, SystemExit) as error:  # Anything may be raised by the import of a foreign module.
         return _broken(name, f"{points[0].value} cannot be loaded: {type(error).__name__}: {error}")
     return loaded
 

@@ -54,7 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     output = str(Path(arguments.file).with_suffix(".png")) if arguments.output is None else arguments.output
     check_picture("--output", output)
     try:
-        title = f"{Path(arguments.file).name}, path {arguments.path}: {path.status.name}"
+        name = "".join(c if c.isprintable() else "?" for c in Path(arguments.file).name)
+        title = f"{name}, path {arguments.path}: {path.status.name}"
         save(output, path, title, lambda axes: _draw(axes, path, arguments))
     except ValueError as error:
         complaint = str(error).removeprefix("components: ")

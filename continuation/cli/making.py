@@ -5,13 +5,12 @@ from __future__ import annotations
 import ast
 import os
 import sys
-import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from continuation.arguments import plugins
-from continuation.cli.parser import PlugInError, UsageError
+from continuation.cli.parser import PlugInError, UsageError, told
 
 DOOR = (
     "homotopy", "start", "residual", "jacobian", "target", "max_step", "finish", "events", "metric", "box", "observe",
@@ -89,6 +88,4 @@ def refused(name: str) -> Iterator[None]:
     except Exception as error:
         if isinstance(error, (TypeError, ValueError)) and str(error).partition(":")[0] in DOOR:
             raise UsageError(name, error) from error
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        where = f"{os.path.basename(place.filename)}, line {place.lineno}"
-        raise PlugInError(name, f"{type(error).__name__}: {error} ({where})") from error
+        raise PlugInError(name, told(error)) from error

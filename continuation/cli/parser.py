@@ -6,6 +6,7 @@ import argparse
 import math
 import os
 import sys
+import traceback
 from collections.abc import Callable
 from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 
@@ -41,6 +42,14 @@ class PlugInError(UsageError):
     """An exception of a plug-in's own: no bad input, so that the command ends with status 1, after one line."""
 
     status = FAILURE
+
+
+def told(error: BaseException) -> str:
+    """An exception in one line, with its place in the source."""
+    from continuation.step.verdict import sentence
+
+    frames = traceback.extract_tb(error.__traceback__)
+    return f"{sentence(error)} ({os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})"
 
 
 class Parser(argparse.ArgumentParser):

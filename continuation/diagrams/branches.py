@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from attrs import evolve, field, frozen
 
-from continuation.archive.memory import save_all
+from continuation.archive.growing import save_all
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.metric import norm

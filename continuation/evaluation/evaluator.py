@@ -174,8 +174,9 @@ class Evaluator:
         r = np.asarray(self.called(y0.copy(), float(u[-1])))
         if r.shape != y0.shape:
             raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
-        if r.dtype.kind not in "fiub":
-            found = "complex ones" if r.dtype.kind == "c" else f"an array of the type {r.dtype}"
+        if r.dtype.kind not in "fiu":
+            names = {"c": "complex ones", "b": "truth values"}
+            found = names.get(r.dtype.kind, f"an array of the type {r.dtype}")
             raise ValueError(f"residual: expected real numbers, found {found}")
         return u
 

@@ -259,15 +259,15 @@ class Path:
 
     def to_xarray(self) -> Any:
         """The points, located events among them, as an `xarray.Dataset`: that of `Archive.to_xarray`."""
-        from continuation.archive import memory
+        from continuation.archive import growing
 
-        return memory.dataset_of(self)
+        return growing.dataset_of(self)
 
     def to_dataframe(self) -> Any:
         """The points, located events among them, as a `pandas.DataFrame`, with the homotopy's names for columns."""
-        from continuation.archive import memory
+        from continuation.archive import growing
 
-        return memory.dataframe_of(self)
+        return growing.dataframe_of(self)
 
     def save(self, file: str | PathLike[str], title: str = "") -> None:
         """Write it to a new archive, from which it is read again as it is; only ``trace(archive=...)`` can be resumed.
@@ -278,9 +278,9 @@ class Path:
             Must not exist.
         title : str
         """
-        from continuation.archive import memory
+        from continuation.archive import growing
 
-        memory.save(self, file, title)
+        growing.save(self, file, title)
 
     def _repr_html_(self) -> str:
         from continuation.plot.html import TABLE_ROWS, table

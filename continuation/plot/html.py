@@ -31,9 +31,9 @@ def table(caption: str, rows: Iterable[Sequence[object]], head: Sequence[str] = 
 def archive_page(archive: Any) -> str:
     """What an archive holds, path by path."""
     shown = range(min(len(archive), TABLE_ROWS))
+    lengths, messages = archive.paths["n_points"], archive.paths["message"]
     rows = [
-        (k, archive.status(k).name, int(archive.paths["n_points"][k]), archive.paths["message"][k].decode())
-        for k in shown
+        (k, archive.status(k).name, int(lengths[k]), messages[k].decode(errors="replace")) for k in shown
     ]
     more = len(archive) - len(rows)
     caption = f"{archive.file.name}: {len(archive)} paths" + (f", {more} not shown" if more > 0 else "")

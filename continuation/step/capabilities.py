@@ -46,11 +46,13 @@ def max_step_of(homotopy: Any) -> MaxStep | None:
 def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] | None:
     """The homotopy's `observe`, whose answers are checked; None where it has none.
 
-    The function returned raises TypeError unless that one gives a mapping of names to real numbers.
+    The function returned raises TypeError unless that one gives a mapping of names to real numbers, and ValueError if
+    the names are not those of its first answer: they are columns of an archive.
     """
     if not offers(homotopy, SupportsObserve):
         return None
     observe = homotopy.observe
+    names: set[str] = set()
 
     def seen(y: Array, lam: float) -> Mapping[str, float]:
         found: Any = observe(y, lam)
@@ -59,6 +61,9 @@ def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] |
         for name, value in found.items():
             if np.ndim(value) or np.asarray(value).dtype.kind not in "fiub":
                 raise complain(TypeError, "observe", f"a real number for {name!r}", value)
+        names.update(found if not names else ())
+        if found.keys() != names:
+            raise complain(ValueError, "observe", f"the names of the first point, {sorted(names)}", sorted(found))
         return found
 
     return seen

@@ -20,10 +20,11 @@ from continuation.correctors import Corrector
 from continuation.events import Event
 from continuation.events.box import Box
 from continuation.metric import Metric
+from continuation.path import Path
 from continuation.predictors import Predictor
 from continuation.step.guard import Guard
 from continuation.step.presets import DEFAULT, Preset
-from continuation.step.start import guessed, is_guess, point_and_direction
+from continuation.step.start import arriving, guessed, is_guess, point_and_direction
 from continuation.step.state import State
 from continuation.tolerance import Tolerance, as_tolerance
 
@@ -82,9 +83,10 @@ class Options(PartOptions, total=False):
         target, and 0 where it has none.
     direction : int, default 0
         Sign of the parameter's first movement; 0 means towards the target.
-    start : tuple of (u, v) or (y, lam), default None
-        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector, and the direction to leave in; or a
-        guess of y at a parameter value, which is corrected as the homotopy's own start is.
+    start : tuple of (u, v) or (y, lam), or Path, default None
+        Begin here instead of at the homotopy's start: ``(y, lam)`` as one vector, and the direction to leave in; a
+        guess of y at a parameter value, which is corrected as the homotopy's own start is; or go on from the last point
+        of a path.
     finish : callable, default None
         ``(y, lam)`` to the end y or None, tried after each step in place of the homotopy's own; no archive holds it.
     max_step : float, default None
@@ -98,7 +100,7 @@ class Options(PartOptions, total=False):
     budget: Budget | None
     target: float | str | None
     direction: int
-    start: tuple[Array, Array | float] | None
+    start: tuple[Array, Array | float] | Path | None
     finish: Finish | None
     max_step: float | None
     box: Box | str | None
@@ -189,6 +191,8 @@ def checked(options: Mapping[str, Any]) -> Options:
     check_sign("direction", asked["direction"])
     if asked["finish"] is not None and not callable(asked["finish"]):
         raise complain(TypeError, "finish", "a function of (y, lam)", asked["finish"])
+    if isinstance(asked["start"], Path):
+        asked["start"] = arriving(asked["start"])
     if asked["start"] is not None:
         (guessed if is_guess(asked["start"]) else point_and_direction)(asked["start"])
     if asked["max_step"] is not None and not (is_number(asked["max_step"]) and asked["max_step"] > 0.0):

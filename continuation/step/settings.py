@@ -134,7 +134,8 @@ def _capped(controller: Any, longest: float | None) -> Any:
     if longest < bounds.minimum or not has(type(controller)):
         expected = f"at least the least step, {bounds.minimum:g}, and a controller of the library"
         raise complain(ValueError, "max_step", expected, longest)
-    return evolve(controller, bounds=evolve(bounds, maximum=float(longest)))
+    first = None if bounds.initial is None else min(bounds.initial, float(longest))
+    return evolve(controller, bounds=evolve(bounds, maximum=float(longest), initial=first))
 
 
 def _box(homotopy: Any, asked: Options, start: Callable[[], Array]) -> tuple[Event, ...]:

@@ -15,6 +15,7 @@ from continuation.correctors.base import holds
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsExtents, offers
 from continuation.metric import Automatic, Metric, SupportsExtent, norm
+from continuation.path import Path
 from continuation.point.linearization import NEAR_SINGULAR, Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.step.extent import FIRST_STEP, initial_extent
@@ -184,6 +185,20 @@ def guessed(start: Any) -> Array:
     if not np.isfinite(u).all():
         raise ValueError("start: expected finite numbers, found NaN or infinity")
     return u
+
+
+def arriving(path: Path) -> tuple[Array, Array]:
+    """The last point of a path and its tangent; where that is not known the chord from the point before.
+
+    Raises `ValueError` if the path has no point to go on from.
+    """
+    before, last = [None, *path.steps[-2:]][-2:] if len(path.steps) else (None, None)
+    if last is None:
+        raise ValueError("start: expected a path with a point to go on from, found one without")
+    known = bool(np.isfinite(last.tangent).all())
+    if not known and before is None:
+        raise ValueError("start: expected a path with a tangent, or two points, found one point without a tangent")
+    return last.u, last.tangent if known or before is None else last.u - before.u
 
 
 def point_and_direction(start: Any) -> tuple[Array, Array]:

@@ -52,8 +52,12 @@ def raised(error: BaseException) -> Verdict:
 
 
 def sentence(error: BaseException) -> str:
-    """An exception in one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split())
+    """An exception in one line, also one whose text cannot be had."""
+    try:
+        text = str(error)
+    except Exception as within:
+        text = f"its text cannot be had ({type(within).__name__})"
+    return " ".join(f"{type(error).__name__}: {text}".split())
 
 
 def refused_start(error: StartError) -> Verdict:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 import re
+import sys
 import warnings
 import zipfile
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +17,13 @@ import numpy as np
 import scipy.io
 import scipy.sparse as sp
 
-from continuation.archive.datasets import dataset, member, subgroup
+from continuation.archive.datasets import Allowance, dataset, member, subgroup
 from continuation.archive.image import Image
 from continuation.arrays import Matrix
-from problems.lcp.data.matlab import read_level5
+from problems.lcp.data.apart import read_apart
 
 ALONE = ""
 """The name of the array in a file that holds one array without a name."""
-
-FILE_BYTES = 1 << 32
-"""Bytes that a compressed file may unfold to; one that is not compressed is as large as it is."""
 
 BOUNDS = ("lower", "upper")
 
@@ -36,19 +34,11 @@ WANTED = ("A", "q", "x0", *PROGRAM)
 """What is looked for in an HDF5 file, which may hold much else."""
 
 
-def _claims(size: int, file: str) -> None:
-    """Whether so many bytes are to be unpacked from a file: not more than it has, nor than a limit where it is packed.
-
-    Raises `ValueError` if they are more.
-    """
-    if size > max(FILE_BYTES, Path(file).stat().st_size):
-        raise ValueError(f"it claims {size} bytes, expected at most {FILE_BYTES} where a file is compressed")
-
-
 def _npz(file: str) -> Mapping[str, Any]:
     if zipfile.is_zipfile(file):
         with zipfile.ZipFile(file) as archive:
-            _claims(sum(part.file_size for part in archive.infolist()), file)
+            unfolded = sum(part.file_size for part in archive.infolist())
+        Allowance(Path(file).stat().st_size).take("it", unfolded)
     stored = np.load(file, mmap_mode="r", allow_pickle=False)
     if not isinstance(stored, np.lib.npyio.NpzFile):
         raise ValueError("it holds one array, not named arrays")
@@ -82,24 +72,35 @@ def _named_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _mat(file: str) -> Mapping[str, Any]:
-    raw = Path(file).read_bytes()
-    if 0 not in raw[:4]:
-        return read_level5(raw, FILE_BYTES)
-    # Level 4, which begins with small numbers.
-    try:
-        with warnings.catch_warnings(action="error"):
-            _claims(8 * sum(math.prod(shape) for _, shape, kind in scipy.io.whosmat(file) if kind != "sparse"), file)
-            return {name: value for name, value in scipy.io.loadmat(file).items() if not name.startswith("__")}
-    except UserWarning as warning:
-        raise ValueError(str(warning)) from None
+    with warnings.catch_warnings(action="error"):
+        return {name: value for name, value in scipy.io.loadmat(file).items() if not name.startswith("__")}
 
 
 def _matrix_market(file: str) -> Mapping[str, Any]:
-    rows, columns, entries, form, _, _ = scipy.io.mminfo(file)
-    # A number and the end of its line take two bytes at least.
-    if (rows * columns if form == "array" else entries) > Path(file).stat().st_size:
-        raise ValueError(f"it claims {entries} entries, and is too short for them")
+    rows, columns, entries, form, field, symmetry = scipy.io.mminfo(file)
+    cells = rows * columns
+    if symmetry != "general":
+        # Of a triangle the numbers are there; that of a skew-symmetric one has no diagonal.
+        cells = (cells + (-rows if symmetry == "skew-symmetric" else rows)) // 2
+        if rows != columns:
+            raise ValueError(f"it claims to be {symmetry}, and has {rows} rows and {columns} columns")
+    width = {"complex": 2, "pattern": 0}.get(field, 1)
+    claimed = cells * width if form == "array" else entries * (2 + width)
+    found = _numbers_in(file)
+    if min(rows, columns) < 1 or found != claimed:
+        raise ValueError(f"it claims {rows} x {columns} in {claimed} numbers, and holds {found}")
+    # One thread: a child has room for no other's stack.
+    getattr(sys.modules.get("scipy.io._fast_matrix_market"), "__dict__", {})["PARALLELISM"] = 1
     return {ALONE: scipy.io.mmread(file)}
+
+
+def _numbers_in(file: str) -> int:
+    """The words behind the head of a Matrix Market file."""
+    with Path(file).open("rb") as lines:
+        # Comments and empty lines, then the one with the sizes.
+        next((line for line in lines if line.strip() and not line.lstrip().startswith(b"%")), None)
+        body = np.frombuffer(b" " + lines.read(), dtype="u1") > ord(" ")
+    return int(np.count_nonzero(body[1:] & ~body[:-1]))
 
 
 def _text(file: str) -> Mapping[str, Any]:
@@ -118,6 +119,7 @@ def _text(file: str) -> Mapping[str, Any]:
 def read_hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
     """The arrays wanted in a group of an HDF5 file: its root, or `problem` in it, where none is named."""
     image = Image(Path(file))
+    allowance = Allowance(image.length - image.missing)
     try:
         with h5py.File(image, "r") as root:
             if group is not None:
@@ -129,7 +131,7 @@ def read_hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
             else:
                 nested = subgroup(root, "problem") if "problem" in root and "A" not in root else None
                 at = root if nested is None else nested
-            found = {name: _from_hdf5(at, name) for name in WANTED if name in at}
+            found = {name: _from_hdf5(at, name, allowance) for name in WANTED if name in at}
             if not found:
                 raise ValueError(f"none of {', '.join(WANTED)} in its group {at.name}")
             return found
@@ -137,23 +139,24 @@ def read_hdf5(file: str, group: str | None = None) -> Mapping[str, Any]:
         image.close()
 
 
-def _from_hdf5(group: Any, name: str) -> Matrix:
+def _from_hdf5(group: Any, name: str, allowance: Allowance) -> Matrix:
     """A dataset, or the parts of a compressed sparse matrix in a group."""
     node = member(group, name)
     if isinstance(node, h5py.Dataset):
-        return dataset(group, name, None, None, FILE_BYTES)[()]
-    parts = [dataset(node, part, None, (None,), FILE_BYTES)[()] for part in ("data", "indices", "indptr")]
-    shape = tuple(int(n) for n in (dataset(node, "shape", None, (2,))[()] if "shape" in node else node.attrs["shape"]))
+        return dataset(group, name, None, None, allowance)[()]
+    parts = [dataset(node, part, None, (None,), allowance)[()] for part in ("data", "indices", "indptr")]
+    sizes = dataset(node, "shape", None, (2,), allowance)[()] if "shape" in node else node.attrs["shape"]
+    shape = tuple(int(n) for n in sizes)
     return sp.csr_array((parts[0], parts[1], parts[2]), shape=shape)
 
 
 READERS: Mapping[str, Callable[[str], Mapping[str, Any]]] = {
     ".npz": _npz,
     ".json": _json,
-    ".mat": _mat,
+    ".mat": partial(read_apart, _mat),
     ".h5": read_hdf5,
     ".hdf5": read_hdf5,
-    ".mtx": _matrix_market,
+    ".mtx": partial(read_apart, _matrix_market),
     ".npy": _npy,
     ".txt": _text,
     ".csv": _text,

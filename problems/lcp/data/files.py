@@ -7,15 +7,12 @@ from __future__ import annotations
 
 import math
 import re
-import zipfile
-import zlib
 from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
 import scipy.sparse as sp
 
 from continuation.arrays import Array, Matrix
@@ -27,11 +24,6 @@ from problems.options import finite_vector, sound_sparse
 
 ROWS = 1 << 22
 """Rows of a sparse matrix, or as many as its file has bytes: each takes memory, also where it has no entry."""
-
-_UNREADABLE = (
-    OSError, ValueError, TypeError, KeyError, EOFError, RecursionError, NotImplementedError, OverflowError,
-    MemoryError, RuntimeError, AttributeError, IndexError, zipfile.BadZipFile, zlib.error, scipy.io.matlab.MatReadError,
-)  # fmt: skip
 
 _CONTAINERS = re.compile(r"\.(?:npz|json|mat|h5|hdf5)(?:$|:)", re.IGNORECASE)
 """In the name of a file that holds named arrays."""
@@ -159,7 +151,7 @@ def _contents(argument: str, path: str | PathLike[str]) -> Mapping[str, Any]:
         # Sizes that a head claims overflow when they are multiplied.
         with np.errstate(over="ignore"):
             return read_hdf5(file, group) if suffix in (".h5", ".hdf5") else READERS[suffix](file)
-    except _UNREADABLE as error:
+    except Exception as error:  # Whatever the format's own reader raises.
         reason = str(error) or type(error).__name__
         complaint = f"expected a {suffix} file, found one that cannot be read: {_shown(file)} ({reason})"
         raise InputError(argument, complaint) from None

@@ -252,3 +252,81 @@ def test_the_page(tmp_path):
     trace(FreudensteinRoth(), archive=tmp_path / "short.h5", budget=Budget(steps=3))
     with open_archive(tmp_path / "short.h5") as archive:
         assert "can be resumed with more steps: `continuation resume" in describe(archive)
+
+
+class Wide:
+    """Five unknowns where the others have one."""
+
+    target = 1.0
+
+    def start(self):
+        return np.zeros(5), 0.0
+
+    def residual(self, y, lam):
+        return y - lam
+
+
+class Leaving(Pitchfork):
+    """Raises what is no Exception."""
+
+    def residual(self, y, lam):
+        if lam > 0.0:
+            raise GeneratorExit
+        return super().residual(y, lam)
+
+
+class Speechless(Pitchfork):
+    """Raises what cannot say what it is."""
+
+    def residual(self, y, lam):
+        if lam > 0.0:
+            raise NoText
+        return super().residual(y, lam)
+
+
+class NoText(Exception):
+    def __str__(self):
+        raise ValueError("no text")
+
+
+MIXED = {
+    "in the middle": lambda: [Pitchfork(0.1), Pitchfork(0.2), Wide(), Pitchfork(0.3), Wide(), Pitchfork(0.4)],
+    "first": lambda: [Wide(), Pitchfork(0.1), Wide(), Pitchfork(0.2)],
+    "behind one that cannot begin": lambda: [Broken(), Wide(), Pitchfork(0.1), Pitchfork(0.2), Wide()],
+    "with others that end badly": lambda: [Pitchfork(0.1), Leaving(0.1), Wide(), Speechless(0.1), Pitchfork(0.2)],
+}
+
+
+@pytest.mark.parametrize("pool", [ProcessPoolExecutor, ThreadPoolExecutor], ids=["processes", "threads"])
+@pytest.mark.parametrize("tasks", MIXED)
+def test_a_homotopy_of_another_size_costs_its_own_path_wherever_it_runs(tmp_path, tasks, pool):
+    def said(archive):
+        with archive:
+            paths = list(archive)
+            ends = [path.endpoint.u.tolist() if len(path) else [] for path in paths]
+            reasons = [path.message.split(" unknowns")[0] for path in paths]
+            return [path.status for path in paths], ends, archive.paths["member"].tolist(), reasons
+
+    serial = said(trace_many(MIXED[tasks](), archive=tmp_path / "serial.h5"))
+    with pool(2) as executor:
+        spread = said(trace_many(MIXED[tasks](), executor, tmp_path / "spread.h5"))
+    assert spread == serial
+    assert Status.RAISED in serial[0]
+    assert Status.REACHED_TARGET in serial[0]
+    assert sorted(os.listdir(tmp_path)) == ["serial.h5", "spread.h5"]
+
+
+def test_no_homotopies(tmp_path):
+    assert trace_many([]) == []
+    with ThreadPoolExecutor(1) as executor:
+        for pool in (None, executor):
+            with pytest.raises(ValueError, match="homotopies: expected at least one where there is an archive"):
+                trace_many([], pool, tmp_path / "none.h5")
+    assert not os.listdir(tmp_path)
+
+
+def test_what_ends_badly_is_said():
+    paths = trace_many([Leaving(0.1), Speechless(0.1), Pitchfork(0.1)])
+    assert [path.status for path in paths] == [Status.RAISED, Status.RAISED, Status.REACHED_TARGET]
+    assert paths[0].message.startswith("GeneratorExit")
+    assert paths[1].message == "NoText: its text cannot be had (ValueError)"

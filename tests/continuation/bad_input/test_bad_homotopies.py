@@ -111,3 +111,21 @@ def test_a_method_that_is_none(name):
 @pytest.mark.parametrize("target", ["end", NAN, np.ones(2), 1j], ids=repr)
 def test_a_target(target):
     refused("target", lambda: trace(with_methods(target=target)))
+
+
+class Renaming(Line):
+    seen = 0
+
+    def observe(self, y, lam):
+        self.seen += 1
+        return {f"k{self.seen}": 1.0}
+
+
+def test_truth_values_are_no_residual():
+    refused("residual", lambda: trace(with_methods(residual=lambda self, y, lam: y - lam > 0.0)))
+
+
+def test_observed_names_stay_what_they_are(tmp_path):
+    for archive in (None, tmp_path / "run.h5"):
+        with pytest.raises(ValueError, match=r"observe: expected the names of the first point, .*k1.*, found .*k2"):
+            trace(Renaming(), archive=archive)

@@ -6,6 +6,7 @@ from importlib import metadata
 import numpy as np
 import pytest
 
+import continuation
 from continuation import chart
 from continuation.archive import open_archive
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
@@ -45,7 +46,7 @@ def test_plugins_are_listed_with_options_and_reference(run):
     assert "options: n=100, target=None" in text
     assert "reference: Bratu 1914" in text
     (owner,) = (point.dist.name for point in metadata.entry_points(group="continuation.homotopies", name="bratu-1d"))
-    assert f"from: {owner} 0.1.0 (problems.bifurcation.bratu_1d:Bratu1D)" in text
+    assert f"from: {owner} {continuation.__version__} (problems.bifurcation.bratu_1d:Bratu1D)" in text
 
 
 def test_one_plugin_is_shown_with_its_bibtex(run):

@@ -13,6 +13,7 @@ from continuation.archive import checkpoint, resume, trace_many
 from continuation.chart import traced
 from continuation.metric import Weighted
 from continuation.predictors import Hermite
+from continuation.step import presets
 from continuation.step.options import DEFAULTS, OPTIONS, PART_OPTIONS, checked
 from continuation.step.settings import Settings
 from problems import lcp
@@ -164,3 +165,22 @@ def test_a_misspelt_option_fails_in_mypy(tmp_path):
     assert status == 1
     assert 'error: Unexpected keyword argument "budgett"' in said
     assert "Found 1 error" in said
+
+
+@pytest.mark.parametrize("preset", [presets.FAST, presets.DEFAULT, presets.CONSERVATIVE, presets.SERIES])
+def test_a_longest_step_with_any_preset(preset):
+    for longest in (0.05, 3.0, 1e6):
+        path = trace(Circle(), preset=preset, max_step=longest, budget=Budget(steps=20))
+        assert max(step.step_length for step in path.steps[1:]) <= longest
+
+
+def test_a_path_is_a_start():
+    whole = trace(Circle())
+    after = trace(Circle(), start=whole[:5], budget=Budget(steps=3))
+    assert np.array_equal(after.u[0], whole.u[4])
+    (a, b), (c, d) = after.steps[0].tangent, whole.steps[4].tangent
+    # The same ray, in the metric of another start.
+    assert abs(a * d - b * c) < 1e-12
+    assert a * c + b * d > 0.0
+    with pytest.raises(ValueError, match="start: expected a path with a point to go on from"):
+        trace(Circle(), start=Path())

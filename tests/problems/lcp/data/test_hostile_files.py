@@ -6,8 +6,9 @@ import os
 import pickle
 import random
 import resource
+import signal
+import struct
 import zipfile
-import zlib
 
 import h5py
 import numpy as np
@@ -15,8 +16,9 @@ import pytest
 import scipy.io
 import scipy.sparse as sp
 
+from problems.lcp.data.apart import read_apart
+from problems.lcp.data.containers import READERS
 from problems.lcp.data.files import InputError, read_problem
-from problems.lcp.data.matlab import read_level5
 
 A, Q = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([-5.0, -6.0])
 
@@ -108,6 +110,17 @@ HOSTILE = {
     "zero.mtx": MTX.format("coordinate", "2 2 1\n0 0 1.0").encode(),
     "nan.mtx": MTX.format("coordinate", "2 2 2\n1 1 nan\n2 2 1").encode(),
     "integer.mtx": b"%%MatrixMarket matrix coordinate integer general\n2 2 1\n1 1 99999999999999999999\n",
+    "cut.mtx": b"%%MatrixMarket matrix array real symmetric\n%\n3 3\n2\n-1\n0\n2\n-1",
+    "more.mtx": MTX.format("coordinate", "2 2 2\n1 1 1.0\n2 2 1.0\n1 2 5.0").encode(),
+    "skew.mtx": b"%%MatrixMarket matrix array real skew-symmetric\n3 3\n1\n2\n",
+    "complex.mtx": b"%%MatrixMarket matrix array complex hermitian\n2 2\n1 0\n2 0\n",
+    "rows.mtx": b"%%MatrixMarket matrix array real symmetric\n2 3\n1\n2\n3\n",
+    "empty.mtx": MTX.format("array", "0 4000000000").encode(),
+    "none.mtx": MTX.format("coordinate", "0 0 0").encode(),
+    "huge.mtx": MTX.format("array", f"{2**62} {2**62}").encode(),
+    "loop.mat": struct.pack("<iiiii", 50, -1, 22, 0, 2) + b"A\0",
+    "seven.mat": b"MATLAB 7.3 MAT-file".ljust(124) + b"\0\2IM" + bytes(400),
+    "bracket.npy": npy_head("(2, 2"),
     "head.csv": b"a,b\n1,2\n3,4\n",
     "ragged.csv": b"1 2\n3\n",
     "hex.csv": b"0x10 1\n1 1\n",
@@ -154,6 +167,48 @@ def test_hdf5(tmp_path, harm):
     with pytest.raises(InputError) as caught:
         read_problem(tmp_path / "p.h5")
     assert "\n" not in str(caught.value)
+
+
+def test_entries_that_nobody_stored(tmp_path):
+    """5 KB that claim 3e8 numbers are refused before room is made for them; what is small and not stored is zero."""
+    for n, shape in ((10**8, (2, 2)), (2, (2, 2))):
+        with h5py.File(tmp_path / "p.h5", "w") as file:
+            part = file.create_group("A")
+            part.create_dataset("data", (n,), "f8", chunks=(min(n, 1000),))
+            part.create_dataset("indices", (n,), "i4", chunks=(min(n, 1000),))
+            part["indptr"], part.attrs["shape"], file["q"] = np.array([0, 1, 2], "i4"), shape, Q
+        if n > 2:
+            with pytest.raises(InputError, match="A/data claims 800000000 bytes"):
+                read_problem(tmp_path / "p.h5")
+    assert read_problem(tmp_path / "p.h5").n == 2
+
+
+def test_a_packed_file_that_unfolds_to_much(tmp_path):
+    file = tmp_path / "p.mat"
+    scipy.io.savemat(file, {"A": np.zeros((6000, 6000)), "q": Q}, do_compression=True)
+    with pytest.raises(InputError, match=r"cannot be read: .*\("):
+        read_problem(file)
+    np.savez_compressed(tmp_path / "p.npz", A=np.zeros((6000, 6000)), q=Q)
+    with pytest.raises(InputError, match="claims 288"):
+        read_problem(tmp_path / "p.npz")
+
+
+def test_a_reader_that_dies_or_never_returns_ends_alone(tmp_path):
+    (tmp_path / "p").write_bytes(b"")
+
+    def dies(file):
+        os.kill(os.getpid(), signal.SIGSEGV)
+
+    def takes(file):
+        return {"A": np.ones(10**9)}
+
+    def loops(file):
+        while True:
+            pass
+
+    for read, said in ((dies, "ended by signal 11"), (takes, "allocate"), (loops, "too long")):
+        with pytest.raises(ValueError, match=said):
+            read_apart(read, str(tmp_path / "p"))
 
 
 def whole(form):
@@ -203,7 +258,7 @@ def test_damaged_files(tmp_path, form):
 
 
 @pytest.mark.parametrize("packed", [False, True])
-def test_matlab_as_scipy_reads_it(packed):
+def test_matlab_as_scipy_reads_it(tmp_path, packed):
     generator = np.random.default_rng(0)
     given = {
         "A": generator.normal(size=(3, 4)),
@@ -219,16 +274,11 @@ def test_matlab_as_scipy_reads_it(packed):
     }
     file = io.BytesIO()
     scipy.io.savemat(file, given, do_compression=packed)
-    found, right = read_level5(file.getvalue(), 1 << 20), scipy.io.loadmat(io.BytesIO(file.getvalue()))
-    for name in list(given)[:7]:
+    (tmp_path / "all.mat").write_bytes(file.getvalue())
+    found, right = READERS[".mat"](str(tmp_path / "all.mat")), scipy.io.loadmat(tmp_path / "all.mat")
+    for name in list(given)[:8]:
         one, other = found[name], right[name]
         if sp.issparse(other):
             one, other = one.toarray(), other.toarray()
         assert np.array_equal(one, other), name
-    assert (found["complex"], found["text"], found["cell"]) == ("complex numbers", *["no matrix of numbers"] * 2)
-    if packed:
-        with pytest.raises(ValueError, match="unfolds to more than the limit"):
-            read_level5(file.getvalue(), 100)
-        cut = zlib.compress(bytes(100))[:-6]
-        with pytest.raises(ValueError, match="cut off"):
-            read_level5(file.getvalue()[:128] + (15).to_bytes(4, "little") + len(cut).to_bytes(4, "little") + cut, 1000)
+    assert (found["text"], found["cell"]) == ("no matrix of numbers",) * 2

@@ -1,0 +1,234 @@
+"""What one file may ask for, what is recovered of one that is cut off, and contents that make no sense."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import pytest
+
+from continuation import Budget, trace
+from continuation.archive import ArchiveError, Limits, PathLog, describe, export, open_archive, recover, resume
+from continuation.archive.datasets import LEAST_BYTES
+from continuation.controllers import Bounds, Fixed
+from problems.bifurcation import Cusp
+
+from .test_archive_hostile import outcome, unchecked
+
+MOST_BYTES = 500 << 20
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    file = tmp_path_factory.mktemp("small") / "small.h5"
+    trace(Cusp(), archive=file, budget=Budget(steps=6))
+    return file
+
+
+@pytest.fixture
+def changed(tmp_path, small):
+    """A copy without checksums, in which something is changed."""
+
+    def make(change):
+        file = tmp_path / "changed.h5"
+        shutil.copy(small, file)
+        with h5py.File(file, "r+") as opened:
+            unchecked(opened)
+            change(opened)
+        return file
+
+    return make
+
+
+# -- one budget -----------------------------------------------------------------------------------------------
+
+
+def zeros(file, name, shape, kind="f8"):
+    del file[name]
+    chunks = (min(shape[0], 1 << 15), *(min(n, 1 << 15) for n in shape[1:]))
+    file.create_dataset(name, shape, kind, chunks=chunks, compression="gzip")
+
+
+def many_rows(file):
+    for name in [name for name in file if getattr(file[name], "shape", ())[:1] == (7,) and name != "point"]:
+        zeros(file, name, (1_000_000, *file[name].shape[1:]), file[name].dtype)
+    file["n_points"][0] = file["committed_points"][()] = 1_000_000
+
+
+def many_names(file):
+    for k in range(5000):
+        file[f"observed_{k}"] = file["arclength"]
+
+
+BOMBS = {
+    "a wide state": lambda file: zeros(file, "controller_state", (1, 30_000_000)),
+    "many unknowns": lambda file: [zeros(file, name, (7, 4_000_000)) for name in ("y", "tangent_y")],
+    "many rows": many_rows,
+    "one column under many names": many_names,
+    "a large problem": lambda file: file["problem"].create_dataset("A", (10**4, 10**4), "f8", compression="gzip"),
+    "many names of events": lambda file: file["event_name"].resize((10**7,)),
+}
+READ = {
+    "inspect": lambda file: describe(open_archive(file)),
+    "path": lambda file: open_archive(file).path(0),
+    "export": lambda file: export(file, file.with_suffix(".nc")),
+    "resume": lambda file: resume(file, archive=file.with_suffix(".more.h5"), budget=Budget(steps=8)),
+}
+
+
+@pytest.mark.parametrize("bomb", BOMBS)
+def test_a_small_file_takes_no_more_than_it_may(changed, bomb):
+    file = changed(BOMBS[bomb])
+    assert file.stat().st_size < LEAST_BYTES // 100
+    complaints = [outcome(read, file)[0] for read in READ.values()]
+    assert any(complaints)
+    assert "\n" not in "".join(complaints)
+    code = (
+        "import resource, sys\nfrom pathlib import Path\n"
+        "from tests.continuation.archive.test_archive_limits import READ\n"
+        "for read in READ.values():\n    try: read(Path(sys.argv[1]))\n    except OSError: pass\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss << 10)"
+    )
+    for left in (".nc", ".more.h5"):
+        file.with_suffix(left).unlink(missing_ok=True)
+    done = subprocess.run([sys.executable, "-c", code, file], capture_output=True, text=True, check=True)
+    assert int(done.stdout) < MOST_BYTES
+
+
+def test_the_caller_may_allow_more(changed):
+    file = changed(BOMBS["a wide state"])
+    with pytest.raises(ArchiveError, match=f"of paths claims .* more than the limit of {LEAST_BYTES}; say limit=$"):
+        open_archive(file)
+    assert len(open_archive(file, limit=1 << 29)) == 1
+
+
+def test_a_steps_objects_count_and_those_of_its_ends_do_not(small):
+    with open_archive(small, limit=1 << 20) as archive:
+        many = 1 + (1 << 20) // 1400
+        archive._first_rows[-1] = many
+        with pytest.raises(ArchiveError, match="the steps of the path claims"):
+            archive.path(0)
+
+
+def test_the_same_thing_read_again_counts_once(small):
+    with open_archive(small, limit=1 << 20) as archive:
+        for _ in range(100):
+            archive.path(0)
+            archive.problem()
+
+
+# -- files that are cut off -----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module", params=["closed", "killed"])
+def long(request, tmp_path_factory):
+    file = tmp_path_factory.mktemp("long") / "long.h5"
+    process = os.fork() if request.param == "killed" else 1
+    if request.param == "closed" or not process:
+        log = PathLog(file, limits=Limits(rows=50, seconds=3600.0))
+        trace(
+            Cusp(), archive=log, controller=Fixed(bounds=Bounds(initial=0.005)), budget=Budget(steps=1500), target=None,
+            observers=() if process else (_Killer(),),
+        )  # fmt: skip
+    os.waitpid(process, 0) if process != 1 else None
+    return file
+
+
+HEAD = 45_000
+SHARES = (0.3, 0.5, 0.7, 0.9, 0.99, 0.999)
+
+
+class _Killer:
+    def step(self, tracer, step):
+        if step.index == 1499:
+            os.kill(os.getpid(), 9)
+
+    event = end = lambda self, *arguments: None
+
+
+def test_whole_blocks_before_the_cut_are_recovered(tmp_path, long):
+    with open_archive(long) as archive:
+        whole, path = archive.points.size, archive.path(0)
+    size, kept = long.stat().st_size, []
+    for share in SHARES:
+        file = tmp_path / f"{share}.h5"
+        shutil.copy(long, file)
+        os.truncate(file, int(share * size))
+        with pytest.raises(ArchiveError, match="`recover` keeps the rows that are sound"):
+            open_archive(file)
+        recover(file)
+        with open_archive(file) as archive:
+            kept.append(archive.points.size)
+            assert np.array_equal(archive.path(0).u, path.u[: len(archive.path(0))])
+        assert kept[-1] == whole or file.with_name(f"{file.name}.damaged").stat().st_size == int(share * size)
+    # The head, in which HDF5 has the places of all columns, holds no row; columns grow by 64 rows, commits by 50.
+    before = [max(share * size - HEAD, 0.0) / (size - HEAD) * whole for share in SHARES]
+    assert all(k >= rows - 150 for k, rows in zip(kept, before)), (kept, before)
+    assert kept == sorted(kept)
+
+
+def test_of_a_head_that_is_cut_off_nothing_is_left_and_that_is_said(tmp_path, small):
+    file = tmp_path / "run.h5"
+    shutil.copy(small, file)
+    os.truncate(file, 20_000)
+    with pytest.raises(ArchiveError, match="truncated or damaged"):
+        recover(file)
+    assert file.stat().st_size == 20_000
+
+
+# -- contents -------------------------------------------------------------------------------------------------
+
+
+def kink_without_a_switch(file):
+    file["role"][2:], file["event_index"][1] = 2, 0
+    file["event_name"].resize((1,))
+
+
+def put(file, name, value):
+    file[name][0] = value
+
+
+def names(*texts):
+    return lambda file: file.attrs.__setitem__("names", json.dumps(texts))
+
+
+CONTENTS = {
+    "a kink without a switch": kink_without_a_switch,
+    "a message": lambda file: put(file, "message", b"\xff\xfe"),
+    "an event's name": lambda file: (file["event_name"].resize((1,)), put(file, "event_name", b"\xff\x1b[0m")),
+    "a column's name": lambda file: file.create_dataset(b"observed_\xff", data=np.zeros(7)),
+    "a column's control codes": lambda file: file.create_dataset("observed_\x1b]0;x\x07", data=np.zeros(7)),
+    "a type with control codes": lambda file: (file.pop("y"), file.create_dataset("y", (7,), [("\x1b[2J", "f8")])),
+    "nested roots": names("$" + "\\sqrt{" * 300 + "x" + "}" * 300 + "$"),
+    "nested names": lambda file: file.attrs.__setitem__("names", "[" * 100_000),
+    "a homotopy's name": lambda file: file.attrs.__setitem__("homotopy", "\x1b]0;x\x07"),
+}
+
+
+@pytest.mark.parametrize("content", CONTENTS)
+def test_contents_are_one_line_or_text_that_can_be_shown(tmp_path, changed, content):
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("xarray")
+    file = changed(CONTENTS[content])
+    shown = {
+        "page": lambda archive: describe(archive),
+        "table": lambda archive: archive._repr_html_(),
+        "path": lambda archive: repr(archive.path(0)),
+        "xarray": lambda archive: str(archive.to_xarray()),
+        "picture": lambda archive: archive.path(0).plot().figure.savefig(tmp_path / "path.png"),
+        "netCDF": lambda archive: export(file, tmp_path / "path.nc"),
+    }
+    for show in shown.values():
+        try:
+            with open_archive(file) as archive:
+                said = str(show(archive))
+        except ArchiveError as error:
+            said = str(error)
+            assert "\n" not in said
+        assert "\x1b" not in said
+        said.encode()
+
+

@@ -1,0 +1,102 @@
+"""Files that version 0.1.0 left, in each state that it could leave one in (`old/make.py`): read, recovered, used."""
+
+import json
+import shutil
+import tarfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from continuation import Budget, Status, trace
+from continuation.archive import ArchiveError, describe, export, merge, open_archive, recover, resume
+from continuation.archive.checkpoint import major
+from problems.bifurcation import Cusp
+
+OLD = Path(__file__).parent / "old" / "archives.tar.xz"
+FILES = (
+    "budget.h5", "finished.h5", "gzip.nc", "killed.h5", "killed_early.h5", "killed_sweep.h5", "merged.h5",
+    "observed.h5", "sweep.h5",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def old(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("old")
+    with tarfile.open(OLD) as archives:
+        archives.extractall(folder, filter="data")
+    return folder
+
+
+@pytest.fixture
+def told(old):
+    """What version 0.1.0 itself read from them."""
+    return json.loads((old / "told.json").read_text())
+
+
+def found(archive):
+    paths = list(archive)
+    return {
+        "paths": len(paths),
+        "points": archive.points.size,
+        "statuses": [path.status.name for path in paths],
+        "end": [path.steps[-1].lam if path.steps else None for path in paths],
+        "sum": float(archive.points["y"].sum()),
+    }
+
+
+def test_all_of_them_are_here(told):
+    assert sorted(told) == sorted(FILES)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_read_as_its_own_version_read_it(old, told, name):
+    with open_archive(old / name) as archive:
+        assert found(archive) == told[name]
+        assert str(archive.points.size) in describe(archive)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_recovered_exported_and_merged(tmp_path, old, told, name):
+    file = Path(shutil.copy(old / name, tmp_path / name))
+    recover(file)
+    with open_archive(file) as archive:
+        kept = found(archive)
+        assert archive.closed_by_writer
+    ended = [{"TRACING": "INTERRUPTED"}.get(status, status) for status in told[name]["statuses"]]
+    assert kept == {**told[name], "statuses": ended}
+    for target in (export(file, tmp_path / "new.nc")[0], merge([file], tmp_path / "new.h5")):
+        with open_archive(target) as archive:
+            assert found(archive) == kept
+    assert len(export(file, tmp_path / "new.csv")) == 2
+
+
+def test_what_it_observed(old):
+    with open_archive(old / "observed.h5") as archive:
+        path = archive[0]
+    assert [step.observed["norm"] for step in path.steps] == np.abs(path.y).max(axis=1).tolist()
+
+
+def test_a_state_resumes_within_its_major_version_and_a_path_goes_on_in_any(tmp_path, old):
+    file = Path(shutil.copy(old / "budget.h5", tmp_path))
+    said = r"version 0\.1\.0.*major version.*trace\(homotopy, start=open_archive\(.*\[0\]\)$"
+    with pytest.raises(ArchiveError, match=said):
+        resume(file, budget=Budget())
+    with open_archive(file) as archive:
+        before = archive[0]
+    after = trace(Cusp(), start=before)
+    assert np.array_equal(after.u[0], before.u[-1])
+    assert after.status is Status.REACHED_TARGET
+    # The direction is that in which it came: the path does not turn back.
+    assert (after.u[1] - after.u[0]) @ (before.u[-1] - before.u[-2]) > 0.0
+    assert after.endpoint.lam == trace(Cusp()).endpoint.lam
+
+
+def test_what_two_versions_have_in_common():
+    assert [major(version) for version in ("2.3.1", "0.2.5", "10", "0.2")] == ["2", "0.2", "10", "0.2"]
+
+
+@pytest.mark.parametrize("path", [trace(Cusp(), budget=Budget(steps=1))[:0]], ids=["none"])
+def test_a_path_to_go_on_from_has_a_point(path):
+    with pytest.raises(ValueError, match="start: expected a path with a point to go on from"):
+        trace(Cusp(), start=path)
