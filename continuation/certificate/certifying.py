@@ -28,7 +28,7 @@ from continuation.certificate.verify import verified
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsPieces
-from continuation.intervals.ends import Mask
+from continuation.numbers.ends import Mask
 from continuation.metric import Automatic, Metric, norm
 from continuation.path import Path, Step
 from continuation.path.path import require_path

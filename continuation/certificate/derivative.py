@@ -8,7 +8,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.certificate.engine import up_by
 from continuation.certificate.form import SUM_ROUNDING, Affine, Quadratic
-from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin, up_sum
+from continuation.numbers.ends import EPS, Ends, accumulated, bilinear, thin, up_sum
 
 
 def _apply(part: Affine, q: Ends) -> Ends:

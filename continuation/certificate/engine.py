@@ -8,7 +8,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs
-from continuation.intervals.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
+from continuation.numbers.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
 
 
 class Judged(Protocol):

@@ -11,7 +11,7 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import Index
 from continuation.certificate.products import Blocks
-from continuation.intervals.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Ends, Mask, thin
 
 
 @frozen(eq=False, slots=False)

@@ -20,7 +20,7 @@ from continuation.certificate.cells import Slabs
 from continuation.certificate.derivative import Derivative, at_points
 from continuation.certificate.engine import up_by
 from continuation.certificate.inverse import inverted, times
-from continuation.intervals.ends import EPS, Ends, accumulated, thin
+from continuation.numbers.ends import EPS, Ends, accumulated, thin
 
 SHARE = 1e-3
 """Rounding is bounded once, for a vector in the shape of the misfit and with this share of its largest component."""

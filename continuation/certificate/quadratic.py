@@ -19,7 +19,7 @@ from continuation.certificate.engine import Judged
 from continuation.certificate.form import Quadratic
 from continuation.certificate.krawczyk import Several
 from continuation.certificate.polynomial import Polynomial
-from continuation.intervals.ends import Ends
+from continuation.numbers.ends import Ends
 
 CACHED_NUMBERS = 200_000
 """Numbers of one array of matrices at a time, 1.6 MB: a few of them are to be in a cache of several."""

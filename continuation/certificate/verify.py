@@ -17,7 +17,7 @@ from continuation.certificate.folds import RANGE, Piece, Turn, located, pieces, 
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
-from continuation.intervals.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
 from continuation.status import Kind

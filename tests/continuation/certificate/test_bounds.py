@@ -9,7 +9,7 @@ from continuation import certify, trace
 from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
 from continuation.certificate.certifying import engine_of
 from continuation.certificate.polynomial import Polynomial
-from continuation.intervals.ends import thin
+from continuation.numbers.ends import thin
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy, YuHomotopy
 

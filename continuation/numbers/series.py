@@ -1,0 +1,400 @@
+"""Truncated power series: each function's own, by the equation that it solves with its derivative.
+
+A series is an array of shape (L, *shape), coefficient k of s**k first; a constant has L = 1. Over intervals it is a
+list: the argument is then x + s, its coefficients (x, 1, 0, ...), and what is exactly zero or one is a number, by which
+nothing is multiplied; the coefficients that result are the ranges of a function's derivatives over k!. The recurrences
+are those of Griewank & Walther, "Evaluating Derivatives" (2nd ed., 2008), ch. 13, and Neidinger, SIAM Review
+52 (2010) 545-563: they give coefficient k from those below it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import comb
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.numbers.ends import Ends, as_ends, thin
+from continuation.numbers.ranges import LN2, LN10, RANGES, near
+from continuation.numbers.ranges import power as power_range
+
+Series: TypeAlias = Any
+"""An array, or a list of intervals and of exact numbers."""
+
+Rule: TypeAlias = Callable[[Series], Series]
+"""A function of one series."""
+
+
+class JetDomainError(ArithmeticError):
+    """A function was asked for its series at a point where it has none: sqrt(0), log(0), abs(0), 1/0."""
+
+
+def demand(fine: Any, operation: str, need: str) -> None:
+    """Raise JetDomainError, naming the operation, unless every entry is fine."""
+    if not np.all(fine):
+        raise JetDomainError(f"{operation} has no Taylor series here: {need}")
+
+
+def _demand(u: Series, fine: Callable[[Array], Any], operation: str, need: str) -> None:
+    """As `demand`, of the leading coefficient; intervals have no value (nan) where a function has none."""
+    if not isinstance(u, list):
+        demand(fine(u[0]), operation, f"its argument's leading coefficient must {need}")
+
+
+def extended(u: Array, length: int) -> Array:
+    """The same series with zero coefficients behind it."""
+    out = np.zeros((length, *u.shape[1:]))
+    out[: len(u)] = u
+    return out
+
+
+def of(function: np.ufunc, x: Any) -> Any:
+    """The values of a function, or their range."""
+    return RANGES[function](x) if isinstance(x, Ends) else function(x)
+
+
+# --- products and quotients -------------------------------------------------------------------------------
+
+
+def multiply(a: Series, b: Series) -> Series:
+    """Cauchy product of series of one length, as one contraction with a Toeplitz view of the second factor."""
+    if isinstance(a, list):
+        return [_dot(a[: k + 1], b[k::-1]) for k in range(len(a))]
+    length = len(b)
+    if length == 2:
+        out: Array = a[:1] * b
+        out[1:] += a[1:] * b[:1]
+        return out
+    padded = np.zeros((2 * length - 1, *b.shape[1:]))
+    padded[length - 1 :] = b
+    stride, *strides = padded.strides
+    toeplitz: Array = np.ndarray(
+        (length, length, *b.shape[1:]), float, padded, (length - 1) * stride, (stride, -stride, *strides)
+    )
+    return np.asarray(np.einsum("j...,kj...->k...", a, toeplitz))
+
+
+def divide(a: Series, b: Series) -> Series:
+    """Quotient of two series; b[0] must not vanish."""
+    if not isinstance(b, list):
+        demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
+        if len(b) == 1:
+            return a / b
+        a = extended(a, len(b))
+    out = _room(a, b)
+    out[0] = _over(a[0], b[0])
+    for k in range(1, len(b)):
+        out[k] = _over(a[k] - _tail(b, out, k), b[0])
+    return out
+
+
+def _dot(p: Series, q: Series) -> Any:
+    """sum_j p_j q_j."""
+    if not isinstance(p, list):
+        return np.einsum("j...,j...->...", p, q)
+    total: Any = 0.0
+    for a, b in zip(p, q):
+        if a != 0.0 and b != 0.0:  # an interval is equal to no number
+            term = b if a == 1.0 else a if b == 1.0 else a * b
+            total = term if total == 0.0 else total + term
+    return total
+
+
+def _tail(p: Series, q: Series, k: int) -> Any:
+    """sum_{j=1..k} p_j q_{k-j}."""
+    return _dot(p[1 : k + 1], q[k - 1 :: -1])
+
+
+def _over(a: Any, b: Any) -> Any:
+    return a if (type(a) is float and a == 0.0) or (type(b) is int and b == 1) else a / b
+
+
+# --- helpers of the recurrences ---------------------------------------------------------------------------
+
+
+def _room(*series: Series) -> Series:
+    if isinstance(series[0], list):
+        return [0.0] * len(series[0])
+    if len(series) == 1:
+        return np.empty_like(series[0])
+    return np.empty(np.broadcast_shapes(*(u.shape for u in series)))
+
+
+def _weighted(u: Series) -> Series:
+    """The coefficients k u_k, of s u'(s)."""
+    if isinstance(u, list):
+        return [0.0, *(k * x for k, x in enumerate(u[1:], 1))]
+    return np.arange(float(len(u))).reshape(-1, *(1,) * (u.ndim - 1)) * u
+
+
+def _integral(weighted: Series, constant: Any) -> Series:
+    """The series v with s v'(s) = `weighted` and v(0) = `constant`."""
+    if isinstance(weighted, list):
+        return [constant, *(_over(x, k) for k, x in enumerate(weighted[1:], 1))]
+    orders = np.maximum(np.arange(float(len(weighted))), 1).reshape(-1, *(1,) * (weighted.ndim - 1))
+    out = weighted / orders
+    out[0] = constant
+    return out
+
+
+def _shifted(u: Series, constant: float, sign: int = 1) -> Series:
+    """The series sign u + constant."""
+    if isinstance(u, list):
+        return [constant + u[0] if sign > 0 else constant - u[0], *(sign * x for x in u[1:])]
+    out = sign * u
+    out[0] += constant
+    return out
+
+
+# --- elementary functions ---------------------------------------------------------------------------------
+
+
+def _exponential(u: Series, du: Series, value: Any) -> Series:
+    out = _room(u)
+    out[0] = value
+    for k in range(1, len(u)):
+        out[k] = _over(_tail(du, out, k), k)
+    return out
+
+
+def exp(u: Series) -> Series:
+    """Solves v' = v u'."""
+    return _exponential(u, _weighted(u), of(np.exp, u[0]))
+
+
+def expm1(u: Series) -> Series:
+    """exp(u) - 1, its constant without cancellation."""
+    out = exp(u)
+    out[0] = of(np.expm1, u[0])
+    return out
+
+
+def exp2(u: Series) -> Series:
+    """2**u."""
+    du = _weighted(u)
+    du = [x and x * LN2 for x in du] if isinstance(u, list) else du * np.log(2)
+    return _exponential(u, du, of(np.exp2, u[0]))
+
+
+def log(u: Series) -> Series:
+    """Solves v' = u' / u."""
+    _demand(u, lambda x: ~(x <= 0), "numpy.log", "be positive")
+    return _integral(divide(_weighted(u), u), of(np.log, u[0]))
+
+
+def log1p(u: Series) -> Series:
+    """log(1 + u), its constant without cancellation."""
+    _demand(u, lambda x: ~(x <= -1), "numpy.log1p", "be above -1")
+    return _integral(divide(_weighted(u), _shifted(u, 1)), of(np.log1p, u[0]))
+
+
+def _to_base(u: Series, function: np.ufunc, base: float, logarithm: Ends) -> Series:
+    if isinstance(u, list):
+        return [of(function, u[0]), *(x / logarithm for x in log(u)[1:])]
+    return log(u) / float(np.log(base))
+
+
+def log2(u: Series) -> Series:
+    """log(u) / log(2)."""
+    return _to_base(u, np.log2, 2, LN2)
+
+
+def log10(u: Series) -> Series:
+    """log(u) / log(10)."""
+    return _to_base(u, np.log10, 10, LN10)
+
+
+def _pair(u: Series, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[Series, Series]:
+    """Circular (sign -1) or hyperbolic (+1): v' = w u', w' = sign v u'."""
+    du, v, w = _weighted(u), _room(u), _room(u)
+    v[0], w[0] = of(sine, u[0]), of(cosine, u[0])
+    for k in range(1, len(u)):
+        v[k] = _over(_tail(du, w, k), k)
+        slope = _over(_tail(du, v, k), k)
+        w[k] = slope if sign > 0 else -slope
+    return v, w
+
+
+def sin(u: Series) -> Series:
+    """Coupled with cos."""
+    return _pair(u, np.sin, np.cos, -1)[0]
+
+
+def cos(u: Series) -> Series:
+    """Coupled with sin."""
+    return _pair(u, np.sin, np.cos, -1)[1]
+
+
+def sinh(u: Series) -> Series:
+    """Coupled with cosh."""
+    return _pair(u, np.sinh, np.cosh, 1)[0]
+
+
+def cosh(u: Series) -> Series:
+    """Coupled with sinh."""
+    return _pair(u, np.sinh, np.cosh, 1)[1]
+
+
+def _tangent(u: Series, function: np.ufunc, cosine: np.ufunc, sign: int) -> Series:
+    """Solves v' = w u' with w = 1 + sign v**2; tan for sign +1, tanh for -1."""
+    du, v, w = _weighted(u), _room(u), _room(u)
+    v[0] = of(function, u[0])
+    if isinstance(u, list):
+        w[0] = 1.0 + v[0] * v[0] if sign > 0 else (1.0 - v[0]) * (1.0 + v[0])
+    else:
+        w[0] = 1 / cosine(u[0]) ** 2
+    for k in range(1, len(u)):
+        v[k] = _over(_tail(du, w, k), k)
+        square = _dot(v[: k + 1], v[k::-1])
+        w[k] = square if sign > 0 else -square
+    return v
+
+
+def tan(u: Series) -> Series:
+    """Solves v' = (1 + v**2) u'."""
+    return _tangent(u, np.tan, np.cos, 1)
+
+
+def tanh(u: Series) -> Series:
+    """Solves v' = (1 - v**2) u'."""
+    return _tangent(u, np.tanh, np.cosh, -1)
+
+
+def _circle(u: Series, sign: int) -> Series:
+    """sign (1 - u**2), its factors kept apart so that nothing cancels near its zeros."""
+    return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
+
+
+def _inside(u: Series, operation: str) -> None:
+    _demand(u, lambda x: ~(abs(x) >= 1), operation, "lie inside (-1, 1)")
+
+
+def arcsin(u: Series) -> Series:
+    """Solves v' = u' / sqrt(1 - u**2)."""
+    _inside(u, "numpy.arcsin")
+    return _integral(divide(_weighted(u), sqrt(_circle(u, 1))), of(np.arcsin, u[0]))
+
+
+def arccos(u: Series) -> Series:
+    """pi/2 - arcsin(u)."""
+    _inside(u, "numpy.arccos")
+    slope = divide(_weighted(u), sqrt(_circle(u, 1)))
+    return _integral([-x for x in slope] if isinstance(u, list) else -slope, of(np.arccos, u[0]))
+
+
+def arctan(u: Series) -> Series:
+    """Solves v' = u' / (1 + u**2)."""
+    return _integral(divide(_weighted(u), _shifted(square(u), 1)), of(np.arctan, u[0]))
+
+
+def arcsinh(u: Series) -> Series:
+    """Solves v' = u' / sqrt(1 + u**2)."""
+    return _integral(divide(_weighted(u), sqrt(_shifted(square(u), 1))), of(np.arcsinh, u[0]))
+
+
+def arccosh(u: Series) -> Series:
+    """Solves v' = u' / sqrt(u**2 - 1)."""
+    _demand(u, lambda x: ~(x <= 1), "numpy.arccosh", "be above 1")
+    return _integral(divide(_weighted(u), sqrt(_circle(u, -1))), of(np.arccosh, u[0]))
+
+
+def arctanh(u: Series) -> Series:
+    """Solves v' = u' / (1 - u**2)."""
+    _inside(u, "numpy.arctanh")
+    return _integral(divide(_weighted(u), _circle(u, 1)), of(np.arctanh, u[0]))
+
+
+# --- powers and roots -------------------------------------------------------------------------------------
+
+
+def sqrt(u: Series) -> Series:
+    """u**(1/2)."""
+    _demand(u, lambda x: ~(x <= 0), "numpy.sqrt", "be positive")
+    if not isinstance(u, list):
+        return _power(u, 0.5, np.sqrt(u[0]))
+    out = [of(np.sqrt, u[0]), *u[1:]]  # by v v = u, since v_0 / u_0 has a wider range than 1 / v_0
+    for k in range(1, len(u)):
+        out[k] = _over(u[k] - _dot(out[1:k], out[k - 1 : 0 : -1]), 2.0 * out[0])
+    return out
+
+
+def cbrt(u: Series) -> Series:
+    """u**(1/3), for negative u too."""
+    _demand(u, lambda x: x != 0, "numpy.cbrt", "not be 0")
+    return _power(u, as_ends(1.0) / 3.0 if isinstance(u, list) else 1 / 3, of(np.cbrt, u[0]))
+
+
+def absolute(u: Series) -> Series:
+    """The branch of +-u that is positive; over an interval with zero inside it has the slopes of both, and no more."""
+    _demand(u, lambda x: x != 0, "numpy.absolute", "not be 0")
+    if not isinstance(u, list):
+        return np.asarray(np.sign(u[0]) * u)
+    x = u[0]
+    decided = (x.lo > 0.0) | (x.hi < 0.0)
+    sign = Ends(np.where(x.lo > 0.0, 1.0, -1.0), np.where(x.hi < 0.0, -1.0, 1.0))
+    return [of(np.absolute, x), sign, *(thin(np.where(decided, 0.0, np.nan)) for _ in u[2:])][: len(u)]
+
+
+def square(u: Series) -> Series:
+    """u**2."""
+    return power(u, 2) if isinstance(u, list) else multiply(u, u)
+
+
+def reciprocal(u: Series) -> Series:
+    """1 / u."""
+    _demand(u, lambda x: x != 0, "numpy.reciprocal", "not be 0")
+    return power(u, -1) if isinstance(u, list) else divide(np.ones((1,) * u.ndim), u)
+
+
+def power(u: Series, r: float) -> Series:
+    """u**r; whole r allow a leading coefficient <= 0, negative ones no 0."""
+    if r != int(r):
+        _demand(u, lambda x: ~(x <= 0), "numpy.power", "be positive for a fractional power")
+        return _power(u, r, power_range(u[0], r) if isinstance(u, list) else u[0] ** r)
+    n = int(r)
+    if isinstance(u, list):  # of x + s
+        counts = [comb(n, k) if n >= 0 else (-1) ** k * comb(k - n - 1, k) for k in range(len(u))]
+        factors = [float(count) if abs(count) <= 2**53 else near(float(count)) for count in counts]
+        return [_dot([factor], [u[0] ** (n - k)]) for k, factor in enumerate(factors)]
+    return _whole_power(u, n)
+
+
+def _whole_power(u: Array, n: int) -> Array:
+    """By repeated squaring: exact for polynomials, with no condition on the leading coefficient."""
+    if n < 0:
+        demand(u[0] != 0, "numpy.power", "a negative power of a leading coefficient 0")
+        return np.asarray(reciprocal(_whole_power(u, -n)))
+    if n == 0:
+        return extended(np.ones((1, *u.shape[1:])), len(u))
+    if n == 1:
+        return u.copy()
+    half = _whole_power(u, n // 2)
+    return np.asarray(multiply(multiply(half, half), u) if n % 2 else multiply(half, half))
+
+
+def _power(u: Series, r: Any, v0: Any) -> Series:
+    """Solves u v' = r v u'."""
+    if isinstance(u, list):  # of x + s
+        out: Series = [v0]
+        for k in range(1, len(u)):
+            out.append(out[k - 1] * (as_ends(r) - (k - 1.0)) / (float(k) * u[0]))
+        return out
+    out = np.empty((len(u), *v0.shape))
+    out[0] = v0
+    orders = np.arange(1.0, len(u)).reshape(-1, *(1,) * v0.ndim)
+    for k in range(1, len(u)):
+        weights = (r + 1) * (orders[:k] / k) - 1
+        out[k] = np.einsum("j...,j...->...", weights * u[1 : k + 1], out[k - 1 :: -1]) / u[0]
+    return out
+
+
+ELEMENTARY: dict[np.ufunc, Rule] = {
+    getattr(np, rule.__name__): rule
+    for rule in (
+        *(absolute, square, sqrt, cbrt, reciprocal, exp, expm1, exp2, log, log1p, log2, log10),
+        *(sin, cos, tan, arcsin, arccos, arctan, sinh, cosh, tanh, arcsinh, arccosh, arctanh),
+    )
+}
+"""Functions of one argument, by numpy's."""
