@@ -28,8 +28,8 @@ from continuation.certificate.verify import verified
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsPieces
-from continuation.numbers.ends import Mask
 from continuation.metric import Automatic, Metric, norm
+from continuation.numbers.ends import Mask
 from continuation.path import Path, Step
 from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize

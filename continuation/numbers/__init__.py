@@ -1,8 +1,8 @@
 """Numbers or intervals, times a truncated algebra: arrays on which functions in plain numpy give series and ranges.
 
 A ring (floats, or ends of intervals that are rounded outward) and an algebra (Taylor series along one direction, first
-derivatives in many, either beside one direction more) make an array that numpy accepts. There is one dispatch of numpy's
-functions for all of them; `continuation.jets` and `continuation.intervals` are what users call.
+derivatives in many, either beside one direction more) make an array that numpy accepts. One dispatch of numpy's
+functions serves all of them. Users call `continuation.jets` and `continuation.intervals`.
 """
 
 from continuation.numbers.array import Interval, Jet

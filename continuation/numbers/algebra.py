@@ -1,8 +1,8 @@
 """Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d, whose products beyond some order are zero.
 
 One direction to high order (`Taylor`), many to first order (`Gradient`), or either one beside one direction more
-(`Beside`). All keep coefficients along the leading axis, so everything linear is shared. They differ in products, and in
-what makes f(c_0 + d) = sum_k f_k d^k of the Taylor coefficients f_k of a function f at c_0.
+(`Beside`). All keep coefficients along the leading axis, so everything linear is shared. They differ in products, and
+so in f(c_0 + d) = sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.numbers import series
-from continuation.numbers.ends import Ends, as_ends, moved
+from continuation.numbers.ends import Ends, moved, thin
 
 Store: TypeAlias = Any
 """Coefficients, an array or `Ends` of shape (L, ...); L = 1 is a constant."""
@@ -48,7 +48,7 @@ class Taylor:
 
     def degrees(self, length: int) -> Array:
         """One after the other."""
-        return np.arange(length)
+        return np.arange(float(length))
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
         """The Cauchy product."""
@@ -84,7 +84,7 @@ class Gradient:
 
     def degrees(self, length: int) -> Array:
         """One, of all but the first."""
-        return np.minimum(np.arange(length), 1)
+        return np.minimum(np.arange(float(length)), 1.0)
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
         """The product rule."""
@@ -159,7 +159,7 @@ def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: 
 
 
 def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
-    """a / b, of constants too."""
+    """A / b, of constants too."""
     if not isinstance(b, Ends):
         series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
     return a / b if len(b) == 1 else algebra.quotient(lengthened(a, len(b)), b)
@@ -172,12 +172,14 @@ def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
         return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
     if isinstance(algebra, Taylor):
         return rule(a)
-    return _at(algebra, rule(np.stack([a[0], np.ones_like(a[0]), *[np.zeros_like(a[0])] * (order - 1)][: order + 1])), a)
+    return _at(
+        algebra, rule(np.stack([a[0], np.ones_like(a[0]), *[np.zeros_like(a[0])] * (order - 1)][: order + 1])), a
+    )
 
 
 def _ranges(rule: series.Rule, argument: list[Any]) -> list[Ends]:
     """Taylor coefficients over a box: none where the function has no value, though its derivatives have a formula."""
-    f = [as_ends(c) for c in rule(argument)]
+    f = [c if isinstance(c, Ends) else thin(np.full(argument[0].shape, c)) for c in rule(argument)]
     told = ~(np.isnan(f[0].lo) | np.isnan(f[0].hi))
     return f if told.all() else [f[0], *(c.where(told) for c in f[1:])]
 

@@ -36,7 +36,8 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
     c[0] = x0
     if order:
         c[1] = _numbers(direction, "direction")
-    return wrap(c, TAYLOR)
+    line: Jet = wrap(c, TAYLOR)
+    return line
 
 
 def evaluate(jet: Jet, s: Any) -> Array:
@@ -79,7 +80,7 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
         Where `f` has no Taylor series.
     """
     x = variable(x0, direction, order)
-    return _image(f, x)
+    return np.asarray(_image(f, x))
 
 
 def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import reduce
 from string import ascii_letters
 from typing import Any
 
@@ -13,7 +12,7 @@ from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
 from continuation.arrays import Array, clipped
 from continuation.numbers.algebra import product
 from continuation.numbers.ends import added
-from continuation.numbers.truncated import Truncated, common, gather, joined, wrap
+from continuation.numbers.truncated import Truncated, common, gather, joined, parts_of, wrap
 from continuation.numbers.ufuncs import sums_of_products
 
 # --- reductions -------------------------------------------------------------------------------------------
@@ -66,10 +65,10 @@ def _cumsum(a: Any, axis: Any = None) -> Any:
 
 def _diff(a: Any, n: int = 1, axis: int = -1) -> Any:
     a = gather(a)
-    before = (slice(None),) * normalize_axis_index(axis, a.ndim)
+    before, c = (slice(None),) * (normalize_axis_index(axis, a.ndim) + a.OWN), a.c
     for _ in range(n):
-        a = a[(*before, slice(1, None))] - a[(*before, slice(None, -1))]
-    return a
+        c = c[(*before, slice(1, None))] - c[(*before, slice(None, -1))]
+    return wrap(c, a.algebra)
 
 
 def _bincount(x: Any, weights: Any, minlength: int = 0) -> Any:
@@ -123,7 +122,9 @@ def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
     part, total = parts[0], arrays[0]
     for k, (other, array) in enumerate(zip(parts[1:], arrays[1:]), 2):
         later = output + "".join(parts[k:])
-        both = "..." * ("..." in part + other) + "".join(x for x in dict.fromkeys(part + other) if x in later.replace(".", ""))
+        both = "..." * ("..." in part + other) + "".join(
+            x for x in dict.fromkeys(part + other) if x in later.replace(".", "")
+        )
         kept = both if k < len(parts) else output
         total, part = _contracted(f"{own}{part},{own}{other}->{own}{kept}", total, array), kept
     if len(parts) == 1:
@@ -140,33 +141,27 @@ def _contracted(spec: str, a: Any, b: Any) -> Any:
 # --- assembly ---------------------------------------------------------------------------------------------
 
 
-def _parts(arrays: Any) -> list[Any]:
-    parts = [gather(x) for x in arrays]
-    like = next(x for x in parts if isinstance(x, Truncated))
-    return [like.lifted(x) for x in parts]
-
-
 def _concatenate(arrays: Any, axis: int | None = 0) -> Any:
-    parts = [x.ravel() for x in _parts(arrays)] if axis is None else _parts(arrays)
+    parts = [x.ravel() for x in parts_of(arrays)] if axis is None else parts_of(arrays)
     along = normalize_axis_index(axis or 0, parts[0].ndim)
     return joined(lambda arrays, own: np.concatenate(arrays, axis=along + own), parts)
 
 
 def _stack(arrays: Any, axis: int = 0) -> Any:
-    parts = _parts(arrays)
+    parts = parts_of(arrays)
     along = normalize_axis_index(axis, parts[0].ndim + 1)
     return joined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
 
 
 def _hstack(tup: Any) -> Any:
-    parts = [np.atleast_1d(x) for x in _parts(tup)]
+    parts = [np.atleast_1d(x) for x in parts_of(tup)]
     return _concatenate(parts, 0 if parts[0].ndim == 1 else 1)
 
 
 def _where(condition: Any, x: Any, y: Any) -> Any:
     if isinstance(condition, Truncated):
         raise condition.unknown("numpy.where with such an array for a condition (compare it first)")
-    condition, parts = np.asarray(condition), _parts([x, y])
+    condition, parts = np.asarray(condition), parts_of([x, y])
     ndim = max(condition.ndim, *(part.ndim for part in parts))
     parts = [part.reshape((1,) * (ndim - part.ndim) + part.shape) for part in parts]
     return joined(lambda arrays, own: np.where(condition, *arrays), parts)
@@ -238,7 +233,9 @@ def _pad(array: Any, pad_width: Any, mode: str = "constant", **keywords: Any) ->
         raise array.unknown(f"numpy.pad with mode={mode!r}")
     values = keywords.pop("constant_values", 0)
     out = _moved(np.pad)(array, pad_width, mode, **keywords)
-    return out if np.all(np.equal(values, 0)) else out + np.pad(np.zeros(array.shape), pad_width, constant_values=values)
+    return (
+        out if np.all(np.equal(values, 0)) else out + np.pad(np.zeros(array.shape), pad_width, constant_values=values)
+    )
 
 
 def _split(ary: Any, indices_or_sections: Any, axis: int = 0) -> list[Any]:
@@ -266,8 +263,8 @@ RULES: dict[Any, Callable[..., Any]] = {
     np.concatenate: _concatenate,
     np.stack: _stack,
     np.hstack: _hstack,
-    np.vstack: lambda tup: _concatenate([np.atleast_2d(x) for x in _parts(tup)]),
-    np.column_stack: lambda tup: _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in _parts(tup)], 1),
+    np.vstack: lambda tup: _concatenate([np.atleast_2d(x) for x in parts_of(tup)]),
+    np.column_stack: lambda tup: _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in parts_of(tup)], 1),
     np.append: lambda arr, values, axis=None: _concatenate([arr, values], axis),
     np.where: _where,
     np.clip: clipped,

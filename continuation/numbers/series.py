@@ -108,7 +108,10 @@ def _tail(p: Series, q: Series, k: int) -> Any:
 
 
 def _over(a: Any, b: Any) -> Any:
-    return a if (type(a) is float and a == 0.0) or (type(b) is int and b == 1) else a / b
+    """A / b; 0 / b is 0, and x / 2 costs intervals less as a product, which is the same."""
+    if type(a) is float and a == 0.0:
+        return a
+    return a if type(b) is int and b == 1 else a * 0.5 if type(b) is int and b == 2 else a / b
 
 
 # --- helpers of the recurrences ---------------------------------------------------------------------------
@@ -263,7 +266,7 @@ def tanh(u: Series) -> Series:
 
 
 def _circle(u: Series, sign: int) -> Series:
-    """sign (1 - u**2), its factors kept apart so that nothing cancels near its zeros."""
+    """Sign (1 - u**2), its factors kept apart so that nothing cancels near its zeros."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 
@@ -315,8 +318,9 @@ def sqrt(u: Series) -> Series:
     if not isinstance(u, list):
         return _power(u, 0.5, np.sqrt(u[0]))
     out = [of(np.sqrt, u[0]), *u[1:]]  # by v v = u, since v_0 / u_0 has a wider range than 1 / v_0
+    twice = 2.0 * out[0]
     for k in range(1, len(u)):
-        out[k] = _over(u[k] - _dot(out[1:k], out[k - 1 : 0 : -1]), 2.0 * out[0])
+        out[k] = _over(u[k] - _dot(out[1:k], out[k - 1 : 0 : -1]), twice)
     return out
 
 

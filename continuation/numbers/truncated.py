@@ -18,6 +18,7 @@ from continuation.arrays import Array, asked_by_sparse
 from continuation.numbers import ufuncs
 from continuation.numbers.algebra import Algebra, Store, lengthened
 from continuation.numbers.ends import Ends, moved, sparse_product
+from continuation.numbers.series import ELEMENTARY
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {}
 """Rules by numpy function. The package fills it from `functions`, whose rules are built on `Truncated`."""
@@ -86,21 +87,21 @@ class Truncated:
     @property
     def dtype(self) -> np.dtype[np.float64]:
         """That of the coefficients."""
-        return np.dtype(float)
+        return np.dtype(np.float64)
 
     def __bool__(self) -> bool:
         return bool(self != 0.0)
 
     def __float__(self) -> float:
         raise TypeError(
-            f"{self.NAME} cannot become a float, which would drop its {self.LOST}: for assignment into a float array use "
-            "np.stack, np.concatenate or an array made by np.zeros_like(y); for math.* use the numpy function"
+            f"{self.NAME} cannot become a float, which would drop its {self.LOST}: for assignment into a float array "
+            "use np.stack, np.concatenate or an array made by np.zeros_like(y); for math.* use the numpy function"
         )
 
     def __getattr__(self, name: str) -> Any:
         # numpy's loops over object arrays call a method of the function's name on each entry.
         ufunc = getattr(np, name, None)
-        if ufunc not in ufuncs.ELEMENTARY:
+        if ufunc not in ELEMENTARY:
             raise AttributeError(f"{self.WHO} do not know the attribute {name!r} of arrays")
         return lambda: self._call(ufunc, (self,))
 
@@ -119,8 +120,8 @@ class Truncated:
             return result
         if not isinstance(out, Truncated):
             raise TypeError(
-                f"{name} cannot write {self.NAME} into a plain array, which would drop its {self.LOST}; write a = a + b "
-                "instead of a += b, or begin with np.zeros_like(y)"
+                f"{name} cannot write {self.NAME} into a plain array, which would drop its {self.LOST}; write "
+                "a = a + b instead of a += b, or begin with np.zeros_like(y)"
             )
         out[...] = result
         return out
@@ -238,7 +239,7 @@ class Truncated:
         x : array_like
             Numbers, arrays of this kind, or both in lists.
         """
-        x = gather(x, self.ONE)
+        x = x if isinstance(x, Truncated) else gather(x, self.ONE)
         return x if isinstance(x, Truncated) else wrap(self.constant(x), self.algebra)
 
     @staticmethod
@@ -257,7 +258,9 @@ class Truncated:
         operands = [x if type(x) is float else gather(x, self.ONE) for x in inputs]
         algebra = common([x for x in operands if isinstance(x, Truncated)])
         stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
-        with np.errstate(all="ignore"):  # overflow shows as inf, as in any array; where no series exists, demand() raises
+        with np.errstate(
+            all="ignore"
+        ):  # overflow shows as inf, as in any array; where no series exists, demand() raises
             if ufunc in ufuncs.UNARY:
                 return wrap(ufuncs.UNARY[ufunc](algebra, stores[0]), algebra)
             if ufunc in ufuncs.BINARY:
@@ -280,7 +283,7 @@ class Truncated:
 
 
 class Entries:
-    """What arrays with axes have. Those without are no sequences, so that np.array([y[0], ...]) holds them as entries."""
+    """What arrays with axes have. Scalars are no sequences, so that np.array([y[0], ...]) holds them as entries."""
 
     __slots__ = ()
 
@@ -289,7 +292,8 @@ class Entries:
             return np.array(None, dtype=object)  # "no" in scipy's terms: Python goes on to `__rmatmul__`
         raise TypeError(
             f"{self.NAME} cannot become a plain array, which would drop its {self.LOST}: leave out numpy.asarray, use "
-            "np.stack for np.array([...]), np.zeros_like(y) to assign into, and functions of numpy alone; or give a jacobian"
+            "np.stack for np.array([...]), np.zeros_like(y) to assign into, and functions of numpy alone; or give a "
+            "jacobian"
         )
 
     def __bool__(self: Any) -> bool:
@@ -302,7 +306,10 @@ class Entries:
         return (self[i] for i in range(len(self)))
 
     def __getitem__(self: Any, key: Any) -> Any:
-        part = self.moved(lambda x: _own_first(_own_last(x, self.OWN)[_behind(key, self.OWN)], self.OWN))
+        if isinstance(key, int | slice):
+            part = self.moved(operator.itemgetter((*(slice(None),) * self.OWN, key)))
+        else:
+            part = self.moved(lambda x: _own_first(_own_last(x, self.OWN)[_behind(key, self.OWN)], self.OWN))
         return part if part.ndim else part.copy()  # a scalar does not change with the array
 
     def __setitem__(self: Any, key: Any, value: Any) -> None:
@@ -326,7 +333,7 @@ KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
 
 def wrap(c: Store, algebra: Algebra) -> Any:
     """The array with these coefficients, not copied."""
-    scalar, array = KINDS[Ends if isinstance(c, Ends) else np.ndarray]
+    scalar, array = KINDS[type(c)]
     made: Truncated = object.__new__(scalar if c.ndim == scalar.OWN else array)
     made.c, made.algebra = c, algebra
     return made
@@ -339,7 +346,7 @@ def gather(x: Any, one: str = "an array of series") -> Any:
     if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
         parts = [gather(part, one) for part in x]
         if any(isinstance(part, Truncated) for part in parts):
-            return joined(lambda arrays, own: np.stack(arrays, own), parts)
+            return joined(lambda arrays, own: np.stack(arrays, own), parts_of(parts))
         x = parts
     elif isinstance(x, np.ndarray) and x.dtype == object and isinstance(x[()], Truncated):
         return x[()]
@@ -351,12 +358,13 @@ def gather(x: Any, one: str = "an array of series") -> Any:
 
 def common(operands: Any) -> Algebra:
     """The algebra of those that are no constants, which must agree."""
-    first, *others = [x for x in operands if len(x.c) > 1] or operands[:1]
+    first, *others = operands if len(operands) == 1 else [x for x in operands if len(x.c) > 1] or operands[:1]
     for x in others:
         if type(x.c) is not type(first.c) or len(x.c) != len(first.c) or x.algebra != first.algebra:
             orders = f"orders {len(first.c) - 1} and {len(x.c) - 1}"
             raise ValueError(f"{first.WHO} of different kinds meet {x.WHO}: {orders}")
-    return first.algebra
+    algebra: Algebra = first.algebra
+    return algebra
 
 
 def alike(parts: Any) -> list[Store]:
@@ -375,9 +383,15 @@ def alike(parts: Any) -> list[Store]:
 
 def joined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
     """Arrays put together: `join(arrays, own)` of arrays with so many axes of their own in front."""
+    own = parts[0].OWN
+    return wrap(moved(lambda *arrays: join(list(arrays), own), *alike(parts)), common(parts))
+
+
+def parts_of(arrays: Any) -> list[Any]:
+    """Arrays of which one is of a kind here, all of that kind."""
+    parts = [gather(x) for x in arrays]
     like = next(x for x in parts if isinstance(x, Truncated))
-    parts = [like.lifted(x) for x in parts]
-    return wrap(moved(lambda *arrays: join(list(arrays), like.OWN), *alike(parts)), common(parts))
+    return [like.lifted(x) for x in parts]
 
 
 def _own_last(x: Array, own: int) -> Array:

@@ -40,7 +40,9 @@ def aligned(*stores: Store) -> list[Store]:
 
 def spread(c: Store, shape: tuple[int, ...]) -> Store:
     """Coefficients in a larger shape behind the leading axis, in memory of their own."""
-    return c.copy() if c.shape[1:] == shape else moved(lambda x: np.array(np.broadcast_to(x, (len(x), *shape))), c).copy()
+    return (
+        c.copy() if c.shape[1:] == shape else moved(lambda x: np.array(np.broadcast_to(x, (len(x), *shape))), c).copy()
+    )
 
 
 def _add(algebra: Algebra, a: Store, b: Store) -> Store:
@@ -122,7 +124,8 @@ def _angle(algebra: Algebra, a: Ends, b: Ends) -> Ends:
     ahead, beside = (compose(algebra, series.arctan, quotient(algebra, *x)) for x in ((a, b), (b, a)))
     above, right, quarter = a.lo[:1] > 0.0, b.lo[:1] > 0.0, PI * 0.5
     turned = Ends(np.where(above, quarter.lo, -quarter.hi), np.where(above, quarter.hi, -quarter.lo))
-    return moved(lambda x, y: np.where(right, x, y), ahead, _add(algebra, -beside, turned))
+    aside = _add(algebra, -beside, turned)
+    return Ends(np.where(right, ahead.lo, aside.lo), np.where(right, ahead.hi, aside.hi))
 
 
 def _extremum(name: str, sign: int) -> Binary:
@@ -169,11 +172,15 @@ def sums_of_products(function: Callable[[Array, Array], Array]) -> Callable[[Any
     return lambda a, b: bilinear(function, a, b) if isinstance(a, Ends) else function(a, b)
 
 
+def _composed(rule: series.Rule, algebra: Algebra, a: Store) -> Store:
+    return compose(algebra, rule, a)
+
+
 UNARY: dict[np.ufunc, Callable[[Algebra, Store], Store]] = {
     np.positive: lambda algebra, a: a.copy(),
     np.negative: lambda algebra, a: -a,
-    np.fabs: lambda algebra, a: compose(algebra, series.absolute, a),
-    **{f: lambda algebra, a, _rule=rule: compose(algebra, _rule, a) for f, rule in ELEMENTARY.items()},
+    np.fabs: partial(_composed, series.absolute),
+    **{f: partial(_composed, rule) for f, rule in ELEMENTARY.items()},
 }
 
 BINARY: dict[np.ufunc, Binary] = {

@@ -27,7 +27,8 @@ FUNCTIONS = {
     "assembly": lambda y: np.concatenate([y[:1], np.append(y[1:3], y[3])]) + np.hstack([y[2:], [1.0, 2.0]]),
     "assignment": lambda y: assigned(y),
     "a list of entries": lambda y: np.array([y[0] * y[1], np.sin(y[2]), 1.0, y[3]]) * 2.0,
-    "shape": lambda y: np.roll(y, 1).reshape(2, 2).T.ravel() + np.pad(y[1:3], 1, constant_values=2.0) + np.where(X > 0.5, y, -y),
+    "shape": lambda y: np.roll(y, 1).reshape(2, 2).T.ravel() + np.pad(y[1:3], 1) + np.where(X > 0.5, y, -y),
+    "padding": lambda y: np.pad(y[1:3], 1, constant_values=2.0),
     "others": lambda y: np.clip(y, 0.4, 0.65) + np.split(y, 2)[0][0] + np.take(y, [3, 3, 0, 1]),
 }
 

@@ -88,7 +88,9 @@ OPERATIONS = {
     "einsum": (lambda m, x: np.einsum("ij,j->i", m, x) + np.einsum("ij, j", m, V) + np.einsum("ij->i", m), (M, X)),
     "einsum with dots": (lambda t, p: np.einsum("...ij,ki->...kj", t, p) + np.einsum("iij->j", t[:, :2]), (T, P)),
     "einsum of many": (
-        lambda m, x: np.einsum("ij,j,ik->k", m, x, A[:2]) + np.einsum("i,i,i", V, x, x) + np.einsum("...i,i,i->...i", m, x, V)[1],
+        lambda m, x: (
+            np.einsum("ij,j,ik->k", m, x, A[:2]) + np.einsum("i,i,i", V, x, x) + np.einsum("...i,i,i->...i", m, x, V)[1]
+        ),
         (M, X),
     ),
     "concatenate": (lambda x, y: np.concatenate([[0.0], x, V, y[:1]]), (X, Y)),
