@@ -84,7 +84,7 @@ class Gradient:
 
     def degrees(self, length: int) -> Array:
         """One, of all but the first."""
-        return np.minimum(np.arange(float(length)), 1.0)
+        return np.asarray(np.minimum(np.arange(float(length)), 1.0))
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
         """The product rule."""

@@ -10,6 +10,7 @@ are those of Griewank & Walther, "Evaluating Derivatives" (2nd ed., 2008), ch. 1
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import comb
 from typing import Any, TypeAlias
 
@@ -125,21 +126,25 @@ def _room(*series: Series) -> Series:
     return np.empty(np.broadcast_shapes(*(u.shape for u in series)))
 
 
+def _orders(u: Array) -> Array:
+    return np.arange(float(len(u))).reshape(-1, *(1,) * (u.ndim - 1))
+
+
 def _weighted(u: Series) -> Series:
     """The coefficients k u_k, of s u'(s)."""
+    return [0.0, *(k * x for k, x in enumerate(u[1:], 1))] if isinstance(u, list) else _orders(u) * u
+
+
+def _scaled(u: Series, factor: Any) -> Series:
+    """The series factor u."""
     if isinstance(u, list):
-        return [0.0, *(k * x for k, x in enumerate(u[1:], 1))]
-    return np.arange(float(len(u))).reshape(-1, *(1,) * (u.ndim - 1)) * u
+        return [_dot([factor], [x]) for x in u]
+    return u if type(factor) is float and factor == 1.0 else factor * u
 
 
-def _integral(weighted: Series, constant: Any) -> Series:
-    """The series v with s v'(s) = `weighted` and v(0) = `constant`."""
-    if isinstance(weighted, list):
-        return [constant, *(_over(x, k) for k, x in enumerate(weighted[1:], 1))]
-    orders = np.maximum(np.arange(float(len(weighted))), 1).reshape(-1, *(1,) * (weighted.ndim - 1))
-    out = weighted / orders
-    out[0] = constant
-    return out
+def _known(u: Series, constant: Ends) -> Any:
+    """A constant as an interval, or as the number that it is near to."""
+    return constant if isinstance(u, list) else float(constant.middle())
 
 
 def _shifted(u: Series, constant: float, sign: int = 1) -> Series:
@@ -154,59 +159,19 @@ def _shifted(u: Series, constant: float, sign: int = 1) -> Series:
 # --- elementary functions ---------------------------------------------------------------------------------
 
 
-def _exponential(u: Series, du: Series, value: Any) -> Series:
-    out = _room(u)
+def _exponential(u: Series, value: Any, rate: Any = 1.0) -> Series:
+    """Solves v' = rate v u'."""
+    du, out = _scaled(_weighted(u), rate), _room(u)
     out[0] = value
     for k in range(1, len(u)):
         out[k] = _over(_tail(du, out, k), k)
     return out
 
 
-def exp(u: Series) -> Series:
-    """Solves v' = v u'."""
-    return _exponential(u, _weighted(u), of(np.exp, u[0]))
-
-
-def expm1(u: Series) -> Series:
-    """exp(u) - 1, its constant without cancellation."""
-    out = exp(u)
+def _expm1(u: Series) -> Series:
+    out = _exponential(u, of(np.exp, u[0]))
     out[0] = of(np.expm1, u[0])
     return out
-
-
-def exp2(u: Series) -> Series:
-    """2**u."""
-    du = _weighted(u)
-    du = [x and x * LN2 for x in du] if isinstance(u, list) else du * np.log(2)
-    return _exponential(u, du, of(np.exp2, u[0]))
-
-
-def log(u: Series) -> Series:
-    """Solves v' = u' / u."""
-    _demand(u, lambda x: ~(x <= 0), "numpy.log", "be positive")
-    return _integral(divide(_weighted(u), u), of(np.log, u[0]))
-
-
-def log1p(u: Series) -> Series:
-    """log(1 + u), its constant without cancellation."""
-    _demand(u, lambda x: ~(x <= -1), "numpy.log1p", "be above -1")
-    return _integral(divide(_weighted(u), _shifted(u, 1)), of(np.log1p, u[0]))
-
-
-def _to_base(u: Series, function: np.ufunc, base: float, logarithm: Ends) -> Series:
-    if isinstance(u, list):
-        return [of(function, u[0]), *(x / logarithm for x in log(u)[1:])]
-    return log(u) / float(np.log(base))
-
-
-def log2(u: Series) -> Series:
-    """log(u) / log(2)."""
-    return _to_base(u, np.log2, 2, LN2)
-
-
-def log10(u: Series) -> Series:
-    """log(u) / log(10)."""
-    return _to_base(u, np.log10, 10, LN10)
 
 
 def _pair(u: Series, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[Series, Series]:
@@ -218,26 +183,6 @@ def _pair(u: Series, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[Serie
         slope = _over(_tail(du, v, k), k)
         w[k] = slope if sign > 0 else -slope
     return v, w
-
-
-def sin(u: Series) -> Series:
-    """Coupled with cos."""
-    return _pair(u, np.sin, np.cos, -1)[0]
-
-
-def cos(u: Series) -> Series:
-    """Coupled with sin."""
-    return _pair(u, np.sin, np.cos, -1)[1]
-
-
-def sinh(u: Series) -> Series:
-    """Coupled with cosh."""
-    return _pair(u, np.sinh, np.cosh, 1)[0]
-
-
-def cosh(u: Series) -> Series:
-    """Coupled with sinh."""
-    return _pair(u, np.sinh, np.cosh, 1)[1]
 
 
 def _tangent(u: Series, function: np.ufunc, cosine: np.ufunc, sign: int) -> Series:
@@ -255,58 +200,38 @@ def _tangent(u: Series, function: np.ufunc, cosine: np.ufunc, sign: int) -> Seri
     return v
 
 
-def tan(u: Series) -> Series:
-    """Solves v' = (1 + v**2) u'."""
-    return _tangent(u, np.tan, np.cos, 1)
-
-
-def tanh(u: Series) -> Series:
-    """Solves v' = (1 - v**2) u'."""
-    return _tangent(u, np.tanh, np.cosh, -1)
-
-
 def _circle(u: Series, sign: int) -> Series:
     """Sign (1 - u**2), its factors kept apart so that nothing cancels near its zeros."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 
-def _inside(u: Series, operation: str) -> None:
-    _demand(u, lambda x: ~(abs(x) >= 1), operation, "lie inside (-1, 1)")
+Inverse: TypeAlias = tuple[Callable[[Series], Series], Callable[[Array], Any], str]
+
+BY_SLOPE: dict[np.ufunc, Inverse] = {
+    np.log: (lambda u: u, lambda x: x <= 0, "be positive"),
+    np.log1p: (lambda u: _shifted(u, 1), lambda x: x <= -1, "be above -1"),
+    np.log2: (lambda u: _scaled(u, _known(u, LN2)), lambda x: x <= 0, "be positive"),
+    np.log10: (lambda u: _scaled(u, _known(u, LN10)), lambda x: x <= 0, "be positive"),
+    np.arcsin: (lambda u: sqrt(_circle(u, 1)), lambda x: abs(x) >= 1, "lie inside (-1, 1)"),
+    np.arccos: (lambda u: _scaled(sqrt(_circle(u, 1)), -1.0), lambda x: abs(x) >= 1, "lie inside (-1, 1)"),
+    np.arctan: (lambda u: _shifted(square(u), 1), lambda x: False, ""),
+    np.arcsinh: (lambda u: sqrt(_shifted(square(u), 1)), lambda x: False, ""),
+    np.arccosh: (lambda u: sqrt(_circle(u, -1)), lambda x: x <= 1, "be above 1"),
+    np.arctanh: (lambda u: _circle(u, 1), lambda x: abs(x) >= 1, "lie inside (-1, 1)"),
+}
+"""Functions with the derivative 1 / D(u): D, where there is none, and what the argument must do instead."""
 
 
-def arcsin(u: Series) -> Series:
-    """Solves v' = u' / sqrt(1 - u**2)."""
-    _inside(u, "numpy.arcsin")
-    return _integral(divide(_weighted(u), sqrt(_circle(u, 1))), of(np.arcsin, u[0]))
-
-
-def arccos(u: Series) -> Series:
-    """pi/2 - arcsin(u)."""
-    _inside(u, "numpy.arccos")
-    slope = divide(_weighted(u), sqrt(_circle(u, 1)))
-    return _integral([-x for x in slope] if isinstance(u, list) else -slope, of(np.arccos, u[0]))
-
-
-def arctan(u: Series) -> Series:
-    """Solves v' = u' / (1 + u**2)."""
-    return _integral(divide(_weighted(u), _shifted(square(u), 1)), of(np.arctan, u[0]))
-
-
-def arcsinh(u: Series) -> Series:
-    """Solves v' = u' / sqrt(1 + u**2)."""
-    return _integral(divide(_weighted(u), sqrt(_shifted(square(u), 1))), of(np.arcsinh, u[0]))
-
-
-def arccosh(u: Series) -> Series:
-    """Solves v' = u' / sqrt(u**2 - 1)."""
-    _demand(u, lambda x: ~(x <= 1), "numpy.arccosh", "be above 1")
-    return _integral(divide(_weighted(u), sqrt(_circle(u, -1))), of(np.arccosh, u[0]))
-
-
-def arctanh(u: Series) -> Series:
-    """Solves v' = u' / (1 - u**2)."""
-    _inside(u, "numpy.arctanh")
-    return _integral(divide(_weighted(u), _circle(u, 1)), of(np.arctanh, u[0]))
+def _by_slope(function: np.ufunc, u: Series) -> Series:
+    """Solves v' = u' / D(u)."""
+    divisor, outside, need = BY_SLOPE[function]
+    _demand(u, lambda x: ~np.asarray(outside(x)), f"numpy.{function.__name__}", need)
+    slope = divide(_weighted(u), divisor(u))
+    if isinstance(u, list):
+        return [of(function, u[0]), *(_over(x, k) for k, x in enumerate(slope[1:], 1))]
+    out = slope / np.maximum(_orders(u), 1)
+    out[0] = function(u[0])
+    return np.asarray(out)
 
 
 # --- powers and roots -------------------------------------------------------------------------------------
@@ -395,10 +320,20 @@ def _power(u: Series, r: Any, v0: Any) -> Series:
 
 
 ELEMENTARY: dict[np.ufunc, Rule] = {
-    getattr(np, rule.__name__): rule
-    for rule in (
-        *(absolute, square, sqrt, cbrt, reciprocal, exp, expm1, exp2, log, log1p, log2, log10),
-        *(sin, cos, tan, arcsin, arccos, arctan, sinh, cosh, tanh, arcsinh, arccosh, arctanh),
-    )
+    np.absolute: absolute,
+    np.square: square,
+    np.sqrt: sqrt,
+    np.cbrt: cbrt,
+    np.reciprocal: reciprocal,
+    np.exp: lambda u: _exponential(u, of(np.exp, u[0])),
+    np.exp2: lambda u: _exponential(u, of(np.exp2, u[0]), _known(u, LN2)),
+    np.expm1: _expm1,
+    np.sin: lambda u: _pair(u, np.sin, np.cos, -1)[0],
+    np.cos: lambda u: _pair(u, np.sin, np.cos, -1)[1],
+    np.sinh: lambda u: _pair(u, np.sinh, np.cosh, 1)[0],
+    np.cosh: lambda u: _pair(u, np.sinh, np.cosh, 1)[1],
+    np.tan: lambda u: _tangent(u, np.tan, np.cos, 1),
+    np.tanh: lambda u: _tangent(u, np.tanh, np.cosh, -1),
+    **{function: partial(_by_slope, function) for function in BY_SLOPE},
 }
 """Functions of one argument, by numpy's."""

@@ -7,14 +7,13 @@ coefficients `c`, an array or `Ends`, and in the algebra; everything else is sha
 from __future__ import annotations
 
 import inspect
-import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
 from scipy.sparse import issparse
 
-from continuation.arrays import Array, asked_by_sparse
+from continuation.arrays import Array
 from continuation.numbers import ufuncs
 from continuation.numbers.algebra import Algebra, Store, lengthened
 from continuation.numbers.ends import Ends, moved, sparse_product
@@ -70,14 +69,12 @@ class Truncated:
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the array."""
-        shape: tuple[int, ...] = self.c.shape[self.OWN :]
-        return shape
+        return tuple(self.c.shape[self.OWN :])
 
     @property
     def ndim(self) -> int:
         """Number of axes."""
-        ndim: int = self.c.ndim - self.OWN
-        return ndim
+        return int(self.c.ndim - self.OWN)
 
     @property
     def size(self) -> int:
@@ -267,7 +264,7 @@ class Truncated:
                 return wrap(ufuncs.BINARY[ufunc](algebra, *ufuncs.aligned(*stores)), algebra)
             if ufunc is np.matmul:
                 return wrap(ufuncs.matmul(algebra, *stores), algebra)
-            if ufunc in ufuncs.SURELY:
+            if ufunc in ufuncs.OPPOSITE:
                 return ufuncs.compared(ufunc, *ufuncs.aligned(*stores))
             if ufunc in ufuncs.TESTS:
                 return ufuncs.TESTS[ufunc](*stores)
@@ -280,51 +277,6 @@ class Truncated:
             raise self.unknown(f"a sparse product with an array of {x.ndim} axes")
 
         return wrap(sparse_product(matrix, x.c), x.algebra)
-
-
-class Entries:
-    """What arrays with axes have. Scalars are no sequences, so that np.array([y[0], ...]) holds them as entries."""
-
-    __slots__ = ()
-
-    def __array__(self: Any, dtype: Any = None, copy: Any = None) -> Any:
-        if asked_by_sparse():
-            return np.array(None, dtype=object)  # "no" in scipy's terms: Python goes on to `__rmatmul__`
-        raise TypeError(
-            f"{self.NAME} cannot become a plain array, which would drop its {self.LOST}: leave out numpy.asarray, use "
-            "np.stack for np.array([...]), np.zeros_like(y) to assign into, and functions of numpy alone; or give a "
-            "jacobian"
-        )
-
-    def __bool__(self: Any) -> bool:
-        raise ValueError("the truth of an array is ambiguous; compare its entries")
-
-    def __len__(self: Any) -> int:
-        return int(self.shape[0])
-
-    def __iter__(self: Any) -> Iterator[Any]:
-        return (self[i] for i in range(len(self)))
-
-    def __getitem__(self: Any, key: Any) -> Any:
-        if isinstance(key, int | slice):
-            part = self.moved(operator.itemgetter((*(slice(None),) * self.OWN, key)))
-        else:
-            part = self.moved(lambda x: _own_first(_own_last(x, self.OWN)[_behind(key, self.OWN)], self.OWN))
-        return part if part.ndim else part.copy()  # a scalar does not change with the array
-
-    def __setitem__(self: Any, key: Any, value: Any) -> None:
-        value = self.lifted(value)
-        self.algebra = common((self, value))
-        mine, given = alike((self, value))
-        if isinstance(mine, Ends):
-            mine = mine.copy()  # both ends may be one array
-        part = _behind(key, self.OWN)
-
-        def write(mine: Array, given: Array) -> Array:
-            _own_last(mine, self.OWN)[part] = _own_last(given, self.OWN)
-            return mine
-
-        self.c = moved(write, mine, given)
 
 
 KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
@@ -392,20 +344,3 @@ def parts_of(arrays: Any) -> list[Any]:
     parts = [gather(x) for x in arrays]
     like = next(x for x in parts if isinstance(x, Truncated))
     return [like.lifted(x) for x in parts]
-
-
-def _own_last(x: Array, own: int) -> Array:
-    """The array's own axes behind the others, out of the way of any index."""
-    return x.transpose(*range(own, x.ndim), *range(own))
-
-
-def _own_first(x: Array, own: int) -> Array:
-    return x.transpose(*range(x.ndim - own, x.ndim), *range(x.ndim - own))
-
-
-def _behind(key: Any, own: int) -> tuple[Any, ...]:
-    """The index that leaves the last axes alone."""
-    key = key if isinstance(key, tuple) else (key,)
-    if not any(part is Ellipsis for part in key):
-        key = (*key, Ellipsis)
-    return (*key, *(slice(None),) * own)

@@ -87,11 +87,12 @@ def _exponents(b: Store) -> Array | None:
 
 
 def _variable_power(algebra: Algebra, a: Store, b: Store) -> Store:
+    exp, log = ELEMENTARY[np.exp], ELEMENTARY[np.log]
     if isinstance(a, Ends):
-        return compose(algebra, series.exp, product(algebra, operator.mul, compose(algebra, series.log, a), b))
+        return compose(algebra, exp, product(algebra, operator.mul, compose(algebra, log, a), b))
     series.demand(~(a[0] <= 0), "numpy.power", "a variable exponent needs a base with positive leading coefficient")
-    logarithm = compose(algebra, series.log, a) if len(a) > 1 else np.log(a)
-    out = compose(algebra, series.exp, product(algebra, operator.mul, logarithm, b))
+    logarithm = compose(algebra, log, a) if len(a) > 1 else np.log(a)
+    out = compose(algebra, exp, product(algebra, operator.mul, logarithm, b))
     out[0] = a[0] ** b[0]
     return out
 
@@ -114,14 +115,14 @@ def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
     # Turned by its leading angle, the point lies on the positive axis, where arctan of the slope is analytic.
     sine, cosine = a[:1] / size, b[:1] / size
     along, across = _add(algebra, cosine * b, sine * a), _add(algebra, cosine * a, -sine * b)
-    out = compose(algebra, series.arctan, quotient(algebra, across, along))
+    out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, across, along))
     out[0] = np.arctan2(a[0], b[0])
     return out
 
 
 def _angle(algebra: Algebra, a: Ends, b: Ends) -> Ends:
     """The angle of points (b, a), without value across the negative axis."""
-    ahead, beside = (compose(algebra, series.arctan, quotient(algebra, *x)) for x in ((a, b), (b, a)))
+    ahead, beside = (compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, *x)) for x in ((a, b), (b, a)))
     above, right, quarter = a.lo[:1] > 0.0, b.lo[:1] > 0.0, PI * 0.5
     turned = Ends(np.where(above, quarter.lo, -quarter.hi), np.where(above, quarter.hi, -quarter.lo))
     aside = _add(algebra, -beside, turned)
@@ -201,31 +202,24 @@ BINARY: dict[np.ufunc, Binary] = {
 # --- decided by the leading coefficients ------------------------------------------------------------------
 
 
-def _apart(a: Ends, b: Ends) -> Mask:
-    return (a.hi < b.lo) | (b.hi < a.lo)
+OPPOSITE: dict[np.ufunc, np.ufunc] = {np.less: np.greater_equal, np.greater: np.less_equal, np.equal: np.not_equal}
+OPPOSITE |= {other: one for one, other in OPPOSITE.items()}
+"""What holds where a comparison of two numbers does not."""
 
 
-def _same(a: Ends, b: Ends) -> Mask:
-    same: Mask = (a.lo == a.hi) & (b.lo == b.hi) & (a.lo == b.lo)
-    return same
-
-
-SURELY: dict[np.ufunc, tuple[Callable[[Ends, Ends], Mask], Callable[[Ends, Ends], Mask]]] = {
-    np.less: (lambda a, b: a.hi < b.lo, lambda a, b: b.hi <= a.lo),
-    np.less_equal: (lambda a, b: a.hi <= b.lo, lambda a, b: b.hi < a.lo),
-    np.greater: (lambda a, b: b.hi < a.lo, lambda a, b: a.hi <= b.lo),
-    np.greater_equal: (lambda a, b: b.hi <= a.lo, lambda a, b: a.hi < b.lo),
-    np.equal: (_same, _apart),
-    np.not_equal: (_apart, _same),
-}
-"""Where a comparison holds for all numbers of two intervals, and where for none."""
+def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
+    """Where a comparison holds for all numbers of two intervals: it does if it holds for their ends."""
+    if ufunc is np.not_equal:
+        return _surely(np.less, a, b) | _surely(np.greater, a, b)
+    holds: Mask = ufunc(a.lo, b.lo) & ufunc(a.lo, b.hi) & ufunc(a.hi, b.lo) & ufunc(a.hi, b.hi)
+    return holds
 
 
 def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
     """A comparison; UndecidedError unless it holds for all numbers of all boxes, or for none."""
     if not isinstance(a, Ends):
         return ufunc(a[0], b[0])
-    yes, no = (test(a[0], b[0]).all(axis=0) for test in SURELY[ufunc])
+    yes, no = (_surely(f, a[0], b[0]).all(axis=0) for f in (ufunc, OPPOSITE[ufunc]))
     if not (yes | no).all():
         raise UndecidedError("a comparison is not decided on a box: it holds for some of its points only")
     return yes
