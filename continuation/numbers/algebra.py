@@ -14,7 +14,6 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from attrs import frozen
 
-from continuation.arrays import Array
 from continuation.numbers import series
 from continuation.numbers.ends import Ends, moved, thin
 
@@ -25,7 +24,7 @@ Store: TypeAlias = Any
 class Algebra(Protocol):
     """What is done to coefficients."""
 
-    def degrees(self, length: int) -> Array:
+    def degrees(self, length: int) -> list[int]:
         """The power of d to which each of so many coefficients belongs."""
         ...
 
@@ -46,9 +45,9 @@ class Algebra(Protocol):
 class Taylor:
     """sum_k c_k s**k, truncated: the coefficients of one direction."""
 
-    def degrees(self, length: int) -> Array:
+    def degrees(self, length: int) -> list[int]:
         """One after the other."""
-        return np.arange(float(length))
+        return list(range(length))
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
         """The Cauchy product."""
@@ -82,9 +81,9 @@ class Taylor:
 class Gradient:
     """c_0 + sum_i c_i e_i with e_i e_j = 0: first derivatives in many directions at once."""
 
-    def degrees(self, length: int) -> Array:
+    def degrees(self, length: int) -> list[int]:
         """One, of all but the first."""
-        return np.asarray(np.minimum(np.arange(float(length)), 1.0))
+        return [0] + [1] * (length - 1)
 
     def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
         """The product rule."""
@@ -94,7 +93,7 @@ class Gradient:
 
     def quotient(self, a: Store, b: Store) -> Store:
         """The quotient rule."""
-        value = quotient(self, a[:1], b[:1])
+        value = a[:1] / b[:1]
         return joined(value, (a[1:] - value * b[1:]) / b[:1])
 
     def expansion(self, f: list[Any], a: Store) -> Store:
@@ -111,10 +110,10 @@ class Beside:
 
     inner: Algebra
 
-    def degrees(self, length: int) -> Array:
+    def degrees(self, length: int) -> list[int]:
         """One more with s."""
         inner = self.inner.degrees(length // 2)
-        return np.concatenate([inner, inner + 1])
+        return [*inner, *(degree + 1 for degree in inner)]
 
     def product(self, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
         """The product rule."""
@@ -167,7 +166,7 @@ def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
 
 def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
     """A function of one argument, given by its rule on truncated Taylor series."""
-    order = 0 if len(a) == 1 else int(algebra.degrees(len(a))[-1])
+    order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
     if isinstance(a, Ends):
         return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
     if isinstance(algebra, Taylor):

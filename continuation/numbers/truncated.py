@@ -252,12 +252,11 @@ class Truncated:
     def _call(self, ufunc: np.ufunc, inputs: tuple[Any, ...]) -> Any:
         if ufunc is np.matmul and any(issparse(x) for x in inputs):
             return self._sparse_product(*inputs)
-        operands = [x if type(x) is float else gather(x, self.ONE) for x in inputs]
+        operands = [x if isinstance(x, Truncated | float) else gather(x, self.ONE) for x in inputs]
         algebra = common([x for x in operands if isinstance(x, Truncated)])
         stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
-        with np.errstate(
-            all="ignore"
-        ):  # overflow shows as inf, as in any array; where no series exists, demand() raises
+        # Overflow shows as inf, as in any array; where no series exists, demand() raises.
+        with np.errstate(all="ignore"):
             if ufunc in ufuncs.UNARY:
                 return wrap(ufuncs.UNARY[ufunc](algebra, stores[0]), algebra)
             if ufunc in ufuncs.BINARY:

@@ -28,14 +28,16 @@ def own_axes(c: Store) -> int:
     return 2 if isinstance(c, Ends) else 1
 
 
-def aligned(*stores: Store) -> list[Store]:
-    """All with as many axes behind their own, as broadcasting wants them."""
-    own, most = own_axes(stores[0]), max(c.ndim for c in stores)
+def aligned(a: Store, b: Store) -> tuple[Store, Store]:
+    """Both with as many axes behind their own, as broadcasting wants them."""
+    if a.ndim == b.ndim:
+        return a, b
+    own, most = own_axes(a), max(a.ndim, b.ndim)
 
     def longer(x: Array) -> Array:
         return x.reshape(*x.shape[:own], *(1,) * (most - x.ndim), *x.shape[own:])
 
-    return [c if c.ndim == most else moved(longer, c) for c in stores]
+    return moved(longer, a), moved(longer, b)
 
 
 def spread(c: Store, shape: tuple[int, ...]) -> Store:
@@ -145,7 +147,7 @@ def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
     first, second = a.lo[:1] > b.hi[:1], b.lo[:1] > a.hi[:1]
     lo = np.where(first, a.lo, np.where(second, b.lo, np.minimum(a.lo, b.lo)))
     hi = np.where(first, a.hi, np.where(second, b.hi, np.maximum(a.hi, b.hi)))
-    bent = algebra.degrees(len(lo)) > 1
+    bent = np.array(algebra.degrees(len(lo))) > 1
     lo[bent], hi[bent] = (np.where(first | second, x[bent], np.nan) for x in (lo, hi))
     lo[:1] = np.maximum(a.lo[:1], b.lo[:1])
     return Ends(lo, hi)
