@@ -21,7 +21,6 @@ from continuation.certificate.links import Nodes
 from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
 from continuation.certificate.quadratic import ByProducts
-from continuation.certificate.second import confirmed
 from continuation.certificate.tails import NEXT_TO_END, Node, tail
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
@@ -110,17 +109,14 @@ def certify(path: Path, homotopy: Any) -> Proof:
     whole = lifted(homotopy, path)
     if isinstance(whole, Proof):
         return whole
-    proof, _ = _proved(*whole, None)
-    return proof.of_width(width)
+    return _proved(*whole, None).of_width(width)
 
 
-def _proved(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, list[tuple[Any, Cells]]]:
-    """A proof, with new cells or with these; and of which residual its cells are."""
+def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
+    """A proof, with new cells or with these."""
     if isinstance(homotopy, SupportsPieces):
-        proof, arcs = by_pieces(homotopy, path, cells, _smooth)
-        return proof, [(homotopy.piece(arc.signs).residual, arc.proof.cells) for arc in arcs]
-    proof, _ = _smooth(homotopy, path, cells)
-    return proof, [(homotopy.residual, proof.cells)]
+        return by_pieces(homotopy, path, cells, _smooth)
+    return _smooth(homotopy, path, cells)[0]
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engine]:
@@ -134,7 +130,7 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engi
     return verified(engine, cells, path, homotopy, gaps, (found, ends)), engine
 
 
-def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
+def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
     """Check a proof again, every condition, with the charts and radii that it has.
 
     Parameters
@@ -144,33 +140,15 @@ def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Pr
     path : Path
         What they are to prove.
     homotopy : Homotopy
-    second : bool
-        Whether python-flint is asked as well, tube by tube.
 
     Returns
     -------
     Proof
-
-    Raises
-    ------
-    ImportError
-        If it is to be asked and is not installed.
     """
-    width = path.u.shape[1]
     whole = lifted(homotopy, path, cells)
     if isinstance(whole, Proof):
         return whole
-    proof, parts = _proved(*whole, cells)
-    proof = proof.of_width(width)
-    if not second:
-        return proof
-    doubts = [
-        Gap(begin, end, "python-flint does not confirm the tube")
-        for residual, part in parts
-        for (begin, end), good in zip(part.place.tolist(), confirmed(residual, part))
-        if not good
-    ]
-    return evolve(proof, gaps=(*proof.gaps, *doubts))
+    return _proved(*whole, cells).of_width(path.u.shape[1])
 
 
 @frozen(eq=False, slots=False)
