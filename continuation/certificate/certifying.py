@@ -12,15 +12,13 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined, sizes
-from continuation.certificate.engine import Engine
+from continuation.certificate.engine import Engine, SupportsProofEngine
 from continuation.certificate.folds import Piece, pieces
-from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
 from continuation.certificate.links import Nodes
 from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
-from continuation.certificate.quadratic import ByProducts
 from continuation.certificate.tails import NEXT_TO_END, Node, tail
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
@@ -60,8 +58,8 @@ def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
     TypeError
         If the residual does not run on interval arrays; the message names the operation.
     """
-    if isinstance(homotopy, SupportsQuadratic):
-        return ByProducts(homotopy.quadratic())
+    if isinstance(homotopy, SupportsProofEngine):
+        return homotopy.proof_engine()
     y, lam = homotopy.start()
     start = np.append(np.asarray(y, dtype=float), float(lam))
     still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
@@ -83,8 +81,8 @@ def certify(path: Path, homotopy: Any) -> Proof:
     path : Path
         Traced or read from an archive; tangents that it does not have are computed.
     homotopy : Homotopy
-        The one that was traced. Its residual is to run on interval arrays as it runs on jets; a homotopy that is
-        quadratic and says so (`quadratic`) is proved at a fraction of the cost of its trace.
+        The one that was traced. Its residual is to run on interval arrays as it runs on jets, unless it has bounds of
+        its own (`SupportsProofEngine`): LCP homotopies are proved at a fraction of the cost of their traces.
 
     Returns
     -------

@@ -55,7 +55,7 @@ class Nodes:
     def put(self, index: Any, some: Nodes) -> None:
         """Replace some of them."""
         self.radius[index] = some.radius
-        self.tangent.lo[index], self.tangent.hi[index] = some.tangent.lo, some.tangent.hi
+        self.tangent[index] = some.tangent
 
     @classmethod
     def unknown(cls, count: int, m: int) -> Nodes:

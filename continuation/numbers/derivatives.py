@@ -213,7 +213,7 @@ def path_series(
 
 
 def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]:
-    """f(x) and f'(x) v, where x and v may be numbers, jets or interval arrays.
+    """f(x) and f'(x) v, where x and v may be numbers, jets or interval arrays; numbers may be objects.
 
     Parameters
     ----------
@@ -233,7 +233,8 @@ def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]
     """
     like = next((a for a in (x, v) if isinstance(a, Truncated)), None)
     if like is None:
-        value, slope = taylor(f, x, 1, v)
+        line = wrap(np.stack([np.asarray(part) for part in (x, v)]), TAYLOR)
+        value, slope = _image(f, line)
         return value, slope
     both = [like.lifted(a) for a in (x, v)]
     algebra = common(both)

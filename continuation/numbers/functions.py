@@ -173,7 +173,7 @@ def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:
     shape = a.shape if shape is None else (shape,) if isinstance(shape, int) else tuple(shape)
     zeros = wrap(a.constant(np.zeros(shape)), a.algebra)
     if a.OWN == 1:
-        zeros = zeros.moved(lambda x: np.zeros((len(a.c), *shape)))
+        zeros = zeros.moved(lambda x: np.zeros((len(a.c), *shape), a.c.dtype))
     if shape:
         zeros[...] = value
         return zeros
@@ -219,7 +219,7 @@ def _moved(function: Any) -> Callable[..., Any]:
         places, own = function(np.arange(1, a.size + 1).reshape(a.shape), *args, **keywords), a.OWN
 
         def select(x: Array) -> Array:
-            entries = np.zeros((*x.shape[:own], a.size + 1))
+            entries = np.zeros((*x.shape[:own], a.size + 1), x.dtype)
             entries[..., 1:] = x.reshape(*x.shape[:own], -1)
             return entries[..., places]
 

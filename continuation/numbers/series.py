@@ -46,7 +46,7 @@ def _demand(u: Series, fine: Callable[[Array], Any], operation: str, need: str) 
 
 def extended(u: Array, length: int) -> Array:
     """The same series with zero coefficients behind it."""
-    out = np.zeros((length, *u.shape[1:]))
+    out = np.zeros((length, *u.shape[1:]), u.dtype)
     out[: len(u)] = u
     return out
 
@@ -123,7 +123,7 @@ def _room(*series: Series) -> Series:
         return [0.0] * len(series[0])
     if len(series) == 1:
         return np.empty_like(series[0])
-    return np.empty(np.broadcast_shapes(*(u.shape for u in series)))
+    return np.empty(np.broadcast_shapes(*(u.shape for u in series)), np.result_type(*series))
 
 
 def _orders(u: Array) -> Array:
@@ -310,7 +310,7 @@ def _power(u: Series, r: Any, v0: Any) -> Series:
         for k in range(1, len(u)):
             out.append(out[k - 1] * (as_ends(r) - (k - 1.0)) / (float(k) * u[0]))
         return out
-    out = np.empty((len(u), *v0.shape))
+    out = np.empty((len(u), *v0.shape), v0.dtype)
     out[0] = v0
     orders = np.arange(1.0, len(u)).reshape(-1, *(1,) * v0.ndim)
     for k in range(1, len(u)):

@@ -235,7 +235,7 @@ FORMS = {
 @pytest.mark.parametrize("name", FORMS)
 def test_the_products_are_the_residual(name):
     homotopy, rng = FORMS[name], np.random.default_rng(1)
-    form = homotopy.quadratic()
+    form = homotopy.proof_engine().form
     size = len(homotopy.start()[0]) + 1
     for _ in range(5):
         u = rng.normal(size=size)
