@@ -113,9 +113,7 @@ _MOST_SLABS = 64
 """More is in no file of ours, and would take long to check."""
 
 
-def recheck(
-    file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = (), second: bool = False
-) -> list[Proof]:
+def recheck(file: str | PathLike[str], homotopy: Any = None, *, trust: Sequence[Any] = ()) -> list[Proof]:
     """Check the proofs of an archive again, every condition, without tracing.
 
     Parameters
@@ -125,8 +123,6 @@ def recheck(
         Needed where the file cannot say how to make it.
     trust : sequence of class or function
         What may be made, as for `resume`.
-    second : bool
-        By python-flint's balls as well, an arithmetic of other authors: needs that package and takes longer.
 
     Returns
     -------
@@ -151,5 +147,5 @@ def recheck(
                 span = float(path.arclength[0]), float(path.arclength[-1])
                 out.append(Proof.empty(path.u.shape[1], Gap(*span, "the file holds no certificate")))
             else:
-                out.append(checked_again(cells, path, homotopy, second))
+                out.append(checked_again(cells, path, homotopy))
         return out

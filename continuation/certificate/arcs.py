@@ -51,7 +51,7 @@ class Arc:
     ends: tuple[tuple[int, ...], tuple[int, ...]]
 
 
-def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> tuple[Proof, list[Arc]]:
+def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> Proof:
     """The proof of a path of a homotopy in pieces.
 
     Parameters
@@ -102,9 +102,9 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> t
         else:
             crossed.append(found)
     if not arcs:
-        return Proof.empty(path.u.shape[1], *merged(gaps)), arcs
+        return Proof.empty(path.u.shape[1], *merged(gaps))
     proofs = [arc.proof for arc in arcs]
-    whole = evolve(
+    return evolve(
         proofs[-1],
         cells=joined([proof.cells for proof in proofs]),
         node_radius=np.concatenate([proof.node_radius for proof in proofs]),
@@ -112,7 +112,6 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> t
         turning_points=tuple(turn for proof in proofs for turn in proof.turning_points),
         kinks=tuple(crossed),
     )
-    return whole, arcs
 
 
 def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:

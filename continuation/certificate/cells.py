@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.intervals.ends import EPS, TINIEST, Ends, bilinear, thin, up_sum
+from continuation.numbers.ends import EPS, TINIEST, Ends, bilinear, thin, up_sum
 
 Index = NDArray[np.intp]
 

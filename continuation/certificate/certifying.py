@@ -12,25 +12,22 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined, sizes
-from continuation.certificate.engine import Engine
+from continuation.certificate.engine import Engine, SupportsProofEngine
 from continuation.certificate.folds import Piece, pieces
-from continuation.certificate.form import SupportsQuadratic
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.lifting import lifted
 from continuation.certificate.links import Nodes
 from continuation.certificate.links import nodes as ends_of
 from continuation.certificate.proof import Gap, Proof
-from continuation.certificate.quadratic import ByProducts
-from continuation.certificate.second import confirmed
 from continuation.certificate.tails import NEXT_TO_END, Node, tail
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.homotopy import SupportsPieces
-from continuation.intervals.ends import Mask
 from continuation.linear.threads import one_thread
 from continuation.metric import Automatic, Metric, norm
+from continuation.numbers.ends import Mask
 from continuation.path import Path, Step
 from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize
@@ -62,8 +59,8 @@ def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
     TypeError
         If the residual does not run on interval arrays; the message names the operation.
     """
-    if isinstance(homotopy, SupportsQuadratic):
-        return ByProducts(homotopy.quadratic())
+    if isinstance(homotopy, SupportsProofEngine):
+        return homotopy.proof_engine()
     y, lam = homotopy.start()
     start = np.append(np.asarray(y, dtype=float), float(lam))
     still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
@@ -86,8 +83,8 @@ def certify(path: Path, homotopy: Any) -> Proof:
     path : Path
         Traced or read from an archive; tangents that it does not have are computed.
     homotopy : Homotopy
-        The one that was traced. Its residual is to run on interval arrays as it runs on jets; a homotopy that is
-        quadratic and says so (`quadratic`) is proved at a fraction of the cost of its trace.
+        The one that was traced. Its residual is to run on interval arrays as it runs on jets, unless it has bounds of
+        its own (`SupportsProofEngine`): LCP homotopies are proved at a fraction of the cost of their traces.
 
     Returns
     -------
@@ -112,17 +109,14 @@ def certify(path: Path, homotopy: Any) -> Proof:
     whole = lifted(homotopy, path)
     if isinstance(whole, Proof):
         return whole
-    proof, _ = _proved(*whole, None)
-    return proof.of_width(width)
+    return _proved(*whole, None).of_width(width)
 
 
-def _proved(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, list[tuple[Any, Cells]]]:
-    """A proof, with new cells or with these; and of which residual its cells are."""
+def _proved(homotopy: Any, path: Path, cells: Cells | None) -> Proof:
+    """A proof, with new cells or with these."""
     if isinstance(homotopy, SupportsPieces):
-        proof, arcs = by_pieces(homotopy, path, cells, _smooth)
-        return proof, [(homotopy.piece(arc.signs).residual, arc.proof.cells) for arc in arcs]
-    proof, _ = _smooth(homotopy, path, cells)
-    return proof, [(homotopy.residual, proof.cells)]
+        return by_pieces(homotopy, path, cells, _smooth)
+    return _smooth(homotopy, path, cells)[0]
 
 
 def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engine]:
@@ -136,7 +130,7 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engi
     return verified(engine, cells, path, homotopy, gaps, (found, ends)), engine
 
 
-def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Proof:
+def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
     """Check a proof again, every condition, with the charts and radii that it has.
 
     Parameters
@@ -146,33 +140,15 @@ def recheck(cells: Cells, path: Path, homotopy: Any, second: bool = False) -> Pr
     path : Path
         What they are to prove.
     homotopy : Homotopy
-    second : bool
-        Whether python-flint is asked as well, tube by tube.
 
     Returns
     -------
     Proof
-
-    Raises
-    ------
-    ImportError
-        If it is to be asked and is not installed.
     """
-    width = path.u.shape[1]
     whole = lifted(homotopy, path, cells)
     if isinstance(whole, Proof):
         return whole
-    proof, parts = _proved(*whole, cells)
-    proof = proof.of_width(width)
-    if not second:
-        return proof
-    doubts = [
-        Gap(begin, end, "python-flint does not confirm the tube")
-        for residual, part in parts
-        for (begin, end), good in zip(part.place.tolist(), confirmed(residual, part))
-        if not good
-    ]
-    return evolve(proof, gaps=(*proof.gaps, *doubts))
+    return _proved(*whole, cells).of_width(path.u.shape[1])
 
 
 @frozen(eq=False, slots=False)

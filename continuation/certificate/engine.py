@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Protocol
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs
-from continuation.intervals.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
+from continuation.numbers.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
 
 
 class Judged(Protocol):
@@ -48,15 +48,29 @@ class Judged(Protocol):
         """How far the curve in the tube is from the end of the cubic there, and its tangent; nan where that is no end.
 
         None where the bounds of a slab do not tell it.
+
+        Parameters
+        ----------
+        tube : ndarray, shape (slabs, N + 1)
         """
         ...
 
     def applied(self, v: Ends) -> Ends:
-        """The range of Y(s) v over each slab, for v of that shape."""
+        """The range of Y(s) v over each slab.
+
+        Parameters
+        ----------
+        v : Ends, shape (slabs, N + 1)
+        """
         ...
 
     def spread(self, x: Array, radius: Array) -> Array:
-        """A bound of |I - Y G'(p(s) + d)| x for |d| <= radius and x >= 0; both of shape (slabs, N + 1)."""
+        """A bound of |I - Y G'(p(s) + d)| x for |d| <= radius and x >= 0.
+
+        Parameters
+        ----------
+        x, radius : ndarray, shape (slabs, N + 1)
+        """
         ...
 
 
@@ -87,15 +101,46 @@ class Engine(Protocol):
         ...
 
     def together(self, m: int) -> int:
-        """So many slabs with m unknowns are best judged together."""
+        """So many slabs are best judged together.
+
+        Parameters
+        ----------
+        m : int
+            Unknowns, with the parameter.
+        """
         ...
 
     def bent(self, box: Ends, t: Ends) -> Ends | None:
-        """The range of H''(t, t) / 2 over boxes, shape (slabs, N); None where there is none, or nobody asks."""
+        """The range of H''(t, t) / 2 over boxes, shape (slabs, N); None where there is none, or nobody asks.
+
+        Parameters
+        ----------
+        box, t : Ends, shape (slabs, N + 1)
+        """
         ...
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
-        """Bounds for slabs, valid for radii up to `radius`, shape (slabs, N + 1)."""
+        """Bounds for slabs, valid for radii up to `radius`.
+
+        Parameters
+        ----------
+        slabs : Slabs
+        radius : ndarray, shape (slabs, N + 1)
+        """
+        ...
+
+
+@runtime_checkable
+class SupportsProofEngine(Protocol):
+    """A homotopy that knows bounds of its own: its proofs are then cheaper than by interval arithmetic."""
+
+    def proof_engine(self) -> Engine:
+        """What proofs of its paths ask.
+
+        Returns
+        -------
+        Engine
+        """
         ...
 
 

@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, slabs_of
 from continuation.certificate.engine import Engine, Judged, solved
-from continuation.intervals.ends import EPS, Ends
+from continuation.numbers.ends import EPS, Ends
 
 FOLD_PARTS = {1: 4, 2: 2, 3: 2}
 """Into how many parts a slab is cut, by the engine's order: what it leaves of the derivative is a quarter at most."""

@@ -21,9 +21,11 @@ from continuation.arrays import Array
 from continuation.certificate.cells import Index, Slabs, expansion, sizes
 from continuation.certificate.engine import Judged, applied, solved, up_by
 from continuation.certificate.inverse import inverses, times
-from continuation.intervals.array import Interval, UndecidedError, as_interval
-from continuation.intervals.calculus import along_curve, derivatives, with_gradient
-from continuation.intervals.ends import Ends, accumulated, thin
+from continuation.numbers import Interval, UndecidedError
+from continuation.numbers.algebra import lengthened
+from continuation.numbers.boxes import along_curve, derivatives, with_gradient
+from continuation.numbers.ends import Ends, accumulated, moved, thin
+from continuation.numbers.truncated import wrap
 
 RESIDUAL_NUMBERS = 2_000_000
 """Numbers of one array while many slabs go through a residual together: 16 MB."""
@@ -76,18 +78,17 @@ class ByIntervals:
         """See `Engine`."""
         return 1 if self.moving else 4
 
-    def image(self, u: Interval) -> Interval:
+    def image(self, u: Interval) -> Any:
         """H on an interval array of shape (N + 1,); nan for boxes on which a comparison is not decided."""
         whole: Any = u
         try:
-            return as_interval(self.residual(whole[:-1], whole[-1]))
+            return u.lifted(self.residual(whole[:-1], whole[-1]))
         except UndecidedError:
-            count = u.ends.lo.shape[1]
+            count = u.c.lo.shape[1]
             if count == 1:
-                shape = (len(u.ends.lo), 1, u.size - 1)
-                return Interval.of(thin(np.full(shape, np.nan)), u.algebra)
+                return wrap(thin(np.full((len(u.c), 1, u.size - 1), np.nan)), u.algebra)
             halves = (slice(None, count // 2), slice(count // 2, None))
-            parts = [self.image(u.linear(partial(_boxes, half))) for half in halves]
+            parts = [self.image(u.moved(partial(_boxes, half))) for half in halves]
             return _side_by_side(parts)
 
     def probe(self, u: Array) -> None:
@@ -100,7 +101,7 @@ class ByIntervals:
 
     def bent(self, box: Ends, t: Ends) -> Ends | None:
         """See `Engine`."""
-        image = self.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).ends
+        image = self.image(along_curve(box, t, thin(np.zeros_like(t.lo)))).c
         return image[2] if len(image.lo) == 3 else None  # constant along every line
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
@@ -181,7 +182,7 @@ class ByIntervals:
         shape = (2 * m * count, m)
         direction = thin(along.reshape(shape)) + Ends(*(np.tile(v, (2 * m, 1)) for v in (velocity.lo, velocity.hi)))
         boxes = Ends(*(np.tile(v, (2 * m, 1)) for v in (box.lo, box.hi)))
-        image = self.image(along_curve(boxes, direction, thin(np.zeros(shape)))).ends
+        image = self.image(along_curve(boxes, direction, thin(np.zeros(shape)))).c
         if len(image.lo) < 3:  # constant along every line
             return thin(np.zeros((count, m - 1, m)))
         both = Ends(*(v[2].reshape(2, m, count, m - 1) for v in (image.lo, image.hi)))
@@ -195,7 +196,7 @@ class ByIntervals:
         curve, x, left = expansion(fine), fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0)
         over, count = curve.over(Ends(-x, x)), len(fine)
         both = [Ends(np.concatenate([p.lo, q.lo]), np.concatenate([p.hi, q.hi])) for p, q in zip(curve.q, over)]
-        image = self.image(along_curve(*both)).ends
+        image = self.image(along_curve(*both)).c
         if len(image.lo) == 1:  # constant along the curve
             image = Ends(*(np.concatenate([e, np.zeros((2, *e.shape[1:]))]) for e in (image.lo, image.hi)))
         at, along = image[:, :count], image[:, count:]
@@ -310,13 +311,7 @@ def _boxes(some: slice, x: Array) -> Array:
     return x[:, some]
 
 
-def _side_by_side(parts: list[Interval]) -> Interval:
+def _side_by_side(parts: list[Interval]) -> Any:
     """Boxes of two arrays in one; a part without derivatives has zeros for them."""
-    longest = max(len(part.ends.lo) for part in parts)
-
-    def padded(x: Array) -> Array:
-        missing = longest - len(x)
-        return np.concatenate([x, np.zeros((missing, *x.shape[1:]))]) if missing else x
-
-    lo, hi = (np.concatenate([padded(getattr(part.ends, end)) for part in parts], axis=1) for end in ("lo", "hi"))
-    return Interval.of(Ends(lo, hi), parts[0].algebra)
+    stores = [lengthened(part.c, max(len(part.c) for part in parts)) for part in parts]
+    return wrap(moved(lambda *ends: np.concatenate(ends, axis=1), *stores), parts[0].algebra)

@@ -16,7 +16,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_node, expansion
 from continuation.certificate.engine import Engine, up_by
-from continuation.intervals.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Ends, Mask, thin
 
 NODE_TESTS, NODE_RADII = 4, 8
 """Tests of a node, with derivatives over ever larger boxes, and radii that are tried with one of them."""
@@ -55,7 +55,7 @@ class Nodes:
     def put(self, index: Any, some: Nodes) -> None:
         """Replace some of them."""
         self.radius[index] = some.radius
-        self.tangent.lo[index], self.tangent.hi[index] = some.tangent.lo, some.tangent.hi
+        self.tangent[index] = some.tangent
 
     @classmethod
     def unknown(cls, count: int, m: int) -> Nodes:

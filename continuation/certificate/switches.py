@@ -10,8 +10,8 @@ from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, narrowed, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import nodes
-from continuation.intervals.calculus import derivatives, with_gradient
-from continuation.intervals.ends import Ends, bilinear, thin
+from continuation.numbers.boxes import derivatives, with_gradient
+from continuation.numbers.ends import Ends, bilinear, thin
 
 ARC_PARTS = 4
 """Parts of an arc of few slabs: a switch that vanishes at both ends has its sign in between."""
@@ -44,7 +44,7 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
         known, radius = narrowed(engine, slabs, radius)
         box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
         image = switches.image(with_gradient(box.lo, box.hi))
-        sign = _signs(image.ends[0])
+        sign = _signs(image.c[0])
         t = known.tangent(radius, slabs.cells.radius)
         with np.errstate(all="ignore"):
             slope = bilinear(np.matmul, Ends(*derivatives(image, m)), Ends(t.lo[..., None], t.hi[..., None]))
@@ -109,7 +109,7 @@ def value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Array:
     """Signs of the switches within radii of the middles of slabs, shape (slabs, m); 0 where there is none."""
     zero = thin(np.zeros((len(slabs), 1)))
     box = expansion(slabs).over(zero)[0] + Ends(-radius, radius)
-    return _signs(switches.image(with_gradient(box.lo, box.hi)).ends[0])
+    return _signs(switches.image(with_gradient(box.lo, box.hi)).c[0])
 
 
 def _signs(value: Ends) -> Array:

@@ -10,7 +10,7 @@ from continuation.certificate.cells import Cells, Index, Slabs, advance, joined,
 from continuation.certificate.engine import Engine, Judged
 from continuation.certificate.folds import Piece, told
 from continuation.certificate.links import Nodes
-from continuation.intervals.ends import EPS, Mask
+from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
 """Least radius, in sizes of the cell: a tube that is thinner than round-off at its nodes does not hold its neighbour's

@@ -17,7 +17,7 @@ from continuation.certificate.folds import RANGE, Piece, Turn, located, pieces, 
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
-from continuation.intervals.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
 from continuation.point.segment import HermiteSegment
 from continuation.status import Kind
@@ -107,7 +107,7 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
     level[0, -1] = 1.0
     first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
     ask = ~known.proved
-    at = Nodes(known.radius.copy(), Ends(known.tangent.lo.copy(), known.tangent.hi.copy()))
+    at = Nodes(known.radius.copy(), known.tangent.copy())
     s = np.ones(ask.sum() + 2)
     s[-2] = 0.0
     every = nodes(engine, joined([cells.take(ask), first, last]), s)

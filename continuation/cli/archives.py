@@ -38,7 +38,6 @@ def register(subparsers: Subparsers) -> None:
     parser = subparsers.add_parser("recheck", help="check the proofs of an archive again, without tracing")
     parser.add_argument("file", metavar="FILE", help="an archive with certificates")
     _add_trust(parser)
-    parser.add_argument("--second", action="store_true", help="by python-flint's ball arithmetic as well")
     parser.set_defaults(run=_recheck)
 
     parser = subparsers.add_parser("recover", help="make whole what a killed writer left")
@@ -137,12 +136,9 @@ def _named(path: str) -> Any:
 
 def _recheck(arguments: argparse.Namespace) -> int:
     from continuation.archive import recheck
-    from continuation.certificate.second import available
 
-    if arguments.second and not available():
-        raise UsageError("--second", "python-flint is not installed; pip install continuation[proof]")
     with complaints("FILE"):
-        proofs = recheck(arguments.file, trust=arguments.trust, second=arguments.second)
+        proofs = recheck(arguments.file, trust=arguments.trust)
     for number, proof in enumerate(proofs):
         print(f"path {number}: {proof}")
     return SUCCESS if proofs and all(proof.complete for proof in proofs) else FAILURE

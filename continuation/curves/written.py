@@ -20,7 +20,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.curves.conditions import HopfPoint
-from continuation.jets.dual import derivative_along
+from continuation.jets import derivative_along
 from continuation.metric import Weighted
 
 DECIMALS = 6

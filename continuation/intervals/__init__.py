@@ -1,11 +1,6 @@
 """Interval arithmetic on numpy arrays: functions written in plain numpy over boxes, rounded outward."""
 
-from continuation.intervals.array import FUNCTIONS, Interval, UndecidedError
-from continuation.intervals.calculus import enclose, jacobian
-from continuation.intervals.functions import RULES
-from continuation.intervals.operations import apply
+from continuation.numbers import Interval, UndecidedError
+from continuation.numbers.boxes import enclose, jacobian
 
 __all__ = ["Interval", "UndecidedError", "enclose", "jacobian"]
-
-FUNCTIONS.update(RULES)
-FUNCTIONS["ufunc"] = apply

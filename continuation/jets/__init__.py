@@ -1,7 +1,8 @@
 """Truncated Taylor arithmetic on numpy arrays: series and derivatives of functions written in plain numpy."""
 
-from continuation.jets.array import Jet
-from continuation.jets.calculus import (
+from continuation.numbers import Jet, JetDomainError
+from continuation.numbers.derivatives import (
+    derivative_along,
     directional_derivatives,
     evaluate,
     jacobian,
@@ -10,13 +11,8 @@ from continuation.jets.calculus import (
     taylor,
     variable,
 )
-from continuation.jets.dispatch import FUNCTIONS
-from continuation.jets.functions import RULES
-from continuation.jets.series import JetDomainError
 
 __all__ = [
-    "Jet", "JetDomainError", "directional_derivatives", "evaluate", "jacobian", "path_series",
+    "Jet", "JetDomainError", "derivative_along", "directional_derivatives", "evaluate", "jacobian", "path_series",
     "second_derivatives", "taylor", "variable",
 ]  # fmt: skip
-
-FUNCTIONS.update(RULES)

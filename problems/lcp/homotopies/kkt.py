@@ -9,7 +9,6 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.certificate.form import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
@@ -22,6 +21,7 @@ from problems.lcp.homotopies.quadratics import exact_end, kkt_form
 from problems.lcp.homotopies.references import DUTTA_DAS_JANA
 from problems.lcp.homotopies.rows import Rows
 from problems.lcp.homotopies.starts import Start, kkt_start, natural_units, require_interior
+from problems.lcp.quadratic.engine import ByProducts
 from problems.options import quiet
 
 GIVE = 0.1
@@ -296,9 +296,9 @@ class KKTHomotopy:
         n, m = self.n, self.n + self.rows.sides.index.size
         return slice(n), slice(n, m), slice(m, m + n), slice(m + n, -1)
 
-    def quadratic(self) -> Quadratic:
+    def proof_engine(self) -> ByProducts:
         """H as affine parts and one product of them, for proofs of paths."""
-        return kkt_form(self)
+        return ByProducts(kkt_form(self))
 
     def certify_end(self, y: Array) -> str:
         """A sentence on the exact solution at x, where there is one.

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.certificate.form import Affine, Quadratic
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.proof.certificate import certify, certify_exactly
+from problems.lcp.quadratic.form import Affine, Quadratic
 
 END_DISTANCE = 1e-6
 """How far the exact solution may be from the end of the path, in sizes of x, to be that end."""

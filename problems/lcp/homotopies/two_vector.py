@@ -12,7 +12,6 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array, Matrix
-from continuation.certificate.form import Quadratic
 from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
@@ -25,6 +24,7 @@ from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.quadratics import exact_end, pairs_form
 from problems.lcp.homotopies.sides import Sides
 from problems.lcp.homotopies.starts import feasible_start, given_inside, made_of_x0, natural_units, positive_vector
+from problems.lcp.quadratic.engine import ByProducts
 from problems.options import quiet
 
 
@@ -164,9 +164,9 @@ class TwoVectorHomotopy:
             c[k] = point.solve(-defect)
         return c
 
-    def quadratic(self) -> Quadratic:
+    def proof_engine(self) -> ByProducts:
         """H as affine parts and one product of them, for proofs of paths."""
-        return pairs_form(self)
+        return ByProducts(pairs_form(self))
 
     def certify_end(self, y: Array) -> str:
         """A sentence on the exact solution at x, where there is one.

@@ -8,10 +8,10 @@ import pytest
 from continuation import certify, trace
 from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
 from continuation.certificate.certifying import engine_of
-from continuation.certificate.polynomial import Polynomial
-from continuation.intervals.ends import thin
+from continuation.numbers.ends import thin
 from problems.lcp import LCP
 from problems.lcp.homotopies import KKTHomotopy, YuHomotopy
+from problems.lcp.quadratic.polynomial import Polynomial
 
 SLACK = 1.0 + 1e-6
 """What is evaluated has round-off of its own, at most 1e-9 of the bounds, whose single precision is coarser."""

@@ -7,7 +7,6 @@ from attrs import evolve
 
 from continuation import certify, from_functions, trace
 from continuation.archive import ArchiveError, PathLog, add_proof, open_archive, recheck
-from continuation.certificate import second
 from continuation.certificate.certifying import recheck as checked_again
 from problems.bifurcation import FreudensteinRoth
 
@@ -92,6 +91,3 @@ def test_the_shell_checks_again(tmp_path, capsys):
     assert "path 0: Proved" in capsys.readouterr().out
     trace(FreudensteinRoth(), archive=tmp_path / "plain.h5")
     assert main(["recheck", str(tmp_path / "plain.h5")]) == 1
-    if not second.available():
-        assert main(["recheck", str(file), "--second"]) == 2
-        assert "python-flint" in capsys.readouterr().err

@@ -6,7 +6,7 @@ from attrs import evolve
 
 import continuation
 from continuation import Budget, Path, Status, Step, certify, refine, trace
-from continuation.certificate import folds, links, second, tubes, verify
+from continuation.certificate import folds, links, tubes, verify
 from continuation.certificate.certifying import engine_of
 from problems import paper
 from problems.bifurcation import Aircraft, Bratu1D, Circle, Cusp, ExponentialCosine, FreudensteinRoth, Pitchfork
@@ -14,6 +14,7 @@ from problems.lcp import LCP, homotopies
 from problems.lcp.data.problem import MixedLCP
 
 from ...util import benchmark
+from . import second
 
 corrupted = benchmark("proof/corrupted.py")
 EXAMPLES = [e for value in vars(paper).values() if isinstance(value, tuple) for e in value if hasattr(e, "true_class")]
@@ -234,7 +235,7 @@ FORMS = {
 @pytest.mark.parametrize("name", FORMS)
 def test_the_products_are_the_residual(name):
     homotopy, rng = FORMS[name], np.random.default_rng(1)
-    form = homotopy.quadratic()
+    form = homotopy.proof_engine().form
     size = len(homotopy.start()[0]) + 1
     for _ in range(5):
         u = rng.normal(size=size)

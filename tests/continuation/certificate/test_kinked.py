@@ -7,8 +7,8 @@ from attrs import evolve
 
 from continuation import Budget, Path, certify, trace
 from continuation.certificate.certifying import recheck
-from continuation.certificate.inverse import inverted
 from continuation.status import Kind
+from problems.lcp.quadratic.inverse import inverted
 from problems.nonlinear import bratu_under_obstacle
 
 from ...util import benchmark

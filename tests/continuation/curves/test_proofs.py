@@ -7,8 +7,8 @@ from attrs import evolve
 import continuation
 from continuation import Curve, Family, Kind, Monitor, TurningPoint, certify
 from continuation.archive import recheck
-from continuation.certificate import second
 
+from ..certificate import second
 from .util import (
     Brusselator,
     Coupled,
@@ -104,7 +104,7 @@ def test_an_archive_holds_the_proof(tmp_path):
         file = tmp_path / f"{name}.h5"
         path = continuation.trace(curve, box=box, certified=True, archive=file)
         assert path.proof.complete
-        (again,) = recheck(file, curve, second=second.available())
+        (again,) = recheck(file, curve)
         assert again.complete
         assert again.node_radius.shape == path.proof.node_radius.shape
         # Its tubes are wider than those of a path of the same width that has nothing in front.

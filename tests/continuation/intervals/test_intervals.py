@@ -8,7 +8,7 @@ import scipy.sparse as sp
 
 from continuation import intervals, jets
 from continuation.intervals import Interval, UndecidedError, enclose, jacobian
-from continuation.intervals.ends import Ends, thin
+from continuation.numbers.ends import Ends, thin
 
 from ...util import benchmark
 

@@ -87,6 +87,12 @@ OPERATIONS = {
     "tensordot of one axis": (lambda m, p: np.tensordot(m, p, 1) + np.tensordot(m, A, axes=(1, 0)), (M, P)),
     "einsum": (lambda m, x: np.einsum("ij,j->i", m, x) + np.einsum("ij, j", m, V) + np.einsum("ij->i", m), (M, X)),
     "einsum with dots": (lambda t, p: np.einsum("...ij,ki->...kj", t, p) + np.einsum("iij->j", t[:, :2]), (T, P)),
+    "einsum of many": (
+        lambda m, x: (
+            np.einsum("ij,j,ik->k", m, x, A[:2]) + np.einsum("i,i,i", V, x, x) + np.einsum("...i,i,i->...i", m, x, V)[1]
+        ),
+        (M, X),
+    ),
     "concatenate": (lambda x, y: np.concatenate([[0.0], x, V, y[:1]]), (X, Y)),
     "concatenate axes": (lambda m: np.concatenate((m, m), axis=-1)[:, 2:4] + np.concatenate([m, m], None)[:2], (M,)),
     "scalar jets in lists": (lambda x, z: np.concatenate([[z, 1.0], x]), (X, Z)),
@@ -292,7 +298,7 @@ def add_to(target, value):
         (lambda: np.linalg.norm(X, 1), r"numpy\.linalg\.norm with ord=1"),
         (lambda: np.reshape(M, (3, 2), order="F"), r"numpy\.reshape with order='F'"),
         (lambda: np.pad(X, 1, mode="linear_ramp"), r"numpy\.pad with mode='linear_ramp'"),
-        (lambda: np.einsum("i,i,i", X, X, X), r"numpy\.einsum"),
+        (lambda: np.einsum(X, [0], X, [0]), r"numpy\.einsum without subscripts"),
         (lambda: np.where(X, 1.0, X), r"numpy\.where"),
         (lambda: np.tile(V, X), r"numpy\.tile with a jet"),
         (lambda: np.full_like(V, Z), r"numpy\.copyto"),

@@ -6,8 +6,9 @@ later operation, and no comparison with it holds, so that nothing is ever proved
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from attrs import frozen
@@ -61,22 +62,52 @@ class Ends:
         """Of either array."""
         return self.lo.shape
 
+    @property
+    def ndim(self) -> int:
+        """Number of axes."""
+        return self.lo.ndim
+
+    def __len__(self) -> int:
+        return len(self.lo)
+
     def __getitem__(self, key: Any) -> Ends:
-        return Ends(self.lo[key], self.hi[key])
+        return moved(operator.itemgetter(key), self)
+
+    def __setitem__(self, key: Any, value: Ends) -> None:
+        if self.lo is self.hi:
+            raise ValueError("both ends are one array, into which no interval can be written: copy it first")
+        self.lo[key], self.hi[key] = value.lo, value.hi
+
+    def copy(self) -> Ends:
+        """Ends in memory of their own, two arrays even where both are the same."""
+        return Ends(self.lo.copy(), self.hi.copy())
 
     def __neg__(self) -> Ends:
         return Ends(-self.hi, -self.lo)
 
-    def __add__(self, other: Ends) -> Ends:
+    def __add__(self, other: Ends | float) -> Ends:
+        other = as_ends(other)
         return Ends(-up_sum(-self.lo - other.lo), up_sum(self.hi + other.hi))
 
-    def __sub__(self, other: Ends) -> Ends:
+    __radd__ = __add__
+
+    def __sub__(self, other: Ends | float) -> Ends:
+        other = as_ends(other)
         return Ends(-up_sum(other.hi - self.lo), up_sum(self.hi - other.lo))
 
-    def __mul__(self, other: Ends) -> Ends:
+    def __rsub__(self, other: float) -> Ends:
+        return as_ends(other) - self
+
+    def __mul__(self, other: Ends | float) -> Ends:
+        """The product; the square, which is nowhere negative, of an array with itself."""
+        return whole_power(self, 2) if other is self else self._times(as_ends(other))
+
+    __rmul__ = __mul__
+
+    def _times(self, other: Ends) -> Ends:
         # In place, as to ask for memory takes as long as to multiply.
         a, b = np.asarray(self.lo * other.lo), np.asarray(self.lo * other.hi)
-        lo, hi = np.minimum(a, b), np.maximum(a, b)
+        lo, hi = np.asarray(np.minimum(a, b)), np.asarray(np.maximum(a, b))
         if self.lo is not self.hi:
             for product in (np.multiply(self.hi, other.lo, out=a), np.multiply(self.hi, other.hi, out=b)):
                 lo, hi = np.minimum(lo, product, out=lo), np.maximum(hi, product, out=hi)
@@ -88,13 +119,20 @@ class Ends:
             lo, hi = np.where(zero, 0.0, lo), np.where(zero, 0.0, hi)
         return Ends(lo, hi)
 
-    def __truediv__(self, other: Ends) -> Ends:
+    def __truediv__(self, other: Ends | float) -> Ends:
+        other = as_ends(other)
         with np.errstate(all="ignore"):
             a, b = self.lo / other.lo, self.lo / other.hi
             c, d = self.hi / other.lo, self.hi / other.hi
         lo, hi = np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
         defined = (other.lo > 0.0) | (other.hi < 0.0)
         return Ends(np.where(defined, down(lo), np.nan), np.where(defined, up(hi), np.nan))
+
+    def __rtruediv__(self, other: float) -> Ends:
+        return as_ends(other) / self
+
+    def __pow__(self, n: int) -> Ends:
+        return whole_power(self, n) if n >= 0 else 1.0 / whole_power(self, -n)
 
     def where(self, condition: Mask) -> Ends:
         """The same, without value (nan) where the condition does not hold."""
@@ -116,6 +154,33 @@ class Ends:
 def thin(x: Array) -> Ends:
     """Intervals of one number each."""
     return Ends(x, x)
+
+
+def as_ends(x: Ends | float) -> Ends:
+    """`x` as it is, or a number as an interval."""
+    return x if isinstance(x, Ends) else thin(np.asarray(x, dtype=float))
+
+
+Coefficients = TypeVar("Coefficients", Array, Ends)
+"""Numbers, or intervals: what an algebra is built over."""
+
+
+def moved(move: Callable[..., Array], *arrays: Coefficients) -> Coefficients:
+    """Numbers as `move` places them; of intervals both ends, in one array if they are one array."""
+    if not isinstance(arrays[0], Ends):
+        return move(*arrays)
+    lo = move(*(x.lo for x in arrays))
+    return Ends(lo, lo if all(x.lo is x.hi for x in arrays) else move(*(x.hi for x in arrays)))
+
+
+def added(add: Callable[[Array], Array], x: Coefficients, count: int) -> Coefficients:
+    """Sums of up to `count` entries, in whatever order `add` takes them."""
+    if not isinstance(x, Ends):
+        return np.asarray(add(x))
+    if count <= 1:
+        return moved(add, x)
+    error = accumulated(count) * add(x.magnitude())
+    return Ends(-up_sum(error - add(x.lo)), up_sum(add(x.hi) + error))
 
 
 def absolute(u: Ends) -> Ends:
@@ -140,9 +205,9 @@ def _nonnegative_power(u: Ends, n: int) -> Ends:
     if n == 1:
         return u
     half = _nonnegative_power(u, n // 2)
-    square = half * half
+    square = half._times(half)
     square = Ends(np.maximum(square.lo, 0.0), square.hi)
-    product = square * u if n % 2 else square
+    product = square._times(u) if n % 2 else square
     return Ends(np.maximum(product.lo, 0.0), product.hi)
 
 
@@ -189,3 +254,20 @@ def _exact_zeros(sizes: Array, a: Ends, b: Ends) -> bool:
         return False
     smallest = [np.min(s, where=s > 0.0, initial=np.inf) for s in (a.magnitude(), b.magnitude())]
     return bool(float(smallest[0]) * float(smallest[1]) > 1e-290)
+
+
+def sparse_product(matrix: Any, x: Coefficients) -> Coefficients:
+    """A sparse matrix of numbers times vectors, shape (..., n)."""
+
+    def times(entries: Any, v: Array) -> Array:
+        return np.ascontiguousarray((entries @ v.reshape(-1, v.shape[-1]).T).T).reshape(*v.shape[:-1], -1)
+
+    if not isinstance(x, Ends):
+        return times(matrix, x)
+    rows = matrix.tocsr()
+    size, count = abs(rows), int(np.diff(rows.indptr).max(initial=1))
+    middle = x.middle()
+    radius = times(size, x.radius(middle)) + accumulated(count) * times(size, np.abs(middle))
+    radius = radius * (1.0 + accumulated(count)) + 4.0 * count * TINIEST
+    centre = times(rows, middle)
+    return Ends(-up_sum(radius - centre), up_sum(centre + radius))

@@ -7,15 +7,15 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.engine import up_by
-from continuation.certificate.form import SUM_ROUNDING, Affine, Quadratic
-from continuation.intervals.ends import EPS, Ends, accumulated, bilinear, thin, up_sum
+from continuation.numbers.ends import EPS, Ends, accumulated, bilinear, thin, up_sum
+from problems.lcp.quadratic.form import SUM_ROUNDING, Affine, Quadratic
 
 
 def _apply(part: Affine, q: Ends) -> Ends:
     """The part along a cubic, shape (slabs, 4, N) for coefficients of shape (slabs, 4, N + 1)."""
     image = _linear(part, q)
     value = image[:, 0] + part.constant_ends
-    image.lo[:, 0], image.hi[:, 0] = value.lo, value.hi
+    image[:, 0] = value
     return image
 
 

@@ -15,12 +15,13 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, image_of, largest, rounded
 from continuation.certificate.cells import Slabs
-from continuation.certificate.derivative import Derivative, at_points
 from continuation.certificate.engine import up_by
-from continuation.certificate.inverse import inverted, times
-from continuation.intervals.ends import EPS, Ends, accumulated, thin
+from continuation.certificate.inverse import times
+from continuation.numbers.ends import EPS, Ends, accumulated, thin
+from problems.lcp.quadratic.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, image_of, largest, rounded
+from problems.lcp.quadratic.derivative import Derivative, at_points
+from problems.lcp.quadratic.inverse import inverted
 
 SHARE = 1e-3
 """Rounding is bounded once, for a vector in the shape of the misfit and with this share of its largest component."""

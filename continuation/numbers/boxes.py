@@ -8,21 +8,13 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.intervals.array import CURVE, GRADIENT, Interval, as_interval, wrap
-from continuation.intervals.ends import Ends
+from continuation.numbers.algebra import GRADIENT, TAYLOR, lengthened
+from continuation.numbers.array import Interval
+from continuation.numbers.ends import Ends
+from continuation.numbers.truncated import wrap
 
 
-def boxes(lo: Array, hi: Array) -> Interval:
-    """Many boxes as one array: shape (m,) for ends of shape (boxes, m).
-
-    Parameters
-    ----------
-    lo, hi : ndarray, shape (boxes, *shape)
-    """
-    return wrap(Ends(lo[None], hi[None]), GRADIENT)
-
-
-def with_gradient(lo: Array, hi: Array) -> Interval:
+def with_gradient(lo: Array, hi: Array) -> Any:
     """The boxes as variables, with the unit vectors as their derivatives: `lo`, `hi` of shape (boxes, m)."""
     count, m = lo.shape
     seeds = np.zeros((1 + m, count, m))
@@ -32,10 +24,10 @@ def with_gradient(lo: Array, hi: Array) -> Interval:
     return wrap(Ends(low, high), GRADIENT)
 
 
-def along_curve(value: Ends, first: Ends, half_second: Ends) -> Interval:
+def along_curve(value: Ends, first: Ends, half_second: Ends) -> Any:
     """A curve over intervals of its parameter: value, derivative and half the second one, of shape (boxes, m) each."""
     parts = value, first, half_second
-    return wrap(Ends(np.stack([x.lo for x in parts]), np.stack([x.hi for x in parts])), CURVE)
+    return wrap(Ends(np.stack([x.lo for x in parts]), np.stack([x.hi for x in parts])), TAYLOR)
 
 
 def enclose(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
@@ -60,7 +52,9 @@ def enclose(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
     UndecidedError
         Where f compares numbers and the box does not decide.
     """
-    return as_interval(f(Interval(lo, hi)))
+    box = Interval(lo, hi)
+    image: Interval = box.lifted(f(box))
+    return image
 
 
 def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
@@ -87,15 +81,12 @@ def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
     Walther (2008).
     """
     box = Interval(lo, hi)
-    ends = box.ends
-    image = as_interval(f(with_gradient(ends.lo[0], ends.hi[0])))
-    lower, upper = derivatives(image, box.size)
-    return boxes(lower, upper)
+    image = box.lifted(f(with_gradient(box.c.lo[0], box.c.hi[0])))
+    slopes: Interval = wrap(Ends(*(x[None] for x in derivatives(image, box.size))), GRADIENT)
+    return slopes
 
 
 def derivatives(image: Interval, m: int) -> tuple[Array, Array]:
     """Lower and upper ends of the derivatives of an image, shape (boxes, *shape, m); zero for a constant."""
-    lo, hi = image.ends.lo[1:], image.ends.hi[1:]
-    if len(lo) == 0:
-        lo = hi = np.zeros((m, *image.ends.shape[1:]))
-    return np.moveaxis(lo, 0, -1), np.moveaxis(hi, 0, -1)
+    slopes = lengthened(image.c, 1 + m)
+    return np.moveaxis(slopes.lo[1:], 0, -1), np.moveaxis(slopes.hi[1:], 0, -1)

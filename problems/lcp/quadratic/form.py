@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Index
-from continuation.certificate.products import Blocks
-from continuation.intervals.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Ends, Mask, thin
+from problems.lcp.quadratic.products import Blocks
 
 
 @frozen(eq=False, slots=False)
@@ -171,17 +170,3 @@ class Quadratic:
             free_columns = free_columns & ~there[i]
         pairs = np.array(found, dtype=np.intp).reshape(-1, 2)
         return pairs[:, 0], pairs[:, 1]
-
-
-@runtime_checkable
-class SupportsQuadratic(Protocol):
-    """A homotopy whose residual is quadratic in (y, lam) says how: its proofs are then cheap."""
-
-    def quadratic(self) -> Quadratic:
-        """The residual as affine parts and products of them, its data taken as the numbers that they are.
-
-        Returns
-        -------
-        Quadratic
-        """
-        ...

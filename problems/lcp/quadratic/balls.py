@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.certificate.engine import up_by
-from continuation.intervals.ends import EPS, Ends, accumulated, up_sum
+from continuation.numbers.ends import EPS, Ends, accumulated, up_sum
 
 Single = NDArray[np.float32]
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.jets import series
-from continuation.jets.algebra import GRADIENT, MIXED, TAYLOR
-from continuation.jets.array import Jet, as_jet, wrap
+from continuation.numbers.algebra import GRADIENT, TAYLOR, Beside, Store, joined, lengthened
+from continuation.numbers.array import Jet
+from continuation.numbers.truncated import Truncated, alike, common, wrap
 
 _BLOCK = 128
 """Directions of a Jacobian that go through the function together; more only cost memory."""
@@ -36,7 +36,8 @@ def variable(x0: Any, direction: Any, order: int) -> Jet:
     c[0] = x0
     if order:
         c[1] = _numbers(direction, "direction")
-    return wrap(c, TAYLOR)
+    line: Jet = wrap(c, TAYLOR)
+    return line
 
 
 def evaluate(jet: Jet, s: Any) -> Array:
@@ -79,7 +80,7 @@ def taylor(f: Callable[[Any], Any], x0: Any, order: int, direction: Any = 1.0) -
         Where `f` has no Taylor series.
     """
     x = variable(x0, direction, order)
-    return as_jet(f(x), x).c
+    return np.asarray(_image(f, x))
 
 
 def directional_derivatives(f: Callable[[Any], Any], x: Any, v: Any, order: int) -> Array:
@@ -135,7 +136,7 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
     columns = []
     for directions in _directions(len(x)):
         line = wrap(np.vstack([x, directions]), GRADIENT)
-        columns.append(np.moveaxis(as_jet(f(line), line).c[1:], 0, -1))
+        columns.append(np.moveaxis(_image(f, line)[1:], 0, -1))
     return np.concatenate(columns, axis=-1)
 
 
@@ -160,9 +161,8 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
     x, v = _numbers(x, "x"), _numbers(v, "v")
     columns = []
     for directions in _directions(len(x)):
-        line = wrap(np.vstack([x, directions, v, np.zeros_like(directions)]), MIXED)
-        value = series.extended(as_jet(f(line), line).c, len(line.c))
-        columns.append(np.moveaxis(value[2 + len(directions) :], 0, -1))
+        line = wrap(np.vstack([x, directions, v, np.zeros_like(directions)]), Beside(GRADIENT))
+        columns.append(np.moveaxis(_image(f, line)[2 + len(directions) :], 0, -1))
     return np.concatenate(columns, axis=-1)
 
 
@@ -205,11 +205,47 @@ def path_series(
     u[0], u[1] = u0, tangent
     for k in range(2, order + 1):
         y, lam = wrap(u[: k + 1, :-1].copy(), TAYLOR), wrap(u[: k + 1, -1].copy(), TAYLOR)
-        defect = as_jet(residual(y, lam), y)
+        defect = lengthened(y.lifted(residual(y, lam)).c, k + 1)[k]
         if defect.size != len(u0) - 1:
             raise ValueError(f"residual has shape {defect.shape}; expected ({len(u0) - 1},)")
-        u[k] = solve(-defect.c[k].reshape(-1), 0.0)
+        u[k] = solve(-defect.reshape(-1), 0.0)
     return u
+
+
+def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]:
+    """f(x) and f'(x) v, where x and v may be numbers, jets or interval arrays; numbers may be objects.
+
+    Parameters
+    ----------
+    f : callable
+        Written in numpy functions that jets know.
+    x, v : array_like, Jet or Interval, of one shape
+
+    Returns
+    -------
+    tuple
+        Two arrays of the kind of x and v.
+
+    Raises
+    ------
+    TypeError, JetDomainError
+        As in `taylor`.
+    """
+    like = next((a for a in (x, v) if isinstance(a, Truncated)), None)
+    if like is None:
+        line = wrap(np.stack([np.asarray(part) for part in (x, v)]), TAYLOR)
+        value, slope = _image(f, line)
+        return value, slope
+    both = [like.lifted(a) for a in (x, v)]
+    algebra = common(both)
+    line = wrap(joined(*alike(both)), Beside(algebra))
+    image = _image(f, line)
+    half = len(image) // 2
+    return wrap(image[:half], algebra), wrap(image[half:], algebra)
+
+
+def _image(f: Callable[[Any], Any], line: Any) -> Store:
+    return lengthened(line.lifted(f(line)).c, len(line.c))
 
 
 def _directions(m: int) -> Iterator[Array]:
@@ -218,8 +254,8 @@ def _directions(m: int) -> Iterator[Array]:
 
 
 def _numbers(x: Any, name: str) -> Array:
-    if isinstance(x, Jet):
-        raise TypeError(f"{name} is a Jet; expected plain numbers (jets of jets are not supported)")
+    if isinstance(x, Truncated):
+        raise TypeError(f"{name} is a {type(x).__name__}; expected plain numbers (jets of jets are not supported)")
     return np.array(x, dtype=float)
 
 

@@ -14,12 +14,12 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs
-from continuation.certificate.derivative import Derivative
 from continuation.certificate.engine import Judged
-from continuation.certificate.form import Quadratic
 from continuation.certificate.krawczyk import Several
-from continuation.certificate.polynomial import Polynomial
-from continuation.intervals.ends import Ends
+from continuation.numbers.ends import Ends
+from problems.lcp.quadratic.derivative import Derivative
+from problems.lcp.quadratic.form import Quadratic
+from problems.lcp.quadratic.polynomial import Polynomial
 
 CACHED_NUMBERS = 200_000
 """Numbers of one array of matrices at a time, 1.6 MB: a few of them are to be in a cache of several."""

@@ -1,0 +1,187 @@
+"""Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d, whose products beyond some order are zero.
+
+One direction to high order (`Taylor`), many to first order (`Gradient`), or either one beside one direction more
+(`Beside`). All keep coefficients along the leading axis, so everything linear is shared. They differ in products, and
+so in f(c_0 + d) = sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+from attrs import frozen
+
+from continuation.numbers import series
+from continuation.numbers.ends import Ends, moved, thin
+
+Store: TypeAlias = Any
+"""Coefficients, an array or `Ends` of shape (L, ...); L = 1 is a constant."""
+
+
+class Algebra(Protocol):
+    """What is done to coefficients."""
+
+    def degrees(self, length: int) -> list[int]:
+        """The power of d to which each of so many coefficients belongs."""
+        ...
+
+    def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+        """A bilinear product, which broadcasts over the leading axis, of two that are no constants."""
+        ...
+
+    def quotient(self, a: Store, b: Store) -> Store:
+        """The quotient a / b of two that are no constants, entry by entry."""
+        ...
+
+    def expansion(self, f: list[Any], a: Store) -> Store:
+        """sum_k f_k d^k, where a = c_0 + d is no constant; f may be longer than is asked for."""
+        ...
+
+
+@frozen
+class Taylor:
+    """sum_k c_k s**k, truncated: the coefficients of one direction."""
+
+    def degrees(self, length: int) -> list[int]:
+        """One after the other."""
+        return list(range(length))
+
+    def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+        """The Cauchy product."""
+        if product is operator.mul and not isinstance(a, Ends):
+            return series.multiply(a, b)
+        out = product(a[:1], b)
+        for j in range(1, len(b)):
+            out[j:] += product(a[j : j + 1], b[:-j])
+        return out
+
+    def quotient(self, a: Store, b: Store) -> Store:
+        """The series of a / b; of intervals by that of 1 / b, whose squares are nowhere negative."""
+        if not isinstance(a, Ends):
+            return series.divide(a, b)
+        out = self.product(operator.mul, a, compose(self, series.reciprocal, b))
+        out[:1] = a[:1] / b[:1]
+        return out
+
+    def expansion(self, f: list[Any], a: Store) -> Store:
+        """Power k of d begins at s**k."""
+        power = d = a[1:]
+        out = f[1] * d
+        for k in range(2, len(a)):
+            less = power[:-1]
+            power = product(self, operator.mul, less, less if k == 2 else d[: len(less)])
+            out[k - 1 :] += f[k] * power
+        return joined(f[0][None], out)
+
+
+@frozen
+class Gradient:
+    """c_0 + sum_i c_i e_i with e_i e_j = 0: first derivatives in many directions at once."""
+
+    def degrees(self, length: int) -> list[int]:
+        """One, of all but the first."""
+        return [0] + [1] * (length - 1)
+
+    def product(self, product: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+        """The product rule."""
+        out = product(a[:1], b)
+        out[1:] += product(a[1:], b[:1])
+        return out
+
+    def quotient(self, a: Store, b: Store) -> Store:
+        """The quotient rule."""
+        value = a[:1] / b[:1]
+        return joined(value, (a[1:] - value * b[1:]) / b[:1])
+
+    def expansion(self, f: list[Any], a: Store) -> Store:
+        """The chain rule."""
+        return joined(f[0][None], f[1] * a[1:])
+
+
+@frozen
+class Beside:
+    """x + y s with s^2 = 0 and x, y of another algebra: its derivatives along one direction.
+
+    Over `Gradient`, derivatives along one direction of those in many. Coefficients: all of x, then all of y.
+    """
+
+    inner: Algebra
+
+    def degrees(self, length: int) -> list[int]:
+        """One more with s."""
+        inner = self.inner.degrees(length // 2)
+        return [*inner, *(degree + 1 for degree in inner)]
+
+    def product(self, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+        """The product rule."""
+        (x, y), (v, w) = _halves(a), _halves(b)
+        slope = product(self.inner, multiply, x, w) + product(self.inner, multiply, y, v)
+        return joined(product(self.inner, multiply, x, v), slope)
+
+    def quotient(self, a: Store, b: Store) -> Store:
+        """The quotient rule."""
+        (x, y), (v, w) = _halves(a), _halves(b)
+        value = quotient(self.inner, x, v)
+        return joined(value, quotient(self.inner, y - product(self.inner, operator.mul, value, w), v))
+
+    def expansion(self, f: list[Any], a: Store) -> Store:
+        """The chain rule: f(x) and f'(x) y."""
+        x, y = _halves(a)
+        slopes = [f[1], *(float(k) * f[k] for k in range(2, len(f)))]
+        return joined(_at(self.inner, f, x), product(self.inner, operator.mul, _at(self.inner, slopes, x), y))
+
+
+def _halves(a: Store) -> tuple[Store, Store]:
+    return a[: len(a) // 2], a[len(a) // 2 :]
+
+
+def _at(algebra: Algebra, f: list[Any], a: Store) -> Store:
+    return f[0][None] if len(a) == 1 else algebra.expansion(f, a)
+
+
+def joined(*parts: Store) -> Store:
+    """Coefficients one after the other."""
+    return moved(lambda *arrays: np.concatenate(arrays), *parts)
+
+
+def lengthened(a: Store, length: int) -> Store:
+    """With zeros for the coefficients behind."""
+    return a if len(a) == length else moved(lambda x: series.extended(x, length), a)
+
+
+def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
+    """A bilinear product, of constants too."""
+    return multiply(a, b) if len(a) == 1 or len(b) == 1 else algebra.product(multiply, a, b)
+
+
+def quotient(algebra: Algebra, a: Store, b: Store) -> Store:
+    """A / b, of constants too."""
+    if not isinstance(b, Ends):
+        series.demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
+    return a / b if len(b) == 1 else algebra.quotient(lengthened(a, len(b)), b)
+
+
+def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
+    """A function of one argument, given by its rule on truncated Taylor series."""
+    order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
+    if isinstance(a, Ends):
+        return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
+    if isinstance(algebra, Taylor):
+        return rule(a)
+    return _at(
+        algebra, rule(np.stack([a[0], np.ones_like(a[0]), *[np.zeros_like(a[0])] * (order - 1)][: order + 1])), a
+    )
+
+
+def _ranges(rule: series.Rule, argument: list[Any]) -> list[Ends]:
+    """Taylor coefficients over a box: none where the function has no value, though its derivatives have a formula."""
+    f = [c if isinstance(c, Ends) else thin(np.full(argument[0].shape, c)) for c in rule(argument)]
+    told = ~(np.isnan(f[0].lo) | np.isnan(f[0].hi))
+    return f if told.all() else [f[0], *(c.where(told) for c in f[1:])]
+
+
+TAYLOR = Taylor()
+GRADIENT = Gradient()

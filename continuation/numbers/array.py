@@ -1,0 +1,201 @@
+"""The two rings: arrays of series of numbers, `Jet`, and of intervals, `Interval`."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from continuation.arrays import Array, asked_by_sparse
+from continuation.numbers.algebra import GRADIENT, TAYLOR, Store
+from continuation.numbers.ends import Ends, moved, thin
+from continuation.numbers.truncated import KINDS, Truncated, alike, common, wrap
+
+
+class Entries:
+    """What arrays with axes have. Scalars are no sequences, so that np.array([y[0], ...]) holds them as entries."""
+
+    __slots__ = ()
+
+    def __array__(self: Any, dtype: Any = None, copy: Any = None) -> Any:
+        if asked_by_sparse():
+            return np.array(None, dtype=object)  # "no" in scipy's terms: Python goes on to `__rmatmul__`
+        raise TypeError(
+            f"{self.NAME} cannot become a plain array, which would drop its {self.LOST}: leave out numpy.asarray, use "
+            "np.stack for np.array([...]), np.zeros_like(y) to assign into, and functions of numpy alone; or give a "
+            "jacobian"
+        )
+
+    def __bool__(self: Any) -> bool:
+        raise ValueError("the truth of an array is ambiguous; compare its entries")
+
+    def __len__(self: Any) -> int:
+        return int(self.shape[0])
+
+    def __iter__(self: Any) -> Iterator[Any]:
+        return (self[i] for i in range(len(self)))
+
+    def __getitem__(self: Any, key: Any) -> Any:
+        if isinstance(key, int | slice):
+            part = self.moved(operator.itemgetter((*(slice(None),) * self.OWN, key)))
+        else:
+            part = self.moved(lambda x: _own_first(_own_last(x, self.OWN)[_behind(key, self.OWN)], self.OWN))
+        return part if part.ndim else part.copy()  # a scalar does not change with the array
+
+    def __setitem__(self: Any, key: Any, value: Any) -> None:
+        value = self.lifted(value)
+        self.algebra = common((self, value))
+        mine, given = alike((self, value))
+        if isinstance(mine, Ends):
+            mine = mine.copy()  # both ends may be one array
+        part = _behind(key, self.OWN)
+
+        def write(mine: Array, given: Array) -> Array:
+            _own_last(mine, self.OWN)[part] = _own_last(given, self.OWN)
+            return mine
+
+        self.c = moved(write, mine, given)
+
+
+def _own_last(x: Array, own: int) -> Array:
+    """The array's own axes behind the others, out of the way of any index."""
+    return x.transpose(*range(own, x.ndim), *range(own))
+
+
+def _own_first(x: Array, own: int) -> Array:
+    return x.transpose(*range(x.ndim - own, x.ndim), *range(x.ndim - own))
+
+
+def _behind(key: Any, own: int) -> tuple[Any, ...]:
+    """The index that leaves the last axes alone."""
+    key = key if isinstance(key, tuple) else (key,)
+    if not any(part is Ellipsis for part in key):
+        key = (*key, Ellipsis)
+    return (*key, *(slice(None),) * own)
+
+
+class Jet(Truncated):
+    """An array of truncated power series, sum_k c[k] s**k.
+
+    It has the shape of one coefficient and goes through numpy as an array of that shape would: operators, indexing,
+    assignment, ufuncs and the common numpy functions. Comparisons look at the leading coefficient. An operation that
+    jets do not know raises TypeError and names itself; one without a series at that coefficient `JetDomainError`.
+
+    Parameters
+    ----------
+    c : array_like, (K + 1, *shape)
+        The coefficients, s**0 first.
+    """
+
+    __slots__ = ()
+    OWN, WHO, ONE, NAME, LOST = 1, "jets", "a jet", "a Jet", "series"
+
+    def __new__(cls, c: Any) -> Jet:
+        """Check the coefficients and copy them."""
+        coefficients = np.array(c, dtype=float)
+        if coefficients.ndim == 0 or len(coefficients) == 0:
+            raise ValueError(f"c has shape {coefficients.shape}; expected (order + 1, *shape) with order >= 0")
+        jet: Jet = wrap(coefficients, TAYLOR)
+        return jet
+
+    @property
+    def order(self) -> int:
+        """The highest power of s that is kept."""
+        return len(self.c) - 1
+
+    def coefficient(self, k: int) -> Array:
+        """The coefficient of s**k, an array of the jet's shape.
+
+        Parameters
+        ----------
+        k : int
+            From 0 to `order`.
+
+        Raises
+        ------
+        ValueError
+            For another k.
+        """
+        if not 0 <= operator.index(k) <= self.order:
+            raise ValueError(f"k is {k}; expected 0 <= k <= {self.order}, the order of this jet")
+        return np.asarray(self.c[k])
+
+    def __repr__(self) -> str:
+        return f"Jet(shape={self.shape}, order={self.order}, leading={self.c[0]!r})"
+
+
+class ArrayJet(Entries, Jet):
+    """A jet with axes."""
+
+    __slots__ = ()
+
+
+class Interval(Truncated):
+    """An array of intervals that goes through numpy as an array of its shape would.
+
+    Every operation gives intervals that hold all values of the operation on numbers of its operands, round-off
+    included; plain arrays that it meets are taken as the numbers that they are. Where an operation is not defined on
+    part of an interval the result is nan. A comparison that is not decided raises `UndecidedError`.
+
+    Parameters
+    ----------
+    lo, hi : array_like
+        The ends, of one shape.
+
+    Raises
+    ------
+    ValueError
+        If an end is nan, or lo above hi.
+    """
+
+    __slots__ = ()
+    OWN, WHO, ONE, NAME, LOST = 2, "interval arrays", "an interval array", "an Interval", "width"
+
+    def __new__(cls, lo: Any, hi: Any = None) -> Interval:
+        """Check the ends and copy them."""
+        low = np.array(lo, dtype=float)
+        high = low if hi is None else np.array(hi, dtype=float)
+        if low.shape != high.shape or not (low <= high).all():
+            raise ValueError(f"lo, hi: expected arrays of one shape with lo <= hi, found {lo!r} and {hi!r}")
+        low = low[None, None]
+        interval: Interval = wrap(Ends(low, low if hi is None else high[None, None]), GRADIENT)
+        return interval
+
+    @property
+    def lo(self) -> Array:
+        """Lower ends of the value; where there are many boxes their number comes first in its shape."""
+        return self._values(self.c.lo)
+
+    @property
+    def hi(self) -> Array:
+        """Upper ends of the value."""
+        return self._values(self.c.hi)
+
+    def _values(self, ends: Array) -> Array:
+        return np.asarray(ends[0, 0] if ends.shape[1] == 1 else ends[0])
+
+    @staticmethod
+    def constant(x: Array) -> Store:
+        """Numbers as coefficients, for one box.
+
+        Parameters
+        ----------
+        x : ndarray
+        """
+        if x.dtype.kind in "iu" and x.size and max(abs(int(x.max())), abs(int(x.min()))) > 2**53:
+            raise TypeError("an interval array met integers beyond 2**53, which floats do not hold")
+        return thin(x.astype(float, copy=False)[None, None])
+
+    def __repr__(self) -> str:
+        return f"Interval(lo={self.lo!r}, hi={self.hi!r})"
+
+
+class ArrayInterval(Entries, Interval):
+    """One with axes."""
+
+    __slots__ = ()
+
+
+KINDS.update({np.ndarray: (Jet, ArrayJet), Ends: (Interval, ArrayInterval)})

@@ -1,0 +1,293 @@
+"""What numpy's functions (as opposed to its ufuncs) do to arrays of series."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from string import ascii_letters
+from typing import Any
+
+import numpy as np
+from numpy.lib.array_utils import normalize_axis_index, normalize_axis_tuple
+
+from continuation.arrays import Array, clipped
+from continuation.numbers.algebra import product
+from continuation.numbers.ends import added
+from continuation.numbers.truncated import Truncated, common, gather, joined, parts_of, wrap
+from continuation.numbers.ufuncs import sums_of_products
+
+# --- reductions -------------------------------------------------------------------------------------------
+
+
+def _axes(axis: Any, ndim: int) -> tuple[int, ...]:
+    return tuple(range(ndim)) if axis is None else normalize_axis_tuple(axis, ndim)
+
+
+def _sum(a: Any, axis: Any = None, *, keepdims: bool = False) -> Any:
+    a = gather(a)
+    axes = _axes(axis, a.ndim)
+    count, behind = int(np.prod([a.shape[k] for k in axes])), tuple(k + a.OWN for k in axes)
+    return wrap(added(lambda x: np.asarray(x.sum(axis=behind, keepdims=keepdims)), a.c, count), a.algebra)
+
+
+def _mean(a: Any, axis: Any = None, *, keepdims: bool = False) -> Any:
+    a = gather(a)
+    count = int(np.prod([a.shape[k] for k in _axes(axis, a.ndim)]))
+    if count == 0:
+        raise ValueError(f"numpy.mean of an array of shape {a.shape} along axis {axis}: there is nothing to average")
+    return _sum(a, axis, keepdims=keepdims) / count
+
+
+def _prod(a: Any, axis: Any = None, *, keepdims: bool = False) -> Any:
+    a = gather(a)
+    axes = _axes(axis, a.ndim)
+    kept = [k for k in range(a.ndim) if k not in axes]
+    rest = a.transpose([*axes, *kept]).reshape(-1, *(a.shape[k] for k in kept)) if a.ndim else a.reshape(1)
+    while len(rest) > 1:
+        half = len(rest) // 2
+        rest = np.concatenate([rest[:half] * rest[half : 2 * half], rest[2 * half :]])
+    out = rest[0] if len(rest) else _like(rest, 1.0, None, rest.shape[1:])
+    return out.reshape([1 if k in axes else a.shape[k] for k in range(a.ndim)]) if keepdims else out
+
+
+def _norm(x: Any, ord: Any = None, axis: Any = None, *, keepdims: bool = False) -> Any:
+    x = gather(x)
+    euclidean = ord is None or (ord == 2 and (x.ndim if axis is None else np.size(axis)) == 1)
+    if not (euclidean or (isinstance(ord, str) and ord == "fro")):
+        raise x.unknown(f"numpy.linalg.norm with ord={ord!r}")
+    return np.sqrt(_sum(np.square(x), axis, keepdims=keepdims))
+
+
+def _cumsum(a: Any, axis: Any = None) -> Any:
+    a = gather(a) if axis is not None else gather(a).ravel()
+    along = normalize_axis_index(axis or 0, a.ndim)
+    return wrap(added(lambda x: np.cumsum(x, axis=along + a.OWN), a.c, a.shape[along]), a.algebra)
+
+
+def _diff(a: Any, n: int = 1, axis: int = -1) -> Any:
+    a = gather(a)
+    before, c = (slice(None),) * (normalize_axis_index(axis, a.ndim) + a.OWN), a.c
+    for _ in range(n):
+        c = c[(*before, slice(1, None))] - c[(*before, slice(None, -1))]
+    return wrap(c, a.algebra)
+
+
+def _bincount(x: Any, weights: Any, minlength: int = 0) -> Any:
+    places = np.arange(max(minlength, int(np.max(x, initial=-1)) + 1))
+    return (places[:, None] == x).astype(float) @ gather(weights)
+
+
+# --- products ---------------------------------------------------------------------------------------------
+
+
+def _dot(a: Any, b: Any) -> Any:
+    a, b = gather(a), gather(b)
+    if a.ndim == 0 or b.ndim == 0:
+        return a * b
+    return a @ b if b.ndim <= 2 else _tensordot(a, b, axes=(-1, -2))
+
+
+def _inner(a: Any, b: Any) -> Any:
+    a, b = gather(a), gather(b)
+    return a * b if a.ndim == 0 or b.ndim == 0 else _tensordot(a, b, axes=(-1, -1))
+
+
+def _tensordot(a: Any, b: Any, axes: Any = 2) -> Any:
+    a, b = gather(a), gather(b)
+    if isinstance(axes, int):
+        axes = (range(a.ndim - axes, a.ndim), range(axes))
+    left, right = normalize_axis_tuple(axes[0], a.ndim), normalize_axis_tuple(axes[1], b.ndim)
+    if [a.shape[k] for k in left] != [b.shape[k] for k in right]:
+        raise ValueError(f"numpy.tensordot: axes {axes} of shapes {a.shape} and {b.shape} do not pair")
+    rows, columns = ([k for k in range(x.ndim) if k not in used] for x, used in ((a, left), (b, right)))
+    length = int(np.prod([a.shape[k] for k in left]))
+    first, second = a.transpose(*rows, *left).reshape(-1, length), b.transpose(*right, *columns).reshape(length, -1)
+    return (first @ second).reshape(*(a.shape[k] for k in rows), *(b.shape[k] for k in columns))
+
+
+def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
+    """Two operands at a time: what neither the others nor the result have is summed at once."""
+    like = next(x for x in map(gather, operands) if isinstance(x, Truncated))
+    if not isinstance(subscripts, str):
+        raise like.unknown("numpy.einsum without subscripts")
+    inputs, arrow, output = subscripts.replace(" ", "").partition("->")
+    labels = inputs.replace(",", "").replace("...", "")
+    own = "".join([x for x in ascii_letters if x not in labels][: like.OWN])
+    if len(own) < like.OWN:
+        raise like.unknown("numpy.einsum with every letter of the alphabet")
+    if not arrow:
+        output = "..." * ("..." in inputs) + "".join(x for x in sorted(set(labels)) if labels.count(x) == 1)
+    parts, arrays = inputs.split(","), [like.lifted(x) for x in operands]
+    if len(parts) != len(arrays):
+        raise ValueError(f"numpy.einsum: {subscripts!r} has {len(parts)} operands, found {len(arrays)}")
+    part, total = parts[0], arrays[0]
+    for k, (other, array) in enumerate(zip(parts[1:], arrays[1:]), 2):
+        later = output + "".join(parts[k:])
+        both = "..." * ("..." in part + other) + "".join(
+            x for x in dict.fromkeys(part + other) if x in later.replace(".", "")
+        )
+        kept = both if k < len(parts) else output
+        total, part = _contracted(f"{own}{part},{own}{other}->{own}{kept}", total, array), kept
+    if len(parts) == 1:
+        spec = f"{own}{part}->{own}{output}"
+        return wrap(added(lambda x: np.einsum(spec, x), total.c, total.size), total.algebra)
+    return total
+
+
+def _contracted(spec: str, a: Any, b: Any) -> Any:
+    algebra = common((a, b))
+    return wrap(product(algebra, sums_of_products(lambda x, y: np.einsum(spec, x, y)), a.c, b.c), algebra)
+
+
+# --- assembly ---------------------------------------------------------------------------------------------
+
+
+def _concatenate(arrays: Any, axis: int | None = 0) -> Any:
+    parts = [x.ravel() for x in parts_of(arrays)] if axis is None else parts_of(arrays)
+    along = normalize_axis_index(axis or 0, parts[0].ndim)
+    return joined(lambda arrays, own: np.concatenate(arrays, axis=along + own), parts)
+
+
+def _stack(arrays: Any, axis: int = 0) -> Any:
+    parts = parts_of(arrays)
+    along = normalize_axis_index(axis, parts[0].ndim + 1)
+    return joined(lambda arrays, own: np.stack(arrays, axis=along + own), parts)
+
+
+def _hstack(tup: Any) -> Any:
+    parts = [np.atleast_1d(x) for x in parts_of(tup)]
+    return _concatenate(parts, 0 if parts[0].ndim == 1 else 1)
+
+
+def _where(condition: Any, x: Any, y: Any) -> Any:
+    if isinstance(condition, Truncated):
+        raise condition.unknown("numpy.where with such an array for a condition (compare it first)")
+    condition, parts = np.asarray(condition), parts_of([x, y])
+    ndim = max(condition.ndim, *(part.ndim for part in parts))
+    parts = [part.reshape((1,) * (ndim - part.ndim) + part.shape) for part in parts]
+    return joined(lambda arrays, own: np.where(condition, *arrays), parts)
+
+
+def _like(a: Any, value: Any, dtype: Any, shape: Any) -> Any:
+    if dtype is not None and np.dtype(dtype) != np.float64:
+        raise a.unknown(f"arrays like themselves of dtype {np.dtype(dtype)}")
+    shape = a.shape if shape is None else (shape,) if isinstance(shape, int) else tuple(shape)
+    zeros = wrap(a.constant(np.zeros(shape)), a.algebra)
+    if a.OWN == 1:
+        zeros = zeros.moved(lambda x: np.zeros((len(a.c), *shape), a.c.dtype))
+    if shape:
+        zeros[...] = value
+        return zeros
+    return zeros + value
+
+
+# --- shape ------------------------------------------------------------------------------------------------
+
+
+def _broadcast_to(array: Any, shape: Any) -> Any:
+    shape = (shape,) if isinstance(shape, int) else tuple(shape)
+    aligned, own = array.reshape((1,) * (len(shape) - array.ndim) + array.shape), array.OWN
+    return aligned.moved(lambda x: np.broadcast_to(x, (*x.shape[:own], *shape)))
+
+
+def _reshaped(function: Any) -> Callable[..., Any]:
+    """The rule of a function that keeps the order of entries: it is asked for the shape."""
+
+    def rule(a: Any, *args: Any, **keywords: Any) -> Any:
+        a = gather(a)
+        if keywords.get("order", "C") != "C":
+            raise a.unknown(f"numpy.{function.__name__} with order={keywords['order']!r}")
+        return a.reshape(function(np.broadcast_to(0.0, a.shape), *args, **keywords).shape)
+
+    return rule
+
+
+def _at_least(function: Any) -> Callable[..., Any]:
+    def rule(*arys: Any) -> Any:
+        parts = [_reshaped(function)(x) if isinstance(x, Truncated) else function(x) for x in map(gather, arys)]
+        return parts[0] if len(parts) == 1 else tuple(parts)
+
+    return rule
+
+
+def _moved(function: Any) -> Callable[..., Any]:
+    """The rule of a function that only selects entries or zeros, found by applying it to the indices of the entries."""
+
+    def rule(a: Any, *args: Any, **keywords: Any) -> Any:
+        if not isinstance(a, Truncated):
+            (like,) = [x for x in (*args, *keywords.values()) if isinstance(x, Truncated)][:1]
+            raise like.unknown(f"numpy.{function.__name__} with {like.ONE} for any argument but the first")
+        places, own = function(np.arange(1, a.size + 1).reshape(a.shape), *args, **keywords), a.OWN
+
+        def select(x: Array) -> Array:
+            entries = np.zeros((*x.shape[:own], a.size + 1), x.dtype)
+            entries[..., 1:] = x.reshape(*x.shape[:own], -1)
+            return entries[..., places]
+
+        return a.moved(select)
+
+    return rule
+
+
+def _pad(array: Any, pad_width: Any, mode: str = "constant", **keywords: Any) -> Any:
+    if mode not in ("constant", "edge", "wrap", "reflect", "symmetric"):
+        raise array.unknown(f"numpy.pad with mode={mode!r}")
+    values = keywords.pop("constant_values", 0)
+    out = _moved(np.pad)(array, pad_width, mode, **keywords)
+    return (
+        out if np.all(np.equal(values, 0)) else out + np.pad(np.zeros(array.shape), pad_width, constant_values=values)
+    )
+
+
+def _split(ary: Any, indices_or_sections: Any, axis: int = 0) -> list[Any]:
+    places = np.array_split(np.arange(ary.shape[axis]), indices_or_sections)
+    if isinstance(indices_or_sections, int) and ary.shape[axis] % indices_or_sections:
+        raise ValueError(f"numpy.split: {ary.shape[axis]} entries do not divide into {indices_or_sections} equal parts")
+    return [_moved(np.take)(ary, part, axis) for part in places]
+
+
+RULES: dict[Any, Callable[..., Any]] = {
+    np.sum: _sum,
+    np.mean: _mean,
+    np.prod: _prod,
+    np.linalg.norm: _norm,
+    np.cumsum: _cumsum,
+    np.trace: lambda a, offset=0, axis1=0, axis2=1: _sum(np.diagonal(a, offset, axis1, axis2), -1),
+    np.diff: _diff,
+    np.bincount: _bincount,
+    np.dot: _dot,
+    np.inner: _inner,
+    np.vdot: lambda a, b: gather(a).reshape(-1) @ gather(b).reshape(-1),
+    np.outer: lambda a, b: gather(a).reshape(-1, 1) * gather(b).reshape(1, -1),
+    np.tensordot: _tensordot,
+    np.einsum: _einsum,
+    np.concatenate: _concatenate,
+    np.stack: _stack,
+    np.hstack: _hstack,
+    np.vstack: lambda tup: _concatenate([np.atleast_2d(x) for x in parts_of(tup)]),
+    np.column_stack: lambda tup: _concatenate([x.reshape(-1, 1) if x.ndim < 2 else x for x in parts_of(tup)], 1),
+    np.append: lambda arr, values, axis=None: _concatenate([arr, values], axis),
+    np.where: _where,
+    np.clip: clipped,
+    np.zeros_like: lambda a, dtype=None, *, shape=None: _like(a, 0.0, dtype, shape),
+    np.ones_like: lambda a, dtype=None, *, shape=None: _like(a, 1.0, dtype, shape),
+    np.empty_like: lambda prototype, dtype=None, *, shape=None: _like(prototype, 0.0, dtype, shape),
+    np.full_like: lambda a, fill_value, dtype=None, *, shape=None: _like(a, fill_value, dtype, shape),
+    np.copy: lambda a: a.copy(),
+    np.shape: lambda a: a.shape,
+    np.ndim: lambda a: a.ndim,
+    np.size: lambda a, axis=None: a.size if axis is None else a.shape[axis],
+    np.transpose: lambda a, axes=None: a.transpose(*(axes or ())),
+    np.broadcast_to: _broadcast_to,
+    np.pad: _pad,
+    np.split: _split,
+    **{f: _at_least(f) for f in (np.atleast_1d, np.atleast_2d)},
+    **{f: _reshaped(f) for f in (np.reshape, np.ravel, np.squeeze, np.expand_dims)},
+    **{
+        f: _moved(f)
+        for f in (
+            *(np.roll, np.flip, np.flipud, np.fliplr, np.rot90, np.take, np.tile, np.repeat, np.delete),
+            *(np.diag, np.diagonal, np.tril, np.triu, np.moveaxis, np.swapaxes),
+        )
+    },
+}
+"""Every numpy function that these arrays know."""

@@ -1,0 +1,345 @@
+"""Arrays whose entries are truncated series of numbers or of intervals, accepted by numpy as arrays.
+
+A ring (`Jet`: numbers; `Interval`: intervals, many boxes at once) times a truncated algebra. What differs is in the
+coefficients `c`, an array or `Ends`, and in the algebra; everything else is shared.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+from scipy.sparse import issparse
+
+from continuation.arrays import Array
+from continuation.numbers import ufuncs
+from continuation.numbers.algebra import Algebra, Store, lengthened
+from continuation.numbers.ends import Ends, moved, sparse_product
+from continuation.numbers.series import ELEMENTARY
+
+FUNCTIONS: dict[Any, Callable[..., Any]] = {}
+"""Rules by numpy function. The package fills it from `functions`, whose rules are built on `Truncated`."""
+
+
+def _operator(ufunc: np.ufunc, *, swapped: bool = False) -> Callable[[Truncated, Any], Any]:
+    def method(self: Truncated, other: Any) -> Any:
+        return self._call(ufunc, (other, self) if swapped else (self, other))
+
+    return method
+
+
+def _in_place(ufunc: np.ufunc) -> Callable[[Truncated, Any], Any]:
+    def method(self: Truncated, other: Any) -> Any:
+        result = self._call(ufunc, (self, other))
+        if self.ndim == 0:  # as numpy's scalars, which never change
+            return result
+        self[...] = result
+        return self
+
+    return method
+
+
+def _method(function: Any) -> Callable[..., Any]:
+    def method(self: Truncated, *args: Any, **keywords: Any) -> Any:
+        return function(self, *args, **keywords)
+
+    parameters = "Parameters\n----------\n*args, **keywords\n    As for that function."
+    method.__doc__ = f"`numpy.{function.__name__}` of this array.\n\n{parameters}"
+    return method
+
+
+class Truncated:
+    """An array of truncated series that goes through numpy as an array of its shape would."""
+
+    __slots__ = ("algebra", "c")
+    __hash__ = None  # type: ignore[assignment]
+
+    OWN: ClassVar[int]
+    WHO: ClassVar[str]
+    ONE: ClassVar[str]
+    NAME: ClassVar[str]
+    LOST: ClassVar[str]
+    """Axes of the coefficients in front of the shape; what errors call such arrays, and what plain ones lack."""
+
+    c: Store
+    algebra: Algebra
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the array."""
+        return tuple(self.c.shape[self.OWN :])
+
+    @property
+    def ndim(self) -> int:
+        """Number of axes."""
+        return int(self.c.ndim - self.OWN)
+
+    @property
+    def size(self) -> int:
+        """Number of entries."""
+        return int(np.prod(self.shape))
+
+    @property
+    def dtype(self) -> np.dtype[np.float64]:
+        """That of the coefficients."""
+        return np.dtype(np.float64)
+
+    def __bool__(self) -> bool:
+        return bool(self != 0.0)
+
+    def __float__(self) -> float:
+        raise TypeError(
+            f"{self.NAME} cannot become a float, which would drop its {self.LOST}: for assignment into a float array "
+            "use np.stack, np.concatenate or an array made by np.zeros_like(y); for math.* use the numpy function"
+        )
+
+    def __getattr__(self, name: str) -> Any:
+        # numpy's loops over object arrays call a method of the function's name on each entry.
+        ufunc = getattr(np, name, None)
+        if ufunc not in ELEMENTARY:
+            raise AttributeError(f"{self.WHO} do not know the attribute {name!r} of arrays")
+        return lambda: self._call(ufunc, (self,))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return wrap, (self.c.copy(), self.algebra)
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
+        name = f"numpy.{ufunc.__name__}"
+        if method != "__call__":
+            raise self.unknown(f"{name}.{method}")
+        (out,) = keywords.pop("out", (None,))
+        if keywords:
+            raise self.unknown(f"{name} with {', '.join(keywords)}")
+        result = self._call(ufunc, inputs)
+        if out is None:
+            return result
+        if not isinstance(out, Truncated):
+            raise TypeError(
+                f"{name} cannot write {self.NAME} into a plain array, which would drop its {self.LOST}; write "
+                "a = a + b instead of a += b, or begin with np.zeros_like(y)"
+            )
+        out[...] = result
+        return out
+
+    def __array_function__(self, function: Any, types: Any, args: Any, keywords: Any) -> Any:
+        name, rule = f"{function.__module__}.{function.__name__}", FUNCTIONS.get(function)
+        if rule is None:
+            raise self.unknown(name)
+        try:
+            with np.errstate(all="ignore"):
+                return rule(*args, **keywords)
+        except TypeError:
+            try:
+                inspect.signature(rule).bind(*args, **keywords)
+            except TypeError as mismatch:
+                raise self.unknown(f"{name} with these arguments ({mismatch})") from None
+            raise
+
+    __add__, __radd__, __iadd__ = _operator(np.add), _operator(np.add, swapped=True), _in_place(np.add)
+    __sub__, __rsub__ = _operator(np.subtract), _operator(np.subtract, swapped=True)
+    __isub__ = _in_place(np.subtract)
+    __mul__, __rmul__ = _operator(np.multiply), _operator(np.multiply, swapped=True)
+    __imul__ = _in_place(np.multiply)
+    __truediv__, __rtruediv__ = _operator(np.divide), _operator(np.divide, swapped=True)
+    __itruediv__ = _in_place(np.divide)
+    __pow__, __rpow__ = _operator(np.power), _operator(np.power, swapped=True)
+    __ipow__ = _in_place(np.power)
+    __matmul__, __rmatmul__ = _operator(np.matmul), _operator(np.matmul, swapped=True)
+    __lt__, __le__ = _operator(np.less), _operator(np.less_equal)
+    __gt__, __ge__ = _operator(np.greater), _operator(np.greater_equal)
+    __eq__, __ne__ = _operator(np.equal), _operator(np.not_equal)
+
+    def __neg__(self) -> Any:
+        return wrap(-self.c, self.algebra)
+
+    def __pos__(self) -> Any:
+        return self.copy()
+
+    def __abs__(self) -> Any:
+        return self._call(np.absolute, (self,))
+
+    @property
+    def T(self) -> Any:
+        """The axes in reverse order."""
+        return self.transpose()
+
+    def copy(self) -> Any:
+        """An array of its own memory."""
+        return wrap(self.c.copy(), self.algebra)
+
+    def reshape(self, *shape: Any) -> Any:
+        """The same entries in another shape; a view where that is possible.
+
+        Parameters
+        ----------
+        *shape : int
+            Or one tuple of them.
+        """
+        (shape,) = shape if len(shape) == 1 else (shape,)
+        return self.moved(lambda x: x.reshape(*x.shape[: self.OWN], *np.atleast_1d(shape)))
+
+    def ravel(self) -> Any:
+        """One axis."""
+        return self.reshape(-1)
+
+    def flatten(self) -> Any:
+        """One axis, in memory of its own."""
+        return self.ravel().copy()
+
+    def transpose(self, *axes: Any) -> Any:
+        """The axes in another order (reversed unless given), as a view.
+
+        Parameters
+        ----------
+        *axes : int
+            Or one tuple of them.
+        """
+        if len(axes) == 1 and not isinstance(axes[0], int):
+            (axes,) = axes
+        order = range(self.ndim)[::-1] if not axes else [range(self.ndim)[axis] for axis in axes]
+        own = self.OWN
+        return self.moved(lambda x: x.transpose(*range(own), *(axis + own for axis in order)))
+
+    sum, mean, prod, squeeze = _method(np.sum), _method(np.mean), _method(np.prod), _method(np.squeeze)
+    cumsum, dot = _method(np.cumsum), _method(np.dot)
+
+    # --- not for functions that are evaluated ---------------------------------------------------------------
+
+    def unknown(self, operation: str) -> TypeError:
+        """The error for what these arrays cannot do.
+
+        Parameters
+        ----------
+        operation : str
+        """
+        return TypeError(
+            f"{self.WHO} do not know {operation}; write it with numpy functions that they know, or give a jacobian"
+        )
+
+    def moved(self, move: Callable[[Array], Array]) -> Any:
+        """What comes of an operation that only selects entries.
+
+        Parameters
+        ----------
+        move : callable
+            Of an array of shape (coefficients, *shape), for intervals (coefficients, boxes, *shape).
+        """
+        return wrap(moved(move, self.c), self.algebra)
+
+    def lifted(self, x: Any) -> Any:
+        """`x` as it is, or numbers as constants of this kind; lists and object arrays are stacked.
+
+        Parameters
+        ----------
+        x : array_like
+            Numbers, arrays of this kind, or both in lists.
+        """
+        x = x if isinstance(x, Truncated) else gather(x, self.ONE)
+        return x if isinstance(x, Truncated) else wrap(self.constant(x), self.algebra)
+
+    @staticmethod
+    def constant(x: Array) -> Store:
+        """Numbers as coefficients.
+
+        Parameters
+        ----------
+        x : ndarray
+        """
+        return x.astype(float, copy=False)[None]
+
+    def _call(self, ufunc: np.ufunc, inputs: tuple[Any, ...]) -> Any:
+        if ufunc is np.matmul and any(issparse(x) for x in inputs):
+            return self._sparse_product(*inputs)
+        operands = [x if isinstance(x, Truncated | float) else gather(x, self.ONE) for x in inputs]
+        algebra = common([x for x in operands if isinstance(x, Truncated)])
+        stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
+        # Overflow shows as inf, as in any array; where no series exists, demand() raises.
+        with np.errstate(all="ignore"):
+            if ufunc in ufuncs.UNARY:
+                return wrap(ufuncs.UNARY[ufunc](algebra, stores[0]), algebra)
+            if ufunc in ufuncs.BINARY:
+                return wrap(ufuncs.BINARY[ufunc](algebra, *ufuncs.aligned(*stores)), algebra)
+            if ufunc is np.matmul:
+                return wrap(ufuncs.matmul(algebra, *stores), algebra)
+            if ufunc in ufuncs.OPPOSITE:
+                return ufuncs.compared(ufunc, *ufuncs.aligned(*stores))
+            if ufunc in ufuncs.TESTS:
+                return ufuncs.TESTS[ufunc](*stores)
+        raise self.unknown(f"numpy.{ufunc.__name__}")
+
+    def _sparse_product(self, a: Any, b: Any) -> Any:
+        """A sparse matrix of numbers times a vector, from either side."""
+        matrix, x = (b.T, a) if isinstance(a, Truncated) else (a, b)
+        if x.ndim != 1:
+            raise self.unknown(f"a sparse product with an array of {x.ndim} axes")
+
+        return wrap(sparse_product(matrix, x.c), x.algebra)
+
+
+KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
+"""Scalars and arrays, by the type of the coefficients; each kind enters itself."""
+
+
+def wrap(c: Store, algebra: Algebra) -> Any:
+    """The array with these coefficients, not copied."""
+    scalar, array = KINDS[type(c)]
+    made: Truncated = object.__new__(scalar if c.ndim == scalar.OWN else array)
+    made.c, made.algebra = c, algebra
+    return made
+
+
+def gather(x: Any, one: str = "an array of series") -> Any:
+    """`x` as it is, or as an array of numbers; lists and object arrays that hold truncated series are stacked."""
+    if isinstance(x, Truncated):
+        return x
+    if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
+        parts = [gather(part, one) for part in x]
+        if any(isinstance(part, Truncated) for part in parts):
+            return joined(lambda arrays, own: np.stack(arrays, own), parts_of(parts))
+        x = parts
+    elif isinstance(x, np.ndarray) and x.dtype == object and isinstance(x[()], Truncated):
+        return x[()]
+    plain = np.asarray(x)
+    if plain.dtype.kind not in "fiub":
+        raise TypeError(f"{one} met {type(x).__name__} of dtype {plain.dtype}; expected real numbers")
+    return plain
+
+
+def common(operands: Any) -> Algebra:
+    """The algebra of those that are no constants, which must agree."""
+    first, *others = operands if len(operands) == 1 else [x for x in operands if len(x.c) > 1] or operands[:1]
+    for x in others:
+        if type(x.c) is not type(first.c) or len(x.c) != len(first.c) or x.algebra != first.algebra:
+            orders = f"orders {len(first.c) - 1} and {len(x.c) - 1}"
+            raise ValueError(f"{first.WHO} of different kinds meet {x.WHO}: {orders}")
+    algebra: Algebra = first.algebra
+    return algebra
+
+
+def alike(parts: Any) -> list[Store]:
+    """The coefficients of arrays, as many of each and for as many boxes."""
+    length = max(len(x.c) for x in parts)
+    stores = [lengthened(x.c, length) for x in parts]
+    if not isinstance(stores[0], Ends):
+        return stores
+    boxes = max(c.shape[1] for c in stores)
+
+    def repeated(x: Array) -> Array:
+        return np.broadcast_to(x, (length, boxes, *x.shape[2:]))
+
+    return [c if c.shape[1] == boxes else moved(repeated, c) for c in stores]
+
+
+def joined(join: Callable[[list[Array], int], Array], parts: list[Any]) -> Any:
+    """Arrays put together: `join(arrays, own)` of arrays with so many axes of their own in front."""
+    own = parts[0].OWN
+    return wrap(moved(lambda *arrays: join(list(arrays), own), *alike(parts)), common(parts))
+
+
+def parts_of(arrays: Any) -> list[Any]:
+    """Arrays of which one is of a kind here, all of that kind."""
+    parts = [gather(x) for x in arrays]
+    like = next(x for x in parts if isinstance(x, Truncated))
+    return [like.lifted(x) for x in parts]

@@ -1,0 +1,241 @@
+"""What each numpy ufunc does to coefficients."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.numbers import series
+from continuation.numbers.algebra import Algebra, Store, compose, lengthened, product, quotient
+from continuation.numbers.ends import Ends, Mask, bilinear, moved
+from continuation.numbers.ranges import PI
+from continuation.numbers.series import ELEMENTARY
+
+Binary = Callable[[Algebra, Store, Store], Store]
+
+
+class UndecidedError(ArithmeticError):
+    """A comparison that holds for some numbers of an interval and not for others, or not for all boxes alike."""
+
+
+def own_axes(c: Store) -> int:
+    """Axes that a function does not see: the coefficients', and of intervals the boxes'."""
+    return 2 if isinstance(c, Ends) else 1
+
+
+def aligned(a: Store, b: Store) -> tuple[Store, Store]:
+    """Both with as many axes behind their own, as broadcasting wants them."""
+    if a.ndim == b.ndim:
+        return a, b
+    own, most = own_axes(a), max(a.ndim, b.ndim)
+
+    def longer(x: Array) -> Array:
+        return x.reshape(*x.shape[:own], *(1,) * (most - x.ndim), *x.shape[own:])
+
+    return moved(longer, a), moved(longer, b)
+
+
+def spread(c: Store, shape: tuple[int, ...]) -> Store:
+    """Coefficients in a larger shape behind the leading axis, in memory of their own."""
+    return (
+        c.copy() if c.shape[1:] == shape else moved(lambda x: np.array(np.broadcast_to(x, (len(x), *shape))), c).copy()
+    )
+
+
+def _add(algebra: Algebra, a: Store, b: Store) -> Store:
+    if len(a) == len(b):
+        return a + b
+    if len(a) < len(b):
+        a, b = b, a
+    value = a[:1] + b
+    out = spread(a, value.shape[1:])
+    out[:1] = value
+    return out
+
+
+def _multiply(algebra: Algebra, a: Store, b: Store) -> Store:
+    if a is b and isinstance(a, Ends):  # a square, which is nowhere negative
+        return compose(algebra, series.square, a)
+    return product(algebra, operator.mul, a, b)
+
+
+def _power(algebra: Algebra, a: Store, b: Store) -> Store:
+    exponents = _exponents(b)
+    if exponents is None:
+        return _variable_power(algebra, a, b)
+    distinct = np.unique(exponents)
+    a = a if exponents.size == 1 else spread(a, np.broadcast_shapes(a.shape[1:], b.shape[1:]))
+    if len(distinct) == 1:
+        return compose(algebra, partial(series.power, r=float(distinct[0])), a)
+    exponents = np.broadcast_to(exponents, a.shape[own_axes(a) :])
+    for r in distinct:
+        entries = (..., exponents == r)
+        a[entries] = compose(algebra, partial(series.power, r=float(r)), a[entries])
+    return a
+
+
+def _exponents(b: Store) -> Array | None:
+    """The exponents where they are numbers."""
+    if len(b) > 1:
+        return None
+    if not isinstance(b, Ends):
+        return np.asarray(b[0])
+    return np.asarray(b.lo[0, 0]) if b.shape[1] == 1 and np.array_equal(b.lo, b.hi) else None
+
+
+def _variable_power(algebra: Algebra, a: Store, b: Store) -> Store:
+    exp, log = ELEMENTARY[np.exp], ELEMENTARY[np.log]
+    if isinstance(a, Ends):
+        return compose(algebra, exp, product(algebra, operator.mul, compose(algebra, log, a), b))
+    series.demand(~(a[0] <= 0), "numpy.power", "a variable exponent needs a base with positive leading coefficient")
+    logarithm = compose(algebra, log, a) if len(a) > 1 else np.log(a)
+    out = compose(algebra, exp, product(algebra, operator.mul, logarithm, b))
+    out[0] = a[0] ** b[0]
+    return out
+
+
+def _hypot(algebra: Algebra, a: Store, b: Store) -> Store:
+    if isinstance(a, Ends):
+        return compose(algebra, series.sqrt, _add(algebra, *(compose(algebra, series.square, x) for x in (a, b))))
+    size = np.hypot(a[:1], b[:1])
+    series.demand(size != 0, "numpy.hypot", "both leading coefficients are 0")
+    a, b = a / size, b / size
+    squares = _add(algebra, product(algebra, operator.mul, a, a), product(algebra, operator.mul, b, b))
+    return np.asarray(size * compose(algebra, series.sqrt, squares))
+
+
+def _arctan2(algebra: Algebra, a: Store, b: Store) -> Store:
+    if isinstance(a, Ends):
+        return _angle(algebra, a, b)
+    size = np.hypot(a[:1], b[:1])
+    series.demand(size != 0, "numpy.arctan2", "both leading coefficients are 0")
+    # Turned by its leading angle, the point lies on the positive axis, where arctan of the slope is analytic.
+    sine, cosine = a[:1] / size, b[:1] / size
+    along, across = _add(algebra, cosine * b, sine * a), _add(algebra, cosine * a, -sine * b)
+    out = compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, across, along))
+    out[0] = np.arctan2(a[0], b[0])
+    return out
+
+
+def _angle(algebra: Algebra, a: Ends, b: Ends) -> Ends:
+    """The angle of points (b, a), without value across the negative axis."""
+    ahead, beside = (compose(algebra, ELEMENTARY[np.arctan], quotient(algebra, *x)) for x in ((a, b), (b, a)))
+    above, right, quarter = a.lo[:1] > 0.0, b.lo[:1] > 0.0, PI * 0.5
+    turned = Ends(np.where(above, quarter.lo, -quarter.hi), np.where(above, quarter.hi, -quarter.lo))
+    aside = _add(algebra, -beside, turned)
+    return Ends(np.where(right, ahead.lo, aside.lo), np.where(right, ahead.hi, aside.hi))
+
+
+def _extremum(name: str, sign: int) -> Binary:
+    def rule(algebra: Algebra, a: Store, b: Store) -> Store:
+        a, b = (lengthened(x, max(len(a), len(b))) for x in (a, b))
+        if isinstance(a, Ends):
+            return _larger(algebra, a, b) if sign > 0 else -_larger(algebra, -a, -b)
+        series.demand(a[0] != b[0], name, "the leading coefficients tie, and the two sides may part")
+        return np.where(sign * a[0] > sign * b[0], a, b)
+
+    return rule
+
+
+def _larger(algebra: Algebra, a: Ends, b: Ends) -> Ends:
+    """The larger of two; where boxes do not decide, either, with the slopes of both and no more."""
+    first, second = a.lo[:1] > b.hi[:1], b.lo[:1] > a.hi[:1]
+    lo = np.where(first, a.lo, np.where(second, b.lo, np.minimum(a.lo, b.lo)))
+    hi = np.where(first, a.hi, np.where(second, b.hi, np.maximum(a.hi, b.hi)))
+    bent = np.array(algebra.degrees(len(lo))) > 1
+    lo[bent], hi[bent] = (np.where(first | second, x[bent], np.nan) for x in (lo, hi))
+    lo[:1] = np.maximum(a.lo[:1], b.lo[:1])
+    return Ends(lo, hi)
+
+
+def matmul(algebra: Algebra, a: Store, b: Store) -> Store:
+    """The product of vectors and matrices, with numpy's rules for vectors and stacks."""
+    own = own_axes(a)
+    if a.ndim == own or b.ndim == own:
+        raise ValueError("numpy.matmul: a scalar has no matrix product; use *")
+    if own == 1 and len(a) == 1 and a.ndim <= 3 and b.ndim == 2:
+        return np.asarray(b @ a[0].T)  # a constant matrix: one BLAS product for all coefficients
+    if own == 1 and len(b) == 1 and b.ndim <= 3 and a.ndim == 2:
+        return np.asarray(a @ b[0])
+    row, column = a.ndim == own + 1, b.ndim == own + 1
+    a = moved(lambda x: x[..., None, :], a) if row else a
+    b = moved(lambda x: x[..., None], b) if column else b
+    out = product(algebra, sums_of_products(np.matmul), *aligned(a, b))
+    out = out[..., 0] if column else out
+    return moved(lambda x: np.squeeze(x, axis=-1 if column else -2), out) if row else out
+
+
+def sums_of_products(function: Callable[[Array, Array], Array]) -> Callable[[Any, Any], Any]:
+    """A bilinear function of arrays as one of coefficients."""
+    return lambda a, b: bilinear(function, a, b) if isinstance(a, Ends) else function(a, b)
+
+
+def _composed(rule: series.Rule, algebra: Algebra, a: Store) -> Store:
+    return compose(algebra, rule, a)
+
+
+UNARY: dict[np.ufunc, Callable[[Algebra, Store], Store]] = {
+    np.positive: lambda algebra, a: a.copy(),
+    np.negative: lambda algebra, a: -a,
+    np.fabs: partial(_composed, series.absolute),
+    **{f: partial(_composed, rule) for f, rule in ELEMENTARY.items()},
+}
+
+BINARY: dict[np.ufunc, Binary] = {
+    np.add: _add,
+    np.subtract: lambda algebra, a, b: a - b if len(a) == len(b) else _add(algebra, a, -b),
+    np.multiply: _multiply,
+    np.divide: quotient,
+    np.power: _power,
+    np.float_power: _power,
+    np.hypot: _hypot,
+    np.arctan2: _arctan2,
+    np.maximum: _extremum("numpy.maximum", 1),
+    np.minimum: _extremum("numpy.minimum", -1),
+}
+"""Elementwise functions of two arguments, whose coefficients have been given the same number of axes."""
+
+
+# --- decided by the leading coefficients ------------------------------------------------------------------
+
+
+OPPOSITE: dict[np.ufunc, np.ufunc] = {np.less: np.greater_equal, np.greater: np.less_equal, np.equal: np.not_equal}
+OPPOSITE |= {other: one for one, other in OPPOSITE.items()}
+"""What holds where a comparison of two numbers does not."""
+
+
+def _surely(ufunc: np.ufunc, a: Ends, b: Ends) -> Mask:
+    """Where a comparison holds for all numbers of two intervals: it does if it holds for their ends."""
+    if ufunc is np.not_equal:
+        return _surely(np.less, a, b) | _surely(np.greater, a, b)
+    holds: Mask = ufunc(a.lo, b.lo) & ufunc(a.lo, b.hi) & ufunc(a.hi, b.lo) & ufunc(a.hi, b.hi)
+    return holds
+
+
+def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
+    """A comparison; UndecidedError unless it holds for all numbers of all boxes, or for none."""
+    if not isinstance(a, Ends):
+        return ufunc(a[0], b[0])
+    yes, no = (_surely(f, a[0], b[0]).all(axis=0) for f in (ufunc, OPPOSITE[ufunc]))
+    if not (yes | no).all():
+        raise UndecidedError("a comparison is not decided on a box: it holds for some of its points only")
+    return yes
+
+
+def finite(c: Store) -> Any:
+    """Where all coefficients are finite."""
+    if isinstance(c, Ends):
+        return (np.isfinite(c.lo) & np.isfinite(c.hi)).all(axis=(0, 1))
+    return np.isfinite(c).all(axis=0)
+
+
+TESTS: dict[np.ufunc, Callable[[Store], Any]] = {
+    np.isfinite: finite,
+    np.isnan: lambda c: ~finite(c) if isinstance(c, Ends) else np.isnan(c).any(axis=0),
+}
+"""Decided by all coefficients."""
