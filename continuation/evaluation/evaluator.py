@@ -15,9 +15,10 @@ from attrs import field, frozen
 from scipy.linalg.blas import dasum, dscal
 
 from continuation.arguments.checks import instance_with, real_vector
-from continuation.arrays import Array, Matrix, finite, generic_vector, largest
+from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
+from continuation.evaluation.derivatives import check_derivative, from_residual
+from continuation.evaluation.pattern import generic
 from continuation.evaluation.pieces import WholeMap
 from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces, offers
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
@@ -61,9 +62,7 @@ class SingularPointError(EvaluationError):
 @lru_cache(maxsize=4)
 def _moves(n: int) -> Array:
     """Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them."""
-    generic = generic_vector(n)
-    moves: Array = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
-    return LOOK * moves
+    return LOOK * generic(n)
 
 
 @frozen(eq=False, slots=False)
@@ -148,9 +147,9 @@ class Evaluator:
         self._kept: dict[bytes, Matrix] = {}
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
-        self._derivative: Derivative | None = None
+        self._derivative: Callable[[Array, float], tuple[Matrix, Array]] | None = None
         if offers(homotopy, SupportsJacobian):
-            self._derivative = Derivative(homotopy.jacobian, source="jacobian")
+            self._derivative = homotopy.jacobian
 
     def _given(self) -> Array:
         """The start as one vector (y0, lam0), of real numbers."""
@@ -227,12 +226,14 @@ class Evaluator:
         return np.abs(change, out=change)
 
     @property
-    def derivative(self) -> Derivative:
+    def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
         """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
         if self._derivative is None:
             u = self._given()
-            self._derivative = from_residual(self.called, (u[:-1], float(u[-1])))
-            self.methods.update(self._derivative.references)
+            sparsity = getattr(self.homotopy, "sparsity", None)
+            derivative = from_residual(self.called, (u[:-1], float(u[-1])), sparsity, self.counts.notes)
+            self.methods.update(derivative.products.references)
+            self._derivative = derivative
         return self._derivative
 
     def differential(self, u: Array) -> Callable[[Array], Array] | None:
@@ -259,7 +260,7 @@ class Evaluator:
             with Silence():
                 return self._evaluated(u)
         try:
-            answer = (self._derivative or self.derivative).function(u[:-1], float(u[-1]))
+            answer = (self._derivative or self.derivative)(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
             raise _unevaluated("derivative", error) from error
         if not self._checked:

@@ -1,0 +1,201 @@
+"""Products H'(u) w of a homotopy that gives only its residual: by jets, the complex step, or differences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any, Protocol
+
+import numpy as np
+from attrs import frozen
+
+from continuation.arrays import Array
+from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
+
+Residual = Callable[..., Any]
+"""``residual(y, lam) -> (N,)``."""
+
+
+class Products(Protocol):
+    """A way to get H' without its author."""
+
+    @property
+    def name(self) -> str:
+        """How it is called."""
+        ...
+
+    @property
+    def agreement(self) -> float:
+        """How far two sums of the same products may differ, beside the sum of their terms."""
+        ...
+
+    @property
+    def references(self) -> tuple[str, ...]:
+        """Where it was published, in BibTeX."""
+        ...
+
+    def scale(self, u: Array) -> Array:
+        """What directions are measured in at u, shape (N + 1,)."""
+        ...
+
+    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
+        """H'(u) times each of the directions, in units of `scale`: (k, N + 1) gives (N, k)."""
+        ...
+
+    def whole(self, residual: Residual, u: Array) -> Array:
+        """All of H'(u), shape (N, N + 1)."""
+        ...
+
+
+@frozen
+class ByJets:
+    """Exact, by truncated Taylor arithmetic, `continuation.jets`."""
+
+    name: str = "jets"
+    agreement: float = float(np.sqrt(np.finfo(float).eps))
+    references: tuple[str, ...] = (GRIEWANK_WALTHER,)
+
+    def scale(self, u: Array) -> Array:
+        """Ones."""
+        return np.ones_like(u)
+
+    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
+        """All directions go through the residual together."""
+        from continuation import jets
+
+        def along(s: Any) -> Any:
+            at = u + s @ directions
+            return residual(at[:-1], at[-1])
+
+        return jets.jacobian(along, np.zeros(len(directions)))
+
+    def whole(self, residual: Residual, u: Array) -> Array:
+        """All of H'(u)."""
+        from continuation import jets
+
+        return jets.jacobian(lambda at: residual(at[:-1], at[-1]), u)
+
+
+def _by_units(products: Products, residual: Residual, u: Array) -> Array:
+    return products(residual, u, np.eye(u.size)) / products.scale(u)
+
+
+@frozen
+class ByComplexStep:
+    """Exact to round-off (Squire and Trapp, SIAM Review 40, 1998)."""
+
+    name: str = "complex step"
+    agreement: float = float(np.sqrt(np.finfo(float).eps))
+    references: tuple[str, ...] = (SQUIRE_TRAPP,)
+
+    def scale(self, u: Array) -> Array:
+        """Ones."""
+        return np.ones_like(u)
+
+    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
+        """One complex residual a direction."""
+        moved = (u + 1e-200j * w for w in directions)
+        return np.stack([np.asarray(residual(at[:-1], at[-1])).imag * 1e200 for at in moved], axis=1)
+
+    whole = _by_units
+
+
+DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
+"""Steps of central differences beside the size of a component (or 1, where it is 0): eps^(1/3), the best one where that
+is how far the function sees it, and others, since zero may lie anywhere and units may be any."""
+
+
+def sizes(u: Array) -> Array:
+    """What the steps of differences are measured by: a component's size, or 1."""
+    return np.where(u != 0.0, np.abs(u), 1.0)
+
+
+def _trials(residual: Residual, u: Array, w: Array) -> tuple[list[Array], Array]:
+    """Central differences along w at all steps, and how much each changes from one step to the next: (steps - 1, N).
+
+    The change is beside its own size.
+    """
+
+    def at(h: float) -> Array:
+        ahead, behind = u + h * w, u - h * w
+        # A copy of the first: a residual may return the same array every time.
+        try:
+            change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
+        except (ArithmeticError, ValueError):
+            # Outside the domain; shorter steps stay inside.
+            return np.full(u.size - 1, np.nan)
+        return np.asarray(change / (2.0 * h), dtype=float)
+
+    with np.errstate(all="ignore"):
+        found = [at(float(h)) for h in DIFFERENCE_STEPS]
+        changes = []
+        for one, other in pairwise(found):
+            size = np.abs(one) + np.abs(other)
+            change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
+            changes.append(np.where(np.isfinite(change), change, 1.0))
+    return found, np.array(changes)
+
+
+def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, float]:
+    """The central difference of a residual along w, and its step.
+
+    Of several steps that one is taken at which the difference changes least from this to the next, in the mean over
+    the equations, each beside its own size.
+
+    `u`, `w` of shape (N + 1,).
+    """
+    found, changes = _trials(residual, u, w)
+    best = int(np.argmin(changes.mean(axis=1))) + 1
+    return found[best], float(DIFFERENCE_STEPS[best])
+
+
+@frozen(eq=False)
+class ByDifferences:
+    """Central differences, about eight to ten digits.
+
+    `u0`, of shape (N + 1,): Where the steps were found. `steps`, of shape (N + 1,): Of each component, beside its size.
+    """
+
+    u0: Array
+    steps: Array
+    name: str = "differences"
+    agreement: float = 1e-3
+    references: tuple[str, ...] = ()
+
+    def scale(self, u: Array) -> Array:
+        """The steps at u, as round-off leaves them."""
+        reach = self.steps * np.maximum(sizes(self.u0), np.abs(u))
+        return np.asarray(0.5 * ((u + reach) - (u - reach)))
+
+    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
+        """Two residuals a direction."""
+        found = []
+        for w in directions * self.scale(u):
+            ahead, behind = u + w, u - w
+            change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
+            found.append(0.5 * change)
+        return np.stack(found, axis=1)
+
+    whole = _by_units
+
+
+def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any = None) -> ByDifferences:
+    """Differences with steps found at `u0`, shape (N + 1,): each component has the one that suits its equations best.
+
+    Parameters
+    ----------
+    residual : callable
+    u0 : ndarray, shape (N + 1,)
+    groups : ndarray of int, shape (N + 1,), optional
+        Components of one group are moved together; by default each by itself.
+    rows : sparse array, shape (N + 1, N), optional
+        Of ones: the equations in which a component stands, no two of one group in the same. By default all.
+    """
+    steps, size = np.empty_like(u0), sizes(u0)
+    groups = np.arange(u0.size) if groups is None else groups
+    for group in range(int(groups.max()) + 1):
+        own = groups == group
+        changes = _trials(residual, u0, np.where(own, size, 0.0))[1].T
+        seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
+        steps[own] = DIFFERENCE_STEPS[np.argmin(seen, axis=1) + 1]
+    return ByDifferences(u0, steps)
