@@ -24,11 +24,11 @@ class Counts:
 
     def copy(self) -> Counts:
         """The counts as they stand."""
-        return Counts(**self.as_dict(), notes=set(self.notes))
+        return Counts(*self.as_dict().values(), notes=set(self.notes))
 
     def __add__(self, other: Counts) -> Counts:
         mine, theirs = self.as_dict(), other.as_dict()
-        return Counts(**{name: mine[name] + theirs[name] for name in mine}, notes=self.notes | other.notes)
+        return Counts(*(mine[name] + theirs[name] for name in mine), notes=self.notes | other.notes)
 
     def __str__(self) -> str:
         return "; ".join([repr(self), *sorted(self.notes)])

@@ -33,7 +33,7 @@ AGREEMENT = 1e-3
 SPARSE_FROM = 64
 """Unknowns: below, a dense factorisation takes less time than a sparse one does without its arithmetic."""
 
-TOGETHER = 64
+LOOKS_AT_ONCE = 64
 """Directions that are looked at together: more only cost memory."""
 
 
@@ -92,28 +92,33 @@ class Derivative:
 
     def _by_groups(self, u: Array, pattern: Pattern) -> tuple[Matrix, Array] | None:
         """The sparse derivative; None where it lacks something."""
-        scale, directions = self.products.scale(u), pattern.directions
+        scale, directions, weights = self.products.scale(u), pattern.directions, pattern.weights
+        if scale is not None:
+            directions = directions.copy()
+            directions[-1] *= self.products.even
+            weights = directions[-1][pattern.columns]
         seen = self.products(self.residual, u, directions)
-        entries = pattern.entries(seen) / scale[pattern.columns]
-        column, product = seen[:, -2], seen[:, -1]
-        w = directions[-1] * scale
-        terms, more = entries * w[pattern.columns], column * directions[-1, -1]
-        size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
+        entries, column, product = pattern.entries(seen), seen[:, -2], seen[:, -1]
+        terms, more = entries * weights, column * directions[-1, -1]
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
-        allowed = self.products.agreement * size
+        size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
         # Not finite: outside the domain, which is not the pattern's fault.
-        if (gap > np.maximum(allowed, self.products.agreement * float(allowed.max()))).any():
-            return None
-        return pattern.matrix(entries), column / scale[-1]
+        if (gap > self.products.agreement * size).any():
+            allowed = self.products.agreement * size
+            if (gap > np.maximum(allowed, self.products.agreement * float(allowed.max()))).any():
+                return None
+        if scale is not None:
+            entries, column = entries / scale[pattern.columns], column / scale[-1]
+        return pattern.matrix(entries), np.ascontiguousarray(column)
 
     def _grown(self, u: Array, known: Pattern) -> Pattern | None:
         """The pattern together with what stands at u."""
 
         def touched(labels: Places, count: int) -> Any:
             rows = []
-            for first in range(0, count, TOGETHER):
-                some = np.flatnonzero((labels >= first) & (labels < first + TOGETHER))
-                directions = np.zeros((min(TOGETHER, count - first), u.size))
+            for first in range(0, count, LOOKS_AT_ONCE):
+                some = np.flatnonzero((labels >= first) & (labels < first + LOOKS_AT_ONCE))
+                directions = np.zeros((min(LOOKS_AT_ONCE, count - first), u.size))
                 directions[labels[some] - first, some] = generic(u.size)[some]
                 rows.append(self.products(self.residual, u, directions) != 0.0)
             return np.concatenate(rows, axis=1)
@@ -171,24 +176,28 @@ def given_pattern(sparsity: Any, n: int) -> Pattern:
 
 
 def from_residual(
-    residual: Residual, start: tuple[Array, float], sparsity: Any = None, notes: set[str] | None = None
+    residual: Residual,
+    start: tuple[Array, float],
+    pattern: Pattern | None = None,
+    notes: set[str] | None = None,
+    products: Products | None = None,
 ) -> Derivative:
     """The best derivative that a residual allows: jets, else complex step, else central differences.
 
     The first two are tried at the start, and believed when they agree with a difference there, since a residual may
     well run on complex numbers and be wrong on them (``abs``, ``np.real``).
 
-    `start` of shape (N,). `sparsity`, of shape (N, N): What is not zero may be so in H_y; looked for where None.
-    `notes`: Where it is said what was done.
+    `start` of shape (N,). `pattern`: What may not be zero in H_y; looked for where None, if there are many unknowns.
+    `notes`: Where it is said what was done. `products`: The homotopy's own, taken for granted.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)
     w = sizes(u) * generic_vector(u.size)
     said: set[str] = set() if notes is None else notes
-    if sparsity is not None:
-        pattern: Pattern | None = given_pattern(sparsity, y.size)
-    else:
-        pattern = _looked_for(residual, u) if y.size >= SPARSE_FROM else None
+    if pattern is None and y.size >= SPARSE_FROM:
+        pattern = _looked_for(residual, u)
+    if products is not None:
+        return Derivative(residual, products, pattern, said)
     reference: Array | None = None
     for products in (ByJets(), ByComplexStep()):
         derivative = Derivative(residual, products, pattern, said)

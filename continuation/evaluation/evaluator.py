@@ -17,10 +17,18 @@ from scipy.linalg.blas import dasum, dscal
 from continuation.arguments.checks import instance_with, real_vector
 from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import check_derivative, from_residual
-from continuation.evaluation.pattern import generic
+from continuation.evaluation.derivatives import check_derivative, from_residual, given_pattern
+from continuation.evaluation.pattern import Pattern, generic
 from continuation.evaluation.pieces import WholeMap
-from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces, offers
+from continuation.evaluation.products import Given
+from continuation.homotopy import (
+    SupportsBordered,
+    SupportsDifferential,
+    SupportsJacobian,
+    SupportsPieces,
+    SupportsSparsity,
+    offers,
+)
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.linear.silence import Silence, silent
 from continuation.rejection import Rejection
@@ -170,6 +178,7 @@ class Evaluator:
         """The start as one vector (y0, lam0), checked, at which the residual is one."""
         u = self._given()
         y0 = u[:-1]
+        self._sparsity(y0.size)
         r = np.asarray(self.called(y0.copy(), float(u[-1])))
         if r.shape != y0.shape:
             raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
@@ -177,6 +186,9 @@ class Evaluator:
             found = "complex ones" if r.dtype.kind == "c" else f"an array of the type {r.dtype}"
             raise ValueError(f"residual: expected real numbers, found {found}")
         return u
+
+    def _sparsity(self, n: int) -> Pattern | None:
+        return given_pattern(self.homotopy.sparsity, n) if offers(self.homotopy, SupportsSparsity) else None
 
     def called(self, y: Any, lam: Any) -> Any:
         """The plug-in's residual, on numbers or on jets, counted.
@@ -230,8 +242,9 @@ class Evaluator:
         """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
         if self._derivative is None:
             u = self._given()
-            sparsity = getattr(self.homotopy, "sparsity", None)
-            derivative = from_residual(self.called, (u[:-1], float(u[-1])), sparsity, self.counts.notes)
+            start = u[:-1], float(u[-1])
+            products = None if self._differential is None else Given(self._differential)
+            derivative = from_residual(self.called, start, self._sparsity(u.size - 1), self.counts.notes, products)
             self.methods.update(derivative.products.references)
             self._derivative = derivative
         return self._derivative

@@ -34,8 +34,13 @@ class Products(Protocol):
         """Where it was published, in BibTeX."""
         ...
 
-    def scale(self, u: Array) -> Array:
-        """What directions are measured in at u, shape (N + 1,)."""
+    @property
+    def even(self) -> Array | float:
+        """In units of `scale`, what moves each component as far as the others, beside its size."""
+        ...
+
+    def scale(self, u: Array) -> Array | None:
+        """What directions are measured in at u, shape (N + 1,); None for 1."""
         ...
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
@@ -54,10 +59,10 @@ class ByJets:
     name: str = "jets"
     agreement: float = float(np.sqrt(np.finfo(float).eps))
     references: tuple[str, ...] = (GRIEWANK_WALTHER,)
+    even: float = 1.0
 
-    def scale(self, u: Array) -> Array:
-        """Ones."""
-        return np.ones_like(u)
+    def scale(self, u: Array) -> None:
+        """None: units do not matter to it."""
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
         """All directions go through the residual together."""
@@ -77,7 +82,8 @@ class ByJets:
 
 
 def _by_units(products: Products, residual: Residual, u: Array) -> Array:
-    return products(residual, u, np.eye(u.size)) / products.scale(u)
+    found, scale = products(residual, u, np.eye(u.size)), products.scale(u)
+    return found if scale is None else found / scale
 
 
 @frozen
@@ -87,10 +93,10 @@ class ByComplexStep:
     name: str = "complex step"
     agreement: float = float(np.sqrt(np.finfo(float).eps))
     references: tuple[str, ...] = (SQUIRE_TRAPP,)
+    even: float = 1.0
 
-    def scale(self, u: Array) -> Array:
-        """Ones."""
-        return np.ones_like(u)
+    def scale(self, u: Array) -> None:
+        """None: units do not matter to it."""
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
         """One complex residual a direction."""
@@ -100,9 +106,34 @@ class ByComplexStep:
     whole = _by_units
 
 
+@frozen(eq=False)
+class Given:
+    """The homotopy's own `differential`."""
+
+    differential: Callable[[Array, float, Array], Array]
+    name: str = "differential"
+    agreement: float = float(np.sqrt(np.finfo(float).eps))
+    references: tuple[str, ...] = ()
+    even: float = 1.0
+
+    def scale(self, u: Array) -> None:
+        """None: units do not matter to it."""
+
+    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
+        """One product a direction."""
+        y, lam = u[:-1], float(u[-1])
+        return np.stack([np.asarray(self.differential(y, lam, w), dtype=float) for w in directions], axis=1)
+
+    whole = _by_units
+
+
 DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
 """Steps of central differences beside the size of a component (or 1, where it is 0): eps^(1/3), the best one where that
 is how far the function sees it, and others, since zero may lie anywhere and units may be any."""
+
+
+CHANCE = float(np.finfo(float).eps) ** (2.0 / 3.0)
+"""Two differences that agree better do so by chance, as where all is linear: that is the accuracy of the best one."""
 
 
 def sizes(u: Array) -> Array:
@@ -132,7 +163,7 @@ def _trials(residual: Residual, u: Array, w: Array) -> tuple[list[Array], Array]
         for one, other in pairwise(found):
             size = np.abs(one) + np.abs(other)
             change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
-            changes.append(np.where(np.isfinite(change), change, 1.0))
+            changes.append(np.maximum(np.where(np.isfinite(change), change, 1.0), CHANCE))
     return found, np.array(changes)
 
 
@@ -145,8 +176,14 @@ def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, flo
     `u`, `w` of shape (N + 1,).
     """
     found, changes = _trials(residual, u, w)
-    best = int(np.argmin(changes.mean(axis=1))) + 1
+    best = int(_best(changes.mean(axis=1)))
     return found[best], float(DIFFERENCE_STEPS[best])
+
+
+def _best(changes: Array) -> Any:
+    """The step behind the smallest change along the last axis; of several, the one nearest to the usual step."""
+    order = np.argsort(np.abs(np.arange(changes.shape[-1]) - 1), kind="stable")
+    return order[np.argmin(changes[..., order], axis=-1)] + 1
 
 
 @frozen(eq=False)
@@ -161,6 +198,11 @@ class ByDifferences:
     name: str = "differences"
     agreement: float = 1e-3
     references: tuple[str, ...] = ()
+
+    @property
+    def even(self) -> Array:
+        """Steps may differ by orders of magnitude."""
+        return np.asarray(np.median(self.steps) / self.steps)
 
     def scale(self, u: Array) -> Array:
         """The steps at u, as round-off leaves them."""
@@ -197,5 +239,5 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
         own = groups == group
         changes = _trials(residual, u0, np.where(own, size, 0.0))[1].T
         seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
-        steps[own] = DIFFERENCE_STEPS[np.argmin(seen, axis=1) + 1]
+        steps[own] = DIFFERENCE_STEPS[_best(seen)]
     return ByDifferences(u0, steps)

@@ -21,7 +21,7 @@ from problems.bifurcation import Bratu1D, Bratu2D
 from problems.bifurcation.bratu_2d import five_point
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "stability"))
-from brusselator import Brusselator  # noqa: E402
+from brusselator import Brusselator
 
 UPPER = {Bratu1D: 1.0, Bratu2D: 2.0}
 """Bratu's paths go through the fold, and end where lam falls below this."""
@@ -140,7 +140,7 @@ def measured(name, rounds, preset="FAST", which=None):
     """By way: the path, and its processor seconds."""
     kind, size = PROBLEMS[name]
     homotopy = kind(size)
-    found = {way: (None, np.inf) for way in which or ways(homotopy)}
+    found = dict.fromkeys(which or ways(homotopy), (None, np.inf))
     for _ in range(rounds):
         for way in found:
             one, given = ways(homotopy)[way], options(homotopy, preset)
@@ -153,7 +153,7 @@ def measured(name, rounds, preset="FAST", which=None):
 def folds_apart(path, other):
     """How far the folds of two paths are apart, relative; inf where there are not as many."""
     one, two = (np.array([point.lam for point in each.turning_points]) for each in (path, other))
-    return np.inf if one.shape != two.shape else float(np.abs(one - two).max(initial=0.0) / np.abs(two).max(initial=1.0))
+    return np.inf if one.shape != two.shape else float((np.abs(one - two) / np.abs(one + two)).max(initial=0.0))
 
 
 def main():
@@ -169,8 +169,9 @@ def main():
         own, least = found["own"]
         for way, (path, seconds) in found.items():
             print(
-                f"{name:22} {way:12} {1e3 * seconds:9.1f} ms {seconds / least:7.2f}  {path.status.name}, {len(path)} points, "
-                f"{len(path.events)} events, folds apart {folds_apart(path, own):.0e}, {path.counts}",
+                f"{name:22} {way:12} {1e3 * seconds:9.1f} ms {seconds / least:7.2f}  {path.status.name}, "
+                f"{len(path)} points, {len(path.events)} events, folds apart {folds_apart(path, own):.0e}, "
+                f"{path.counts}",
                 flush=True,
             )
 
