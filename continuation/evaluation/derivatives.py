@@ -197,7 +197,7 @@ def from_residual(
     if pattern is None and y.size >= SPARSE_FROM:
         pattern = _looked_for(residual, u)
     if products is not None:
-        return Derivative(residual, products, pattern, said)
+        return _said(Derivative(residual, products, pattern, said))
     reference: Array | None = None
     for products in (ByJets(), ByComplexStep()):
         derivative = Derivative(residual, products, pattern, said)
@@ -215,11 +215,18 @@ def from_residual(
         size = AGREEMENT * (_absolute(H_y) @ np.abs(w[:-1]) + np.abs(H_lam * w[-1]))
         allowed = np.maximum(size, AGREEMENT * float(size.max())) + rounding
         if (np.abs(H_y @ w[:-1] + H_lam * w[-1] - reference) <= allowed).all():
-            return derivative
+            return _said(derivative)
     if pattern is None:
-        return Derivative(residual, by_differences(residual, u), None, said)
+        return _said(Derivative(residual, by_differences(residual, u), None, said))
     groups = np.append(pattern.groups, pattern.count)
-    return Derivative(residual, by_differences(residual, u, groups, pattern.structure()), pattern, said)
+    return _said(Derivative(residual, by_differences(residual, u, groups, pattern.structure()), pattern, said))
+
+
+def _said(derivative: Derivative) -> Derivative:
+    pattern = derivative.pattern
+    groups = "" if pattern is None else f" in {pattern.count} groups of columns"
+    derivative.notes.add(f"H' by {derivative.products.name}{groups}")
+    return derivative
 
 
 def _absolute(matrix: Matrix) -> Matrix:

@@ -151,6 +151,7 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
+        self.followed = True  # by jets, as long as nobody finds otherwise
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None

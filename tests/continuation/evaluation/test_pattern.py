@@ -94,7 +94,7 @@ def test_what_is_zero_at_the_start_is_seen():
     )
     assert structure(homotopy).nnz == 2 * n
     path = trace(homotopy)
-    assert not path.counts.notes
+    assert path.counts.notes == {"H' by jets in 2 groups of columns"}
     np.testing.assert_allclose(path.endpoint.y, (np.sqrt(5.0) - 1.0) / 2.0, rtol=0, atol=1e-12)
 
 
@@ -132,7 +132,7 @@ def test_a_wrong_sparsity_is_mended():
     bratu = alone.Bratu1D(n)
     path = trace(alone.Plain(bratu, sparsity=np.eye(n)), **alone.options(bratu, "FAST"))
     assert alone.folds_apart(path, trace(bratu, **alone.options(bratu, "FAST"))) <= 1e-13
-    assert path.counts.notes
+    assert any("changed" in note for note in path.counts.notes)
 
 
 @pytest.mark.parametrize("sparsity", [np.eye(3), np.ones(80), "tridiagonal", sp.eye_array(81)])
