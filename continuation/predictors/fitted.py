@@ -12,13 +12,13 @@ from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import norm
 from continuation.point.linearization import Linearization
 
-LARGEST_ORDER = 11
+FITTED_ORDER = 11
 """Of a fit: with the points that it takes, powers of s magnify round-off by 1e4; by 1e8 with twice as many."""
 
 CHORD = Contraction(iterations=30, ratio=HALVING)
 """With the factorisation at hand; the range is shortened where it does not converge."""
 
-FOUND = 1e-8
+FOUND_BESIDE = 1e-8
 """The last increment of a point beside its distance: next to round-off, whatever the factorisation."""
 
 ROUNDS = 40
@@ -28,7 +28,7 @@ ROUNDS = 40
 def fitted(
     evaluator: Evaluator, point: Linearization, order: int, first: float, reach: Callable[[Array], float]
 ) -> Array:
-    """Coefficients of the path at a point, shape (k + 1, N + 1), k at most `order` and `LARGEST_ORDER`.
+    """Coefficients of the path at a point, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
     The polynomial in the pseudo-arclength that has the point's tangent and goes through points of the path, found by
     Newton's method with the point's factorisation. It lies as near to the path as any in its range, which is chosen to
@@ -51,7 +51,7 @@ def fitted(
     """
     r, barrier, last = first, np.inf, None
     for _ in range(ROUNDS):
-        found = _through(evaluator, point, min(order, LARGEST_ORDER), r)
+        found = _through(evaluator, point, min(order, FITTED_ORDER), r)
         if found is None:
             if last is not None:
                 break
@@ -90,7 +90,7 @@ def _through(evaluator: Evaluator, point: Linearization, order: int, r: float) -
             converged = chord.run(increment, size, done)
         except EvaluationError:
             return None
-        if not (converged or chord.size <= FOUND * abs(s)):
+        if not (converged or chord.size <= FOUND_BESIDE * abs(s)):
             return None
         bend = bends[k] = (chord.x - point.u - s * point.tangent) / s**2
     coefficients = np.empty((count + 2, point.u.size))

@@ -19,7 +19,7 @@ from continuation.arguments.checks import FRACTION, POSITIVE_FINITE, complain, i
 from continuation.arrays import Array
 from continuation.citation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.homotopy import SupportsTaylor
+from continuation.homotopy import SupportsTaylor, offers
 from continuation.point.linearization import Linearization, factored, with_exact_solves
 from continuation.point.segment import SeriesSegment
 from continuation.predictors.base import Knot
@@ -167,7 +167,7 @@ class Taylor:
 def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
     """Coefficients of the path at a point, shape (order + 1, N + 1); None where jets do not follow the residual."""
     homotopy = evaluator.homotopy
-    if isinstance(homotopy, SupportsTaylor):
+    if offers(homotopy, SupportsTaylor):
         coefficients: Array = homotopy.taylor(point, order)
         if np.shape(coefficients) != (order + 1, point.u.size):
             raise complain(ValueError, "taylor", f"an array of shape {order + 1, point.u.size}", coefficients)
