@@ -3,8 +3,8 @@ Ten thousand at once, on a device
 =================================
 
 An exothermic reaction in a stirred tank, :math:`x' = -x + D (1 - x) e^T`, :math:`T' = -T + 18 D (1 - x) e^T - c T`.
-JAX has the residual; one path is traced. Where one machine's paths are not enough, Newton's corrector starts from it for
-10,000 pairs of :math:`D` and :math:`c` together, as one compiled program, on whatever device JAX finds.
+JAX has the residual; one path is traced. Where one machine's paths are not enough, Newton's corrector starts from it
+for 10,000 pairs of :math:`D` and :math:`c` together, as one compiled program, on whatever device JAX finds.
 """
 
 import jax
