@@ -142,13 +142,14 @@ def _looked_for(residual: Residual, u: Array) -> Pattern | None:
         except (ArithmeticError, ValueError):
             return np.full(u.size - 1, np.nan)
 
-    for h in DIFFERENCE_STEPS[:3]:
-        base = u + h * size * generic(u.size)
-        before = at(base)
-        if np.isfinite(before).all():
-            break
-    else:
-        return None
+    with np.errstate(all="ignore"):
+        for h in DIFFERENCE_STEPS[:3]:
+            base = u + h * size * generic(u.size)
+            before = at(base)
+            if np.isfinite(before).all():
+                break
+        else:
+            return None
 
     def touched(labels: Places, count: int) -> Any:
         seen = np.empty((before.size, count), bool)

@@ -52,6 +52,12 @@ def test_the_looks_for_a_band_are_few():
     assert sum(spent) <= 64
 
 
+def test_a_full_matrix_is_known_by_its_blocks():
+    spent = []
+    assert found(looks(np.ones((2000, 2000), bool), spent), 2000) is None
+    assert sum(spent) <= 240
+
+
 @pytest.mark.parametrize("name", ["bratu-1d", "bratu-2d", "swift-hohenberg", "allen-cahn", "brusselator"])
 @pytest.mark.parametrize("way", ["alone", "known", "differences"])
 def test_the_same_path_as_with_the_jacobian(name, way, monkeypatch):
