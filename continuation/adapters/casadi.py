@@ -47,9 +47,8 @@ def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None
     function : casadi.Function
         Of two inputs, y of shape (N, 1) and a number lam, with one output, (N, 1).
     start : tuple
-        ``(y0, lam0)``, a point on or near the path.
     target : float or None
-        Where the path is to end; None for a curve that is followed for its own sake.
+        As of `continuation.from_functions`.
 
     Raises
     ------

@@ -124,9 +124,8 @@ def from_jax(
     residual : callable
         ``residual(y, lam) -> (N,)`` of `jax.numpy`, pure.
     start : tuple
-        ``(y0, lam0)``, a point on or near the path.
     target : float or None
-        Where the path is to end; None for a curve that is followed for its own sake.
+        As of `continuation.from_functions`.
     jacobian : str
         "dense" by forward derivatives (there is one column more than rows); "sparse" by products, in groups of columns
         that share no equation; "operator" for GMRES.

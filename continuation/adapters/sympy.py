@@ -65,16 +65,15 @@ def from_sympy(
     parameter : sympy.Symbol
         The parameter.
     start : tuple
-        ``(y0, lam0)``, a point on or near the path.
     target : float or None
-        Where the path is to end; None for a curve that is followed for its own sake.
+        As of `continuation.from_functions`.
 
     Raises
     ------
-    ImportError
-        If SymPy is not installed.
     TypeError, ValueError
         If the numbers of unknowns, expressions and y0 differ, or an expression has other symbols.
+    ImportError
+        Without SymPy.
     """
     sp = library("sympy")
     y0, lam0 = started(start)

@@ -13,9 +13,9 @@ from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.evaluation.pattern import Pattern, Places, found, generic, pattern_of
 from continuation.evaluation.products import (
+    BY_COMPLEX_STEP,
+    BY_JETS,
     DIFFERENCE_STEPS,
-    ByComplexStep,
-    ByJets,
     Products,
     Residual,
     by_differences,
@@ -200,7 +200,7 @@ def from_residual(
     if products is not None:
         return _said(Derivative(residual, products, pattern, said))
     reference: Array | None = None
-    for products in (ByJets(), ByComplexStep()):
+    for products in (BY_JETS, BY_COMPLEX_STEP):
         derivative = Derivative(residual, products, pattern, said)
         try:
             with warnings.catch_warnings(), np.errstate(all="ignore"):

@@ -20,7 +20,7 @@ from continuation.counts import Counts
 from continuation.evaluation.derivatives import check_derivative, from_residual, given_pattern
 from continuation.evaluation.pattern import Pattern, generic
 from continuation.evaluation.pieces import WholeMap
-from continuation.evaluation.products import Given
+from continuation.evaluation.products import given
 from continuation.homotopy import (
     SupportsBordered,
     SupportsDifferential,
@@ -244,7 +244,7 @@ class Evaluator:
         if self._derivative is None:
             u = self._given()
             start = u[:-1], float(u[-1])
-            products = None if self._differential is None else Given(self._differential)
+            products = None if self._differential is None else given(self._differential)
             derivative = from_residual(self.called, start, self._sparsity(u.size - 1), self.counts.notes, products)
             self.methods.update(derivative.products.references)
             self._derivative = derivative

@@ -15,7 +15,7 @@ from continuation.arguments.checks import real_vector
 from continuation.arrays import Array
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.evaluation.products import ByComplexStep, ByJets, Products, Residual, difference_along
+from continuation.evaluation.products import BY_COMPLEX_STEP, BY_JETS, Products, Residual, difference_along
 
 Product = Callable[[Array], Array]
 """w -> H'(u) w."""
@@ -129,7 +129,7 @@ def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Produ
         return difference_along(evaluator.called, u, w)[0]
 
     rough = by_differences(probe)
-    for products in (ByJets(), ByComplexStep()):
+    for products in (BY_JETS, BY_COMPLEX_STEP):
         product = partial(_product, products, evaluator.called, u)
         try:
             with warnings.catch_warnings(), np.errstate(all="ignore"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from attrs import frozen
@@ -53,78 +53,69 @@ class Products(Protocol):
 
 
 @frozen
-class ByJets:
-    """Exact, by truncated Taylor arithmetic, `continuation.jets`."""
+class Exact:
+    """Products to round-off.
 
-    name: str = "jets"
-    agreement: float = float(np.sqrt(np.finfo(float).eps))
-    references: tuple[str, ...] = (GRIEWANK_WALTHER,)
-    even: float = 1.0
+    `function`: The residual, u and directions (k, N + 1) to (N, k). `entire`: The same for all unit vectors, where that
+    can be done better.
+    """
+
+    name: str
+    function: Callable[[Residual, Array, Array], Array]
+    references: tuple[str, ...] = ()
+    entire: Callable[[Residual, Array], Array] | None = None
+    agreement: ClassVar[float] = float(np.sqrt(np.finfo(float).eps))
+    even: ClassVar[float] = 1.0
 
     def scale(self, u: Array) -> None:
         """None: units do not matter to it."""
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """All directions go through the residual together."""
-        from continuation import jets
-
-        def along(s: Any) -> Any:
-            at = u + s @ directions
-            return residual(at[:-1], at[-1])
-
-        return jets.jacobian(along, np.zeros(len(directions)))
+        """H'(u) times each of the directions."""
+        return self.function(residual, u, directions)
 
     def whole(self, residual: Residual, u: Array) -> Array:
         """All of H'(u)."""
-        from continuation import jets
-
-        return jets.jacobian(lambda at: residual(at[:-1], at[-1]), u)
+        return self(residual, u, np.eye(u.size)) if self.entire is None else self.entire(residual, u)
 
 
-def _by_units(products: Products, residual: Residual, u: Array) -> Array:
-    found, scale = products(residual, u, np.eye(u.size)), products.scale(u)
-    return found if scale is None else found / scale
+def _by_jets(residual: Residual, u: Array, directions: Array) -> Array:
+    """All directions go through the residual together."""
+    from continuation import jets
+
+    def along(s: Any) -> Any:
+        at = u + s @ directions
+        return residual(at[:-1], at[-1])
+
+    return jets.jacobian(along, np.zeros(len(directions)))
 
 
-@frozen
-class ByComplexStep:
-    """Exact to round-off (Squire and Trapp, SIAM Review 40, 1998)."""
+def _all_by_jets(residual: Residual, u: Array) -> Array:
+    from continuation import jets
 
-    name: str = "complex step"
-    agreement: float = float(np.sqrt(np.finfo(float).eps))
-    references: tuple[str, ...] = (SQUIRE_TRAPP,)
-    even: float = 1.0
-
-    def scale(self, u: Array) -> None:
-        """None: units do not matter to it."""
-
-    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """One complex residual a direction."""
-        moved = (u + 1e-200j * w for w in directions)
-        return np.stack([np.asarray(residual(at[:-1], at[-1])).imag * 1e200 for at in moved], axis=1)
-
-    whole = _by_units
+    return jets.jacobian(lambda at: residual(at[:-1], at[-1]), u)
 
 
-@frozen(eq=False)
-class Given:
-    """The homotopy's own `differential`."""
+def _by_complex_step(residual: Residual, u: Array, directions: Array) -> Array:
+    moved = (u + 1e-200j * w for w in directions)
+    return np.stack([np.asarray(residual(at[:-1], at[-1])).imag * 1e200 for at in moved], axis=1)
 
-    differential: Callable[[Array, float, Array], Array]
-    name: str = "differential"
-    agreement: float = float(np.sqrt(np.finfo(float).eps))
-    references: tuple[str, ...] = ()
-    even: float = 1.0
 
-    def scale(self, u: Array) -> None:
-        """None: units do not matter to it."""
+BY_JETS = Exact("jets", _by_jets, (GRIEWANK_WALTHER,), _all_by_jets)
+"""By truncated Taylor arithmetic, `continuation.jets`."""
 
-    def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
-        """One product a direction."""
+BY_COMPLEX_STEP = Exact("complex step", _by_complex_step, (SQUIRE_TRAPP,))
+"""One complex residual a direction (Squire and Trapp, SIAM Review 40, 1998)."""
+
+
+def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
+    """By the homotopy's own `differential`."""
+
+    def function(residual: Residual, u: Array, directions: Array) -> Array:
         y, lam = u[:-1], float(u[-1])
-        return np.stack([np.asarray(self.differential(y, lam, w), dtype=float) for w in directions], axis=1)
+        return np.stack([np.asarray(differential(y, lam, w), dtype=float) for w in directions], axis=1)
 
-    whole = _by_units
+    return Exact("differential", function)
 
 
 DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
@@ -218,7 +209,9 @@ class ByDifferences:
             found.append(0.5 * change)
         return np.stack(found, axis=1)
 
-    whole = _by_units
+    def whole(self, residual: Residual, u: Array) -> Array:
+        """All of H'(u), column by column."""
+        return self(residual, u, np.eye(u.size)) / self.scale(u)
 
 
 def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any = None) -> ByDifferences:
