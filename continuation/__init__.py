@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from continuation.version import __version__
 
 if TYPE_CHECKING:
+    from continuation.adapters import from_casadi, from_jax, from_sympy
     from continuation.auditing import arclength, audit, refine
     from continuation.branch_switching import branch_directions, switch_branch
     from continuation.budget import Budget
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from continuation.tracing import solve_at, trace, trace_both
 
 _HOMES = {
+    "adapters": "from_casadi from_jax from_sympy",
     "auditing": "arclength audit refine",
     "branch_switching": "branch_directions switch_branch",
     "budget": "Budget",
@@ -129,7 +131,10 @@ __all__ = [
     "check_jacobian",
     "cite",
     "diagram",
+    "from_casadi",
     "from_functions",
+    "from_jax",
+    "from_sympy",
     "kink_rays",
     "refine",
     "solve_at",

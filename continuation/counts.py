@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from attrs import asdict, define
+from attrs import asdict, define, field
 
 
 @define
@@ -15,15 +15,20 @@ class Counts:
     solves: int = 0
     accepted: int = 0
     rejected: int = 0
+    notes: set[str] = field(factory=set, eq=False, repr=False, kw_only=True)
+    """What was made from the residual since the homotopy does not give it, and how; no part of archives."""
 
     def as_dict(self) -> dict[str, int]:
         """The counts by name."""
-        return asdict(self)
+        return asdict(self, filter=lambda attribute, _: attribute.name != "notes")
 
     def copy(self) -> Counts:
         """The counts as they stand."""
-        return Counts(**asdict(self))
+        return Counts(*self.as_dict().values(), notes=set(self.notes))
 
     def __add__(self, other: Counts) -> Counts:
-        mine, theirs = asdict(self), asdict(other)
-        return Counts(**{name: mine[name] + theirs[name] for name in mine})
+        mine, theirs = self.as_dict(), other.as_dict()
+        return Counts(*(mine[name] + theirs[name] for name in mine), notes=self.notes | other.notes)
+
+    def __str__(self) -> str:
+        return "; ".join([repr(self), *sorted(self.notes)])

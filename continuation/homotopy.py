@@ -38,7 +38,7 @@ class Homotopy(Protocol):
 
 @runtime_checkable
 class SupportsJacobian(Protocol):
-    """The derivative; without it jets, complex step or differences serve, at a cost shown in the counts."""
+    """The derivative; without it products with `differential`, jets, complex step or differences serve."""
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam): an (N, N) matrix (dense, sparse, Banded, LinearOperator) and an (N,) array.
@@ -54,6 +54,17 @@ class SupportsJacobian(Protocol):
         H_lam : ndarray, shape (N,)
         """
         ...
+
+
+@runtime_checkable
+class SupportsSparsity(Protocol):
+    """Where H_y may have entries, for a homotopy without `jacobian`: else that is looked for, from 64 unknowns on.
+
+    Shape (N, N), an array or a sparse one: what is not zero counts. H_y then comes by groups of columns that have no
+    equation in common, each evaluation checked by one more product: entries that are missing are noticed, and found.
+    """
+
+    sparsity: Matrix
 
 
 @runtime_checkable
@@ -86,7 +97,10 @@ class SupportsBordered(Protocol):
 
 @runtime_checkable
 class SupportsDifferential(Protocol):
-    """H' applied to a direction, for a homotopy with `bordered` that never forms its matrix."""
+    """H' applied to a direction.
+
+    With `bordered`, for a homotopy that never forms its matrix; without it and `jacobian`, H' is made of such products.
+    """
 
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """H_y v_y + H_lam v_lam, shape (N,).

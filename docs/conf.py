@@ -3,6 +3,7 @@
 import re
 import shutil
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import attrs
@@ -34,6 +35,8 @@ exclude_patterns = ["_build", "generated"]
 sphinx_gallery_conf = {
     "examples_dirs": "../examples/gallery",
     "gallery_dirs": "gallery",
+    # An example that needs an extra is shown where it is installed.
+    "ignore_pattern": "__init__" if find_spec("jax") else "_jax_",
     "within_subsection_order": "FileNameSortKey",
     "abort_on_example_error": True,
     "capture_repr": (),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-import attrs
 import numpy as np
 from attrs import field, frozen
 
@@ -74,7 +73,7 @@ def _flags(names: tuple[str, ...], values: tuple[int, ...] | None = None) -> dic
     return {"flag_values": np.array(tuple(numbers), dtype="i1"), "flag_meanings": " ".join(names)}
 
 
-COUNT_NAMES = {name: {"residuals": "evaluations"}.get(name, name) for name in attrs.fields_dict(Counts)}
+COUNT_NAMES = {name: {"residuals": "evaluations"}.get(name, name) for name in Counts().as_dict()}
 """Counter of `Counts` -> column of the path table."""
 
 _COUNT_MEANINGS = {

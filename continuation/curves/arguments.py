@@ -8,7 +8,7 @@ import numpy as np
 
 from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array
-from continuation.evaluation.derivatives import sizes
+from continuation.evaluation.products import sizes
 from continuation.path.steps import LocatedEvent
 from continuation.status import Kind
 

@@ -10,16 +10,10 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array, generic_vector
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import (
-    by_complex_step,
-    by_differences,
-    by_jets,
-    difference_along,
-    from_residual,
-    sizes,
-)
+from continuation.evaluation.derivatives import Derivative, from_residual
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.functions import DifferentiableHomotopy
+from continuation.evaluation.products import difference_along, sizes
 from continuation.events.singularity import SECOND, full_derivative, row_sizes
 
 JET_COLUMNS = 128
@@ -39,14 +33,14 @@ Member = Callable[[Any], Any]
 class Calculus:
     """How a family is differentiated: decided once, at a point.
 
-    `source`: Of the derivative of members that have none of their own; empty where they have. `jets`: Whether second
+    `derivative`: Of a member, where members have none of their own. `jets`: Whether second
     derivatives, and those by mu, come from jets. `u0`, of shape (N + 2,): (y, lam, mu), where that was decided.
     `extent`, of shape (N + 1,): How far y and lam go, about: what steps of differences are measured by. `reach`,
     `bend`: Steps of differences in mu, of H and of H' v, relative to its size.
     """
 
     family: Member
-    source: str
+    derivative: Derivative | None
     jets: bool
     u0: Array
     extent: Array
@@ -56,13 +50,9 @@ class Calculus:
     def member(self, mu: float) -> Any:
         """The homotopy at mu, with a derivative."""
         homotopy = self.family(mu)
-        if not self.source:
+        if self.derivative is None:
             return homotopy
-        if self.source == "jets":
-            return DifferentiableHomotopy(homotopy, by_jets(homotopy.residual))
-        if self.source == "complex step":
-            return DifferentiableHomotopy(homotopy, by_complex_step(homotopy.residual))
-        return DifferentiableHomotopy(homotopy, by_differences(homotopy.residual, self.u0[:-1]))
+        return DifferentiableHomotopy(homotopy, evolve(self.derivative, residual=homotopy.residual))
 
     def evaluator(self, mu: float) -> Evaluator:
         """The same as the engine sees it."""
@@ -114,7 +104,7 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     """How to differentiate a family, tried at a point."""
     homotopy = family(mu)
     own = any(hasattr(homotopy, name) for name in ("jacobian", "bordered", "differential"))
-    source = "" if own else from_residual(homotopy.residual, (u[:-1], float(u[-1]))).source
+    derivative = None if own else from_residual(homotopy.residual, (u[:-1], float(u[-1])))
     U = np.append(u, mu)
 
     v = extent * generic_vector(u.size)
@@ -128,7 +118,7 @@ def calculus_at(family: Member, u: Array, mu: float, extent: Array) -> Calculus:
     along = np.zeros_like(U)
     along[-1] = sizes(U[-1:])[0]
     reach = difference_along(at, U, along)[1]
-    first = Calculus(family, source, False, U, extent, reach, reach)
+    first = Calculus(family, derivative, False, U, extent, reach, reach)
     plain = evolve(first, bend=difference_along(bent, U, along)[1])
     with_jets = evolve(plain, jets=True)
     if U.size > JET_COLUMNS:

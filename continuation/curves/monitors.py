@@ -11,7 +11,7 @@ from attrs import frozen
 from continuation.arrays import Array, generic_vector
 from continuation.curves.calculus import JETS_AGREE, Calculus
 from continuation.curves.local import Local, Scaled, Tangential, last_column
-from continuation.evaluation.derivatives import by_differences, difference_along, sizes
+from continuation.evaluation.products import by_differences, difference_along, sizes
 from continuation.events import Monitor, TargetValue, TurningPoint
 from continuation.events.singularity import full_derivative
 from continuation.linear.entries import extended
@@ -122,4 +122,4 @@ def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], 
     except (TypeError, ArithmeticError, ValueError, AttributeError):
         pass
     plain = by_differences(at, x0)
-    return lambda x: np.column_stack(plain(x[:-1], float(x[-1])))[0]
+    return lambda x: plain.whole(at, x)[0]

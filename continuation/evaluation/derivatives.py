@@ -1,30 +1,40 @@
-"""Derivatives of a homotopy that gives only its residual, and the check of one that gives more."""
+"""Derivatives of a homotopy that gives only its residual: dense, or by groups of columns where H_y is sparse."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import frozen
+import scipy.sparse as sp
+from attrs import define, field
 
+from continuation.arguments.checks import complain
 from continuation.arrays import Array, Matrix, generic_vector
-from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
+from continuation.evaluation.pattern import Pattern, Places, found, generic, pattern_of
+from continuation.evaluation.products import (
+    BY_COMPLEX_STEP,
+    BY_JETS,
+    DIFFERENCE_STEPS,
+    Products,
+    Residual,
+    by_differences,
+    difference_along,
+    sizes,
+)
+from continuation.linear import Banded
 
+ULPS = 8.0
+"""Units in the last place by which the ends of a difference may be off, in all."""
 
-@frozen
-class Derivative:
-    """A way to get (H_y, H_lam), its name and where it was published."""
+AGREEMENT = 1e-3
+"""Of a derivative with a difference, beside the sum of its terms: what is wrong is wrong by more."""
 
-    function: Callable[[Array, float], tuple[Matrix, Array]]
-    source: str
-    references: tuple[str, ...] = ()
+SPARSE_FROM = 64
+"""Unknowns: below, a dense factorisation takes less time than a sparse one does without its arithmetic."""
 
-    def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam) at a point."""
-        return self.function(y, lam)
+LOOKS_AT_ONCE = 64
+"""Directions that are looked at together: more only cost memory."""
 
 
 def check_derivative(answer: Any, n: int) -> None:
@@ -42,139 +52,183 @@ def check_derivative(answer: Any, n: int) -> None:
             raise TypeError(f"jacobian: expected {wanted}, found some of the type {kind}")
 
 
-def _split(full: Array) -> tuple[Array, Array]:
-    return full[:, :-1], full[:, -1]
-
-
-def by_jets(residual: Callable[..., Any]) -> Callable[[Array, float], tuple[Array, Array]]:
-    """Exact derivatives by truncated Taylor arithmetic, `continuation.jets`."""
-    from continuation import jets
-
-    def function(y: Array, lam: float) -> tuple[Array, Array]:
-        return _split(jets.jacobian(lambda u: residual(u[:-1], u[-1]), np.append(y, lam)))
-
-    return function
-
-
-def by_complex_step(residual: Callable[..., Any]) -> Callable[[Array, float], tuple[Array, Array]]:
-    """Derivatives to round-off by the complex step (Squire and Trapp, SIAM Review 40, 1998)."""
-
-    def function(y: Array, lam: float) -> tuple[Array, Array]:
-        u = np.append(y, lam).astype(complex)
-        columns = []
-        for i in range(u.size):
-            u[i] += 1e-200j
-            columns.append(np.asarray(residual(u[:-1], u[-1])).imag * 1e200)
-            u[i] = u[i].real
-        return _split(np.stack(columns, axis=1))
-
-    return function
-
-
-DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
-"""Steps of central differences beside the size of a component (or 1, where it is 0): eps^(1/3), the best one where that
-is how far the function sees it, and others, since zero may lie anywhere and units may be any."""
-
-
-def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[Array, float]:
-    """The central difference of a residual along w, and its step.
-
-    Of several steps that one is taken at which the difference changes least from this to the next, in the mean over
-    the equations, each beside its own size.
-
-    `u`, `w` of shape (N + 1,).
-    """
-
-    def at(h: float) -> Array:
-        ahead, behind = u + h * w, u - h * w
-        # A copy of the first: a residual may return the same array every time.
-        try:
-            change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
-        except (ArithmeticError, ValueError):
-            # Outside the domain; shorter steps stay inside.
-            return np.full(u.size - 1, np.nan)
-        return np.asarray(change / (2.0 * h), dtype=float)
-
-    with np.errstate(all="ignore"):
-        found = [at(float(h)) for h in DIFFERENCE_STEPS]
-        changes = []
-        for one, other in pairwise(found):
-            size = np.abs(one) + np.abs(other)
-            change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
-            changes.append(float(np.where(np.isfinite(change), change, 1.0).mean()))
-    best = int(np.argmin(changes)) + 1
-    return found[best], float(DIFFERENCE_STEPS[best])
-
-
-def _rounding(residual: Callable[..., Any], u: Array, w: Array, h: float) -> Array:
+def _rounding(residual: Residual, u: Array, w: Array, h: float) -> Array:
     """What a difference along w cannot tell from zero: u + h w is rounded, and the function's slope there shows it."""
     with np.errstate(all="ignore"):
         here, ahead, behind = (np.array(residual(at[:-1], float(at[-1]))) for at in (u, u + h * w, u - h * w))
     return np.asarray(ULPS * np.finfo(float).eps * (np.abs(ahead - here) + np.abs(behind - here)) / h**2, dtype=float)
 
 
-def sizes(u: Array) -> Array:
-    """What the steps of differences are measured by: a component's size, or 1."""
-    return np.where(u != 0.0, np.abs(u), 1.0)
+@define(eq=False)
+class Derivative:
+    """(H_y, H_lam) of a residual, by products with it.
 
+    Every sparse one is checked by a product with a direction of its own: an equation in which an unknown stands that
+    the pattern does not know of is noticed where it first matters, and the pattern grows.
+    """
 
-def by_differences(residual: Callable[..., Any], u0: Array) -> Callable[[Array, float], tuple[Array, Array]]:
-    """Derivatives by central differences, about eight to ten digits, with steps found at `u0`, shape (N + 1,)."""
-    steps = np.empty_like(u0)
-    for i, size in enumerate(sizes(u0)):
-        w = np.zeros_like(u0)
-        w[i] = size
-        steps[i] = difference_along(residual, u0, w)[1]
+    residual: Residual
+    products: Products
+    pattern: Pattern | None = None
+    notes: set[str] = field(factory=set)
 
-    def function(y: Array, lam: float) -> tuple[Array, Array]:
+    def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam) at a point, dense or sparse."""
         u = np.append(y, lam)
-        reach = steps * np.maximum(sizes(u0), np.abs(u))
-        columns = []
-        for i in range(u.size):
-            ahead, behind = u.copy(), u.copy()
-            ahead[i] += reach[i]
-            behind[i] -= reach[i]
-            difference = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
-            columns.append(difference / (ahead[i] - behind[i]))
-        return _split(np.stack(columns, axis=1))
+        if self.pattern is not None:
+            answer = self._by_groups(u, self.pattern)
+            if answer is not None:
+                return answer
+            self.pattern = self._grown(u, self.pattern)
+            self.notes.add("a sparsity pattern that changed, looked for again")
+            answer = None if self.pattern is None else self._by_groups(u, self.pattern)
+            if answer is not None:
+                return answer
+            # What is no sum of its parts is no derivative that groups could give.
+            self.pattern = None
+            self.notes.add("a sparsity pattern that could not be found")
+        full = self.products.whole(self.residual, u)
+        return full[:, :-1], full[:, -1]
 
-    return function
+    def _by_groups(self, u: Array, pattern: Pattern) -> tuple[Matrix, Array] | None:
+        """The sparse derivative; None where it lacks something."""
+        scale, directions, weights = self.products.scale(u), pattern.directions, pattern.weights
+        if scale is not None:
+            directions = directions.copy()
+            directions[-1] *= self.products.even
+            weights = directions[-1][pattern.columns]
+        seen = self.products(self.residual, u, directions)
+        entries, column, product = pattern.entries(seen), seen[:, -2], seen[:, -1]
+        terms, more = entries * weights, column * directions[-1, -1]
+        gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
+        size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
+        # Not finite: outside the domain, which is not the pattern's fault.
+        if (gap > self.products.agreement * size).any():
+            allowed = self.products.agreement * size
+            if (gap > np.maximum(allowed, self.products.agreement * float(allowed.max()))).any():
+                return None
+        if scale is not None:
+            entries, column = entries / scale[pattern.columns], column / scale[-1]
+        return pattern.matrix(entries), np.ascontiguousarray(column)
+
+    def _grown(self, u: Array, known: Pattern) -> Pattern | None:
+        """The pattern together with what stands at u."""
+
+        def touched(labels: Places, count: int) -> Any:
+            rows = []
+            for first in range(0, count, LOOKS_AT_ONCE):
+                some = np.flatnonzero((labels >= first) & (labels < first + LOOKS_AT_ONCE))
+                directions = np.zeros((min(LOOKS_AT_ONCE, count - first), u.size))
+                directions[labels[some] - first, some] = generic(u.size)[some]
+                rows.append(self.products(self.residual, u, directions) != 0.0)
+            return np.concatenate(rows, axis=1)
+
+        more = found(touched, known.n)
+        return None if more is None else _worth(known.joined(more))
 
 
-ULPS = 8.0
-"""Units in the last place by which the ends of a difference may be off, in all."""
-
-AGREEMENT = 1e-3
-"""Of a derivative with a difference, beside the sum of its terms: what is wrong is wrong by more."""
+def _worth(pattern: Pattern | None) -> Pattern | None:
+    """The pattern, if fewer products are needed than without it by far: a sparse factorisation costs more an entry."""
+    return pattern if pattern is not None and 4 * pattern.count <= pattern.n else None
 
 
-def from_residual(residual: Callable[..., Any], start: tuple[Array, float]) -> Derivative:
+def _looked_for(residual: Residual, u: Array) -> Pattern | None:
+    """The pattern at a point beside u, where zeros hide nothing: an equation that is moved at all has the unknown."""
+    size = sizes(u)
+
+    def at(v: Array) -> Array:
+        try:
+            return np.array(residual(v[:-1], float(v[-1])), dtype=float)
+        except (ArithmeticError, ValueError):
+            return np.full(u.size - 1, np.nan)
+
+    with np.errstate(all="ignore"):
+        for h in DIFFERENCE_STEPS[:3]:
+            base = u + h * size * generic(u.size)
+            before = at(base)
+            if np.isfinite(before).all():
+                break
+        else:
+            return None
+
+    def touched(labels: Places, count: int) -> Any:
+        seen = np.empty((before.size, count), bool)
+        for k in range(count):
+            own = np.flatnonzero(labels == k)
+            moved = base.copy()
+            moved[own] += h * size[own] * generic(u.size)[::-1][own]
+            seen[:, k] = at(moved) != before
+        return seen
+
+    with np.errstate(all="ignore"):
+        return _worth(found(touched, before.size))
+
+
+def given_pattern(sparsity: Any, n: int) -> Pattern:
+    """The pattern of a homotopy's `sparsity`: an array or a sparse one, in which what is not zero counts."""
+    try:
+        places = sp.coo_array(sparsity)
+    except (TypeError, ValueError):
+        raise complain(TypeError, "sparsity", f"a matrix of shape ({n}, {n})", sparsity) from None
+    if places.shape != (n, n):
+        raise complain(ValueError, "sparsity", f"a matrix of shape ({n}, {n})", sparsity)
+    places.eliminate_zeros()
+    return pattern_of(places.coords[0], places.coords[1], n)
+
+
+def from_residual(
+    residual: Residual,
+    start: tuple[Array, float],
+    pattern: Pattern | None = None,
+    notes: set[str] | None = None,
+    products: Products | None = None,
+) -> Derivative:
     """The best derivative that a residual allows: jets, else complex step, else central differences.
 
     The first two are tried at the start, and believed when they agree with a difference there, since a residual may
     well run on complex numbers and be wrong on them (``abs``, ``np.real``).
 
-    `start` of shape (N,).
+    `start` of shape (N,). `pattern`: What may not be zero in H_y; looked for where None, if there are many unknowns.
+    `notes`: Where it is said what was done. `products`: The homotopy's own, taken for granted.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)
     w = sizes(u) * generic_vector(u.size)
+    said: set[str] = set() if notes is None else notes
+    if pattern is None and y.size >= SPARSE_FROM:
+        pattern = _looked_for(residual, u)
+    if products is not None:
+        return _said(Derivative(residual, products, pattern, said))
     reference: Array | None = None
-    for name, maker, source in (("jets", by_jets, GRIEWANK_WALTHER), ("complex step", by_complex_step, SQUIRE_TRAPP)):
+    for products in (BY_JETS, BY_COMPLEX_STEP):
+        derivative = Derivative(residual, products, pattern, said)
         try:
-            function = maker(residual)
             with warnings.catch_warnings(), np.errstate(all="ignore"):
                 warnings.simplefilter("error", np.exceptions.ComplexWarning)
-                found = np.column_stack(function(y, lam))
+                H_y, H_lam = derivative(y, lam)
         except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
             continue
-        if found.shape != (y.size, u.size):
+        if H_y.shape != (y.size, y.size):
             continue
         if reference is None:
             reference, step = difference_along(residual, u, w)
             rounding = _rounding(residual, u, w, step)
-        allowed = AGREEMENT * np.abs(found) @ np.abs(w)
-        allowed = np.maximum(allowed, AGREEMENT * float(allowed.max())) + rounding
-        if (np.abs(found @ w - reference) <= allowed).all():
-            return Derivative(function, name, (source,))
-    return Derivative(by_differences(residual, u), "differences")
+        size = AGREEMENT * (_absolute(H_y) @ np.abs(w[:-1]) + np.abs(H_lam * w[-1]))
+        allowed = np.maximum(size, AGREEMENT * float(size.max())) + rounding
+        if (np.abs(H_y @ w[:-1] + H_lam * w[-1] - reference) <= allowed).all():
+            return _said(derivative)
+    if pattern is None:
+        return _said(Derivative(residual, by_differences(residual, u), None, said))
+    groups = np.append(pattern.groups, pattern.count)
+    return _said(Derivative(residual, by_differences(residual, u, groups, pattern.structure()), pattern, said))
+
+
+def _said(derivative: Derivative) -> Derivative:
+    pattern = derivative.pattern
+    groups = "" if pattern is None else f" in {pattern.count} groups of columns"
+    derivative.notes.add(f"H' by {derivative.products.name}{groups}")
+    return derivative
+
+
+def _absolute(matrix: Matrix) -> Matrix:
+    return abs(matrix.tosparse() if isinstance(matrix, Banded) else matrix)

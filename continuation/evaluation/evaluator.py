@@ -15,11 +15,20 @@ from attrs import field, frozen
 from scipy.linalg.blas import dasum, dscal
 
 from continuation.arguments.checks import instance_with, real_vector
-from continuation.arrays import Array, Matrix, finite, generic_vector, largest
+from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual
+from continuation.evaluation.derivatives import check_derivative, from_residual, given_pattern
+from continuation.evaluation.pattern import Pattern, generic
 from continuation.evaluation.pieces import WholeMap
-from continuation.homotopy import SupportsBordered, SupportsDifferential, SupportsJacobian, SupportsPieces, offers
+from continuation.evaluation.products import given
+from continuation.homotopy import (
+    SupportsBordered,
+    SupportsDifferential,
+    SupportsJacobian,
+    SupportsPieces,
+    SupportsSparsity,
+    offers,
+)
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.linear.silence import Silence, silent
 from continuation.rejection import Rejection
@@ -61,9 +70,7 @@ class SingularPointError(EvaluationError):
 @lru_cache(maxsize=4)
 def _moves(n: int) -> Array:
     """Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them."""
-    generic = generic_vector(n)
-    moves: Array = np.sign(generic) * (0.5 + 0.5 * np.abs(generic) / np.abs(generic).max())
-    return LOOK * moves
+    return LOOK * generic(n)
 
 
 @frozen(eq=False, slots=False)
@@ -144,13 +151,14 @@ class Evaluator:
             if not callable(getattr(homotopy, name, len)):
                 raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
         self.homotopy = homotopy
+        self.followed = True  # by jets, as long as nobody finds otherwise
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
-        self._derivative: Derivative | None = None
+        self._derivative: Callable[[Array, float], tuple[Matrix, Array]] | None = None
         if offers(homotopy, SupportsJacobian):
-            self._derivative = Derivative(homotopy.jacobian, source="jacobian")
+            self._derivative = homotopy.jacobian
 
     def _given(self) -> Array:
         """The start as one vector (y0, lam0), of real numbers."""
@@ -171,6 +179,7 @@ class Evaluator:
         """The start as one vector (y0, lam0), checked, at which the residual is one."""
         u = self._given()
         y0 = u[:-1]
+        self._sparsity(y0.size)
         r = np.asarray(self.called(y0.copy(), float(u[-1])))
         if r.shape != y0.shape:
             raise ValueError(f"residual: expected shape {y0.shape}, that of y0, found {r.shape}")
@@ -179,6 +188,9 @@ class Evaluator:
             found = names.get(r.dtype.kind, f"an array of the type {r.dtype}")
             raise ValueError(f"residual: expected real numbers, found {found}")
         return u
+
+    def _sparsity(self, n: int) -> Pattern | None:
+        return given_pattern(self.homotopy.sparsity, n) if offers(self.homotopy, SupportsSparsity) else None
 
     def called(self, y: Any, lam: Any) -> Any:
         """The plug-in's residual, on numbers or on jets, counted.
@@ -228,12 +240,15 @@ class Evaluator:
         return np.abs(change, out=change)
 
     @property
-    def derivative(self) -> Derivative:
+    def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
         """Where derivatives come from: the plug-in's `jacobian`, else the residual, decided at first use."""
         if self._derivative is None:
             u = self._given()
-            self._derivative = from_residual(self.called, (u[:-1], float(u[-1])))
-            self.methods.update(self._derivative.references)
+            start = u[:-1], float(u[-1])
+            products = None if self._differential is None else given(self._differential)
+            derivative = from_residual(self.called, start, self._sparsity(u.size - 1), self.counts.notes, products)
+            self.methods.update(derivative.products.references)
+            self._derivative = derivative
         return self._derivative
 
     def differential(self, u: Array) -> Callable[[Array], Array] | None:
@@ -260,7 +275,7 @@ class Evaluator:
             with Silence():
                 return self._evaluated(u)
         try:
-            answer = (self._derivative or self.derivative).function(u[:-1], float(u[-1]))
+            answer = (self._derivative or self.derivative)(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
             raise _unevaluated("derivative", error) from error
         if not self._checked:

@@ -24,6 +24,7 @@ class FunctionHomotopy:
     y0: Array = field(converter=_start_vector)
     lam0: float = field(converter=float)
     target: float | None = 0.0
+    sparsity: Matrix | None = None
 
     def start(self) -> tuple[Array, float]:
         """The given start."""
@@ -66,6 +67,7 @@ def from_functions(
     *,
     start: tuple[Any, float],
     target: float | None = 0.0,
+    sparsity: Any = None,
 ) -> FunctionHomotopy | DifferentiableHomotopy:
     """Make a homotopy of functions.
 
@@ -80,6 +82,10 @@ def from_functions(
     target : float or None
         Where the path is to end; None for a curve that is followed for its own sake.
 
+    sparsity : array or sparse array, shape (N, N), optional
+        Where H_y may have entries, for large problems without `jacobian`: what is not zero counts. By default it is
+        looked for.
+
     Raises
     ------
     TypeError, ValueError
@@ -93,5 +99,5 @@ def from_functions(
     y0, lam0 = (real_vector("start", value) for value in start)
     if lam0.size != 1:
         raise complain(ValueError, "start", "a pair (y0, lam0) with one number lam0", start)
-    plain = FunctionHomotopy(residual, y0, lam0, target)
+    plain = FunctionHomotopy(residual, y0, lam0, target, sparsity)
     return plain if jacobian is None else DifferentiableHomotopy(plain, jacobian)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,8 @@ from numpy.typing import NDArray
 from continuation.arguments.checks import real_vector
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import difference_along
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.jets import directional_derivatives
+from continuation.evaluation.products import BY_COMPLEX_STEP, BY_JETS, Products, Residual, difference_along
 
 Product = Callable[[Array], Array]
 """w -> H'(u) w."""
@@ -125,20 +125,12 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
 def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Product]:
     """The best directional derivative that the residual allows, believed if it agrees with differences."""
 
-    def residual(u: Any) -> Any:
-        return evaluator.called(u[:-1], u[-1])
-
     def by_differences(w: Array) -> Array:
         return difference_along(evaluator.called, u, w)[0]
 
-    def by_complex_step(w: Array) -> Array:
-        return np.asarray(np.imag(residual(u + 1e-200j * w)) * 1e200)
-
-    def by_jets(w: Array) -> Array:
-        return np.asarray(directional_derivatives(residual, u, w, 1)[1])
-
     rough = by_differences(probe)
-    for name, product in (("jets", by_jets), ("complex step", by_complex_step)):
+    for products in (BY_JETS, BY_COMPLEX_STEP):
+        product = partial(_product, products, evaluator.called, u)
         try:
             with warnings.catch_warnings(), np.errstate(all="ignore"):
                 warnings.simplefilter("error", np.exceptions.ComplexWarning)
@@ -146,8 +138,12 @@ def _reference(evaluator: Evaluator, u: Array, probe: Array) -> tuple[str, Produ
         except (TypeError, ArithmeticError, ValueError, AttributeError, np.exceptions.ComplexWarning):
             continue
         if fine.shape == rough.shape and np.allclose(fine, rough, rtol=1e-4, atol=1e-4 * float(np.abs(rough).max())):
-            return name, product
+            return products.name, product
     return "differences", by_differences
+
+
+def _product(products: Products, residual: Residual, u: Array, w: Array) -> Array:
+    return products(residual, u, w[None])[:, 0]
 
 
 def _located(given: Product, expected: Product, w: Array, row: int, source: str, lam: float) -> JacobianReport:

@@ -10,7 +10,7 @@ from attrs.converters import optional
 from scipy.sparse.linalg import LinearOperator, aslinearoperator, gmres
 
 from continuation.arrays import Array, Matrix
-from continuation.linear.refine import BorderedMatrix, join, refined
+from continuation.linear.refine import TRUSTED, BorderedMatrix, join, refined
 from continuation.linear.system import SingularError
 
 INNER_TOLERANCE = 1e-9
@@ -97,10 +97,14 @@ class Krylov:
             )
         return z
 
+    def approximate(self, r: Array, rho: float) -> Array:
+        """The same to six digits: an iteration that measures its own residual gains them with each increment."""
+        return self._gmres(join(r, rho), TRUSTED)
+
     def _size(self, rhs: Array) -> float:
         return max(float(np.abs(rhs[:-1]).max()), self.row_scale * abs(float(rhs[-1])))
 
-    def _gmres(self, rhs: Array) -> Array:
+    def _gmres(self, rhs: Array, tolerance: float = INNER_TOLERANCE) -> Array:
         order = len(rhs)
         scaled = rhs.copy()
         scaled[-1] *= self.row_scale
@@ -110,7 +114,7 @@ class Krylov:
             LinearOperator((order, order), matvec=self._product, dtype=float),
             scaled,
             M=self.inverse,
-            rtol=INNER_TOLERANCE,
+            rtol=tolerance,
             restart=min(RESTART, order),
             maxiter=CYCLES,
         )

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -18,10 +19,11 @@ from continuation.arguments.checks import FRACTION, POSITIVE_FINITE, complain, i
 from continuation.arrays import Array
 from continuation.citation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.homotopy import SupportsTaylor
+from continuation.homotopy import SupportsTaylor, offers
 from continuation.point.linearization import Linearization, factored, with_exact_solves
 from continuation.point.segment import SeriesSegment
 from continuation.predictors.base import Knot
+from continuation.predictors.fitted import fitted
 from continuation.predictors.pade import Pade, best
 from continuation.tolerance import Tolerance
 
@@ -137,29 +139,46 @@ class Taylor:
     def prepare(self, evaluator: Evaluator, point: Linearization, history: Sequence[Knot]) -> Series | Pade:
         """The coefficients at the point, with the factorisation at hand."""
         order = self.order_wanted or best_order(point.u.size, self.accuracy)
-        try:
-            coefficients = coefficients_at(evaluator, with_exact_solves(evaluator, point), order)
-        except EvaluationError:
-            coefficients = coefficients_at(evaluator, factored(evaluator, point), order)
-        series = Series(coefficients, self.safety * series_reach(coefficients, self.accuracy, point.weights))
+        coefficients = self._exact(evaluator, point, order) if evaluator.followed else None
+        if coefficients is None:
+            evaluator.followed = False
+            evaluator.counts.notes.add("series through points of the path, since jets do not follow the residual")
+            lately = [knot.arclength for knot in history[-2:]]
+            # One is the metric's unit: about how far a path goes.
+            first = 0.5 * (max(lately) - min(lately)) or 1.0
+            coefficients = fitted(evaluator, point, order, first, partial(self._reach, point))
+        series = Series(coefficients, self.safety * self._reach(point, coefficients))
         if not self.rational:
             return series
         rational = best(coefficients, point.weights, self.accuracy, series.reach, self.safety)
         return series if rational is None else rational
 
 
-def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> Array:
-    """Coefficients of the path at a point, shape (order + 1, N + 1)."""
+    def _reach(self, point: Linearization, coefficients: Array) -> float:
+        return series_reach(coefficients, self.accuracy, point.weights)
+
+    def _exact(self, evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
+        try:
+            return coefficients_at(evaluator, with_exact_solves(evaluator, point), order)
+        except EvaluationError:
+            return coefficients_at(evaluator, factored(evaluator, point), order)
+
+
+def coefficients_at(evaluator: Evaluator, point: Linearization, order: int) -> Array | None:
+    """Coefficients of the path at a point, shape (order + 1, N + 1); None where jets do not follow the residual."""
     homotopy = evaluator.homotopy
-    if isinstance(homotopy, SupportsTaylor):
+    if offers(homotopy, SupportsTaylor):
         coefficients: Array = homotopy.taylor(point, order)
         if np.shape(coefficients) != (order + 1, point.u.size):
             raise complain(ValueError, "taylor", f"an array of shape {order + 1, point.u.size}", coefficients)
     else:
         from continuation import jets
 
+        try:
+            coefficients = jets.path_series(evaluator.called, point.u, point.tangent, point.solve, order)
+        except (TypeError, AttributeError, ValueError):
+            return None
         evaluator.methods.add(GRIEWANK_WALTHER)
-        coefficients = jets.path_series(evaluator.called, point.u, point.tangent, point.solve, order)
     if not np.isfinite(coefficients.sum()):
         raise EvaluationError("the Taylor coefficients are not finite")
     return coefficients

@@ -12,7 +12,7 @@ from continuation.arguments.checks import complain, instance_with
 from continuation.arguments.labels import Labels
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.controllers import Controller
+from continuation.controllers import Bounds, Controller
 from continuation.correctors import Corrector
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events import Event, KinkPoint, TargetValue, TurningPoint
@@ -130,7 +130,7 @@ def _capped(controller: Any, longest: float | None) -> Any:
     """The controller with a ceiling of its steps that is no higher than was asked for."""
     if longest is None or longest >= controller.bounds.maximum:
         return controller
-    bounds = controller.bounds
+    bounds: Bounds = controller.bounds
     if longest < bounds.minimum or not has(type(controller)):
         expected = f"at least the least step, {bounds.minimum:g}, and a controller of the library"
         raise complain(ValueError, "max_step", expected, longest)

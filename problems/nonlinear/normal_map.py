@@ -11,13 +11,7 @@ from attrs import field, frozen
 
 from continuation import jets
 from continuation.arrays import Array, Matrix
-from continuation.evaluation.derivatives import (
-    by_complex_step,
-    by_differences,
-    by_jets,
-    check_derivative,
-    from_residual,
-)
+from continuation.evaluation.derivatives import check_derivative, from_residual
 from continuation.homotopy import TangentPoint
 from continuation.linear import Banded, BorderedSystem
 from problems.bibliography import ROBINSON
@@ -52,21 +46,6 @@ class AffineForce:
     def slope(self, x: Array, lam: float) -> tuple[Matrix, Array]:
         """(A, d), wherever."""
         return self.A, self.d
-
-
-@frozen(eq=False)
-class DerivedSlope:
-    """(F_x, F_lam) from F itself, by the way that was found to suit it at a point; kept by name, to be pickled."""
-
-    F: Force
-    source: str
-    u: Array
-
-    def __call__(self, x: Array, lam: float) -> tuple[Matrix, Array]:
-        """The derivatives at (x, lam)."""
-        if self.source == "differences":
-            return by_differences(self.F, self.u)(x, lam)
-        return (by_jets if self.source == "jets" else by_complex_step)(self.F)(x, lam)
 
 
 @frozen(eq=False, slots=False)
@@ -131,8 +110,7 @@ class NormalMap:
         x = np.clip(self.x0, lower, upper)
         finite_vector("F(x0, lam0)", quiet(self.F)(x, self.lam0))
         if self.jacobian_of_F is None:
-            source = from_residual(self.F, (x, self.lam0)).source
-            object.__setattr__(self, "jacobian_of_F", DerivedSlope(self.F, source, np.append(x, self.lam0)))
+            object.__setattr__(self, "jacobian_of_F", from_residual(self.F, (x, self.lam0)))
         assert self.jacobian_of_F is not None
         require_callable("jacobian", self.jacobian_of_F)
         check_derivative(quiet(self.jacobian_of_F)(x.copy(), self.lam0), n)

@@ -15,6 +15,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import Euclidean
 from continuation.point.linearization import linearize, relinearize, with_exact_solves
 from continuation.predictors import Taylor
+from continuation.predictors.fitted import fitted
 from continuation.predictors.taylor import ORDERS, Series, best_order, coefficients_at, series_reach
 from problems.bifurcation import Bratu1D, Circle, ExponentialCosine, FreudensteinRoth
 from problems.bifurcation.truth import bratu, exponential_cosine, freudenstein_roth
@@ -217,3 +218,57 @@ def test_a_controller_is_told_the_order_that_was_used(predictor, orders):
     continuation.trace(Circle(), predictor=predictor, controller=noting)
     assert set(noting.orders) == orders
     assert best_order(2, 1e-5) == 15
+
+
+def compiled(homotopy):
+    """As one that only takes floats."""
+
+    def residual(y, lam):
+        return homotopy.residual(np.asarray(y, dtype=float), float(lam))
+
+    return continuation.from_functions(residual, start=homotopy.start(), target=homotopy.target)
+
+
+def powers(y, lam):
+    """What jets do not know."""
+    return np.einsum("i,i,i->i", y, y, y) - 1.0 - lam
+
+
+@pytest.mark.parametrize("preset", [continuation.DEFAULT, continuation.SERIES], ids=lambda preset: preset.name)
+@pytest.mark.parametrize("slope", [None, lambda y, lam: (np.diag(3.0 * y**2), -np.ones(2))], ids=["alone", "jacobian"])
+def test_no_preset_refuses_what_another_takes(preset, slope):
+    homotopy = continuation.from_functions(powers, slope, start=(np.ones(2), 0.0), target=1.0)
+    path = continuation.trace(homotopy, preset=preset)
+    assert path.success
+    np.testing.assert_allclose(path.endpoint.y, 2.0 ** (1.0 / 3.0), rtol=1e-9)
+    assert any("points of the path" in note for note in path.counts.notes) == (preset is continuation.SERIES)
+
+
+@pytest.mark.parametrize("homotopy", [FreudensteinRoth(), ExponentialCosine(3), Bratu1D(30)], ids=repr)
+def test_series_through_points_finds_the_same_folds(homotopy):
+    stop = {"events": [continuation.TargetValue(1.0, -1)]} if isinstance(homotopy, Bratu1D) else {}
+    path, own = (continuation.trace(one, preset=continuation.SERIES, **stop) for one in (compiled(homotopy), homotopy))
+    assert path.status is own.status
+    folds, wanted = (np.array([point.lam for point in one.turning_points]) for one in (path, own))
+    np.testing.assert_allclose(folds, wanted, rtol=1e-9)
+    # As long as jets' steps, or a few times shorter: the order is eleven at most.
+    assert len(path) <= 4 * len(own)
+
+
+def test_coefficients_through_points_are_those_of_jets():
+    evaluator, point = at_start(Bratu1D(20))
+    exact = coefficients_at(evaluator, point, 9)
+    reach = float(series_reach(exact, 1e-5, point.weights))
+    for first in (1e-6, 1.0, 1e6):
+        found = fitted(evaluator, point, 9, first, lambda c: series_reach(c, 1e-5, point.weights))
+        # Beside the path, as far as the series is used.
+        for s in (0.3 * reach, -0.3 * reach):
+            np.testing.assert_allclose(Series(found, reach)(s), Series(exact, reach)(s), rtol=0, atol=1e-6)
+        assert 0.5 * reach <= series_reach(found, 1e-5, point.weights) <= 2.0 * reach
+
+
+@pytest.mark.parametrize("longest", [1e-2, 0.5, 1000.0])
+def test_a_longest_step_is_kept_by_series_too(longest):
+    path = continuation.trace(Circle(), preset=continuation.SERIES, max_step=longest)
+    assert path.status is continuation.Status.CLOSED
+    assert max(step.step_length for step in path.steps if np.isfinite(step.step_length)) <= longest * (1.0 + 1e-12)

@@ -1,0 +1,74 @@
+"""A residual in CasADi, with the sparse derivative that CasADi makes of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+from continuation.adapters.given import filled, library, started
+from continuation.arguments.checks import complain
+from continuation.arrays import Array, Matrix
+from continuation.evaluation.pattern import Pattern
+
+
+@frozen(eq=False)
+class CasadiHomotopy:
+    """A homotopy whose residual is a function of CasADi; see `from_casadi`."""
+
+    function: Any
+    slope: Any
+    """(H_y, H_lam), of CasADi too."""
+    pattern: Pattern
+    y0: Array
+    lam0: float
+    target: float | None
+
+    def start(self) -> tuple[Array, float]:
+        """The given start."""
+        return self.y0.copy(), self.lam0
+
+    def residual(self, y: Array, lam: float) -> Array:
+        """H."""
+        return np.asarray(self.function(np.asarray(y, dtype=float), float(lam)).full()).ravel()
+
+    def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
+        """(H_y, H_lam): dense, `Banded` or sparse, as it is."""
+        H_y, H_lam = self.slope(y, lam)
+        return filled(self.pattern, np.array(H_y.nonzeros())), np.asarray(H_lam.full()).ravel()
+
+
+def from_casadi(function: Any, start: tuple[Any, float], *, target: float | None = 0.0) -> CasadiHomotopy:
+    """Make a homotopy of a function of CasADi.
+
+    Parameters
+    ----------
+    function : casadi.Function
+        Of two inputs, y of shape (N, 1) and a number lam, with one output, (N, 1).
+    start : tuple
+    target : float or None
+        As of `continuation.from_functions`.
+
+    Raises
+    ------
+    ImportError
+        If CasADi is not installed.
+    TypeError, ValueError
+        If it is no such function.
+    """
+    ca = library("casadi")
+    if not isinstance(function, ca.Function):
+        raise complain(TypeError, "function", "a casadi.Function of (y, lam)", function)
+    y0, lam0 = started(start)
+    n = y0.size
+    inputs = [function.size_in(k) for k in range(function.n_in())]
+    outputs = [function.size_out(k) for k in range(function.n_out())]
+    if inputs != [(n, 1), (1, 1)] or outputs != [(n, 1)]:
+        raise ValueError(f"function: expected (({n}, 1), (1, 1)) -> ({n}, 1), found {inputs} -> {outputs}")
+    y, lam = ca.MX.sym("y", n), ca.MX.sym("lam")
+    r = function(y, lam)
+    H_y = ca.jacobian(r, y)
+    slope = ca.Function("slope", [y, lam], [H_y, ca.densify(ca.jacobian(r, lam))])
+    rows, columns = (np.array(places, dtype=np.intp) for places in H_y.sparsity().get_triplet())
+    return CasadiHomotopy(function, slope, Pattern(rows, columns, n), y0, lam0, target)

@@ -1,0 +1,54 @@
+"""What the adapters share: where a path starts, and a derivative whose entries are known by their places."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from continuation.arguments.checks import complain, real_vector
+from continuation.arrays import Array, Matrix
+from continuation.evaluation.derivatives import SPARSE_FROM
+from continuation.evaluation.pattern import Pattern
+
+
+def library(name: str) -> Any:
+    """The library, or one of its modules.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed, with what to install.
+    """
+    try:
+        return import_module(name)
+    except ImportError as error:
+        package = name.partition(".")[0]
+        raise ImportError(f"{name} is needed for this: pip install 'pseudoarclength[{package}]' ({error})") from error
+
+
+def started(start: Any) -> tuple[Array, float]:
+    """(y0, lam0) of numbers.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the start is none.
+    """
+    if not isinstance(start, (tuple, list)) or len(start) != 2:
+        raise complain(ValueError, "start", "a pair (y0, lam0)", start)
+    lam0 = real_vector("start", start[1])
+    if lam0.size != 1:
+        raise complain(ValueError, "start", "a pair (y0, lam0) with one number lam0", start)
+    return np.atleast_1d(real_vector("start", start[0])).astype(float), float(lam0.item())
+
+
+def filled(pattern: Pattern, entries: Array) -> Matrix:
+    """The matrix with these entries: dense where it is small or a quarter of it is there, else as its pattern is."""
+    n = pattern.n
+    if n >= SPARSE_FROM and 4 * entries.size <= n * n:
+        return pattern.matrix(entries)
+    matrix = np.zeros((n, n))
+    matrix[pattern.rows, pattern.columns] = entries
+    return matrix

@@ -1,0 +1,170 @@
+"""The same model in numpy, JAX, CasADi and SymPy: the same path; and what the adapters refuse."""
+
+import pickle
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import continuation
+from continuation import FAST, SERIES, trace
+from continuation.linear import Banded
+from problems.bifurcation import Bratu1D
+
+from ...util import benchmark, by_preset
+
+five = benchmark("adapters/five.py")
+MODELS = {"brusselator": five.brusselator(6), "network": five.network(3, 8)}
+WAYS = ("jax", "jax sparse", "casadi", "sympy", "residual only")
+
+per_preset = by_preset(FAST, SERIES)
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return {
+        (name, preset.name): trace(five.ways(model)["numpy"](), preset=preset)
+        for name, model in MODELS.items()
+        for preset in (FAST, SERIES)
+    }
+
+
+@per_preset
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("name", MODELS)
+def test_the_same_path_whoever_wrote_the_residual(name, way, preset, plain):
+    if way != "residual only":
+        pytest.importorskip(way.split()[0])
+    path, own = trace(five.ways(MODELS[name])[way](), preset=preset), plain[name, preset.name]
+    assert path.status is own.status is continuation.Status.REACHED_TARGET
+    np.testing.assert_allclose(path.endpoint.u, own.endpoint.u, rtol=0, atol=1e-7)
+    folds, wanted = ([point.lam for point in one.turning_points] for one in (path, own))
+    np.testing.assert_allclose(folds, wanted, rtol=0, atol=1e-10)
+    assert len(wanted) == (0 if name == "brusselator" else 2)
+
+
+@pytest.mark.parametrize("way", WAYS[:-1])
+def test_derivatives_are_right_and_homotopies_can_be_sent_elsewhere(way):
+    pytest.importorskip(way.split()[0])
+    homotopy = five.ways(MODELS["brusselator"])[way]()
+    if way != "jax sparse":
+        assert continuation.check_jacobian(homotopy).correct
+    if way.startswith("jax"):
+        # JAX's functions are sent by their module and name.
+        homotopy = continuation.from_jax(layers, ([0.0, 0.0], 0.0), target=1.0, jacobian=homotopy.kind)
+    other = pickle.loads(pickle.dumps(homotopy))
+    y, lam = homotopy.start()
+    np.testing.assert_array_equal(homotopy.residual(y, lam), other.residual(y, lam))
+    assert homotopy.target == other.target
+
+
+def layers(y, lam):
+    import jax
+
+    return y + 0.5 * jax.numpy.tanh(y[::-1]) - lam
+
+
+def by_jax(residual, start, **more):
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    return continuation.from_jax(residual, start, **more)
+
+
+def test_products_of_jax_serve_an_operator():
+    path = trace(by_jax(layers, ([0.0, 0.0], 0.0), target=1.0, jacobian="operator"))
+    assert path.success
+    assert {step.orientation for step in path.steps} == {0}
+
+
+def test_the_sparse_derivative_of_jax_is_banded_where_it_is():
+    pytest.importorskip("jax")
+
+    def chain(y, lam):
+        import jax
+
+        u = jax.numpy.concatenate((jax.numpy.zeros(1), y, jax.numpy.zeros(1)))
+        return u[:-2] - 2.0 * y + u[2:] + lam / 6561.0 * jax.numpy.exp(y)
+
+    homotopy = by_jax(chain, (np.zeros(80), 0.0), target=None, jacobian="sparse")
+    stop = continuation.TurningPoint(terminal=1)
+    path = trace(homotopy, events=[stop])
+    bratu = trace(Bratu1D(80), events=[stop])
+    assert path.turning_points[0].lam == pytest.approx(bratu.turning_points[0].lam, rel=1e-12)
+    assert path.counts.notes == {"H' by differential in 3 groups of columns"}
+
+
+def test_what_jet_does_not_know_arrives_through_points_of_the_path():
+    def unknown(y, lam):
+        import jax
+
+        return y + 0.1 * jax.scipy.special.gammaln(2.0 + y) - lam
+
+    homotopy = by_jax(unknown, ([0.0], 0.0), target=1.0)
+    assert not hasattr(homotopy, "taylor")
+    path = trace(homotopy, preset=SERIES)
+    assert path.success
+    assert any("points of the path" in note for note in path.counts.notes)
+
+
+def test_single_precision_is_refused():
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", False)
+    try:
+        with pytest.raises(ValueError, match=r"jax: expected double precision.*jax_enable_x64"):
+            continuation.from_jax(layers, ([0.0], 0.0))
+    finally:
+        jax.config.update("jax_enable_x64", True)
+    with pytest.raises(ValueError, match=r"residual: expected a function.*float64"):
+        by_jax(lambda y, lam: (y - lam).astype("float32"), ([0.0], 0.0))
+    with pytest.raises(ValueError, match=r"residual: expected a function.*float64"):
+        by_jax(lambda y, lam: lam, ([0.0, 1.0], 0.0))
+    with pytest.raises(ValueError, match="jacobian: expected one of dense, sparse, operator, found 'full'"):
+        by_jax(layers, ([0.0], 0.0), jacobian="full")
+    with pytest.raises(TypeError, match="residual: expected a function"):
+        by_jax(None, ([0.0], 0.0))
+
+
+def test_casadi_functions_of_another_shape_are_refused():
+    ca = pytest.importorskip("casadi")
+    y, lam = ca.SX.sym("y", 2), ca.SX.sym("lam")
+    with pytest.raises(TypeError, match=r"function: expected a casadi.Function"):
+        continuation.from_casadi(len, ([0.0, 0.0], 0.0))
+    with pytest.raises(ValueError, match=r"function: expected \(\(3, 1\), \(1, 1\)\) -> \(3, 1\), found"):
+        continuation.from_casadi(ca.Function("H", [y, lam], [y - lam]), (np.zeros(3), 0.0))
+
+
+def test_expressions_that_do_not_fit_are_refused():
+    sympy = pytest.importorskip("sympy")
+    x, lam, other = sympy.symbols("x lam other")
+    with pytest.raises(ValueError, match="expressions: expected as many as unknowns"):
+        continuation.from_sympy([x - lam], [x, other], lam, ([0.0], 0.0))
+    with pytest.raises(ValueError, match=r"expressions: expected no symbols but.*\['other'\]"):
+        continuation.from_sympy([x - lam + other], [x], lam, ([0.0], 0.0))
+    with pytest.raises(ValueError, match="start: expected a pair"):
+        continuation.from_sympy([x - lam], [x], lam, [0.0])
+
+
+def test_sympy_is_banded_where_it_is_and_takes_constant_equations():
+    sympy = pytest.importorskip("sympy")
+    y, lam = sympy.symbols("y:70"), sympy.Symbol("lam")
+    rows = [y[0] - 1, *(b - a * sympy.Rational(1, 2) - lam for a, b in pairwise(y))]
+    homotopy = continuation.from_sympy(rows, y, lam, ([1.0 * 0.5**k for k in range(70)], 0.0), target=1.0)
+    assert isinstance(homotopy.jacobian(*homotopy.start())[0], Banded)
+    for preset in (FAST, SERIES):
+        path = trace(homotopy, preset=preset)
+        assert path.endpoint.y[-1] == pytest.approx(2.0, abs=1e-9)
+        assert not path.counts.notes
+    constant = continuation.from_sympy([y[0] - 2, y[1] - lam * y[0]], y[:2], lam, ([2.0, 0.0], 0.0), target=1.0)
+    assert trace(constant, preset=SERIES).endpoint.y == pytest.approx([2.0, 2.0])
+
+
+@pytest.mark.parametrize("name", ["jax", "casadi", "sympy"])
+def test_what_is_not_installed_is_named(name, monkeypatch):
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(ImportError, match=rf"pip install 'pseudoarclength\[{name}\]'"):
+        {
+            "jax": lambda: continuation.from_jax(layers, ([0.0], 0.0)),
+            "casadi": lambda: continuation.from_casadi(None, ([0.0], 0.0)),
+            "sympy": lambda: continuation.from_sympy([], [], None, ([0.0], 0.0)),
+        }[name]()
