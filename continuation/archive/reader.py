@@ -150,7 +150,7 @@ class Archive(Sequence[Path]):
             events,
             Status(int(row["status"])),
             row["message"].decode(errors="replace"),
-            Counts(**{name: int(row[column]) for name, column in COUNT_NAMES.items()}),
+            Counts(*(int(row[column]) for column in COUNT_NAMES.values())),
             float(row["wall_time"]),
             references=entries(str(self.attributes.get("references", ""))),
             end_error=None if math.isnan(end_error) else end_error,
