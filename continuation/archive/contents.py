@@ -31,7 +31,8 @@ from continuation.archive.codec import GROUP as PROBLEM
 from continuation.archive.codec import read_problem
 from continuation.archive.datasets import COLUMN_BYTES, Allowance, LimitError, dataset, names, subgroup
 from continuation.archive.errors import ArchiveError
-from continuation.archive.files import FAULTS, WRITER_SECONDS, open_for_reading
+from continuation.archive.files import FAULTS, hdf5
+from continuation.archive.image import Image
 from continuation.archive.locks import is_held
 from continuation.archive.schema import (
     EVENT_NAME,
@@ -47,6 +48,10 @@ from continuation.archive.structure import RESUME, SLOTS
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
+WRITER_SECONDS, _PAUSE = 2.0, 0.02
+"""Seconds for which a file that is being written may seem to be damaged, since its writer is in the middle of
+something, and between two looks at it."""
+
 
 class Contents:
     """An open file.
@@ -61,20 +66,20 @@ class Contents:
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None, salvage: bool = False) -> None:
         self.file, self._limit, self._salvage = as_file("file", file), limit, salvage
         self.flaws: list[str] = []
-        self._open()
+        self.closed_by_writer = True
+        self._image: Image | None = None
+        self._h5: Any = None
         try:
             self._guarded(self._read_structure)
         except BaseException:
             self.close()
             raise
 
-    def _open(self) -> None:
-        self._h5, self._image = open_for_reading(self.file, truncated=self._salvage)
-        self._datasets: dict[str, Any] = {}
-        self.allowance = Allowance(self._image.length - self._image.missing, self._limit)
-        self.closed_by_writer = self._image.closed_by_writer
-        if self._image.missing:
-            self.flaws.append(f"its last {self._image.missing} bytes are missing")
+    def _open(self) -> Image:
+        self._image = image = Image(self.file)
+        self.closed_by_writer, self.size, self.descriptor = image.closed_by_writer, image.length, image.descriptor
+        self._h5, self._datasets = hdf5(image, truncated=self._salvage), dict[str, Any]()
+        return image
 
     @property
     def root(self) -> Any:
@@ -83,22 +88,25 @@ class Contents:
 
     def close(self) -> None:
         """Close the file."""
-        self._h5.close()
-        self._image.close()
+        for held in (self._h5, self._image):
+            if held is not None:
+                held.close()
 
     def _guarded(self, read: Callable[[], _T]) -> _T:
         """What `read` returns; a file that is being written is given time to be read right."""
         end = time.monotonic() + WRITER_SECONDS
         while True:
             try:
+                self._image = self._image or self._open()
                 return read()
             except FAULTS as error:
-                if isinstance(error, ArchiveError):
-                    raise
                 if self.closed_by_writer or time.monotonic() > end or not is_held(self.file):
+                    if isinstance(error, ArchiveError):
+                        raise
                     raise self.damaged(error) from error
             self.close()
-            self._open()
+            self._h5 = self._image = None
+            time.sleep(_PAUSE)
 
     def damaged(self, error: BaseException) -> ArchiveError:
         """The error for a file that cannot be read."""
@@ -122,20 +130,12 @@ class Contents:
             raise DamageError(text)
         self.flaws.append(text)
 
-    @property
-    def size(self) -> int:
-        """Bytes of the file."""
-        return self._image.length
-
-    @property
-    def descriptor(self) -> int:
-        """Of the open file."""
-        return self._image.descriptor
-
     # -- structure --------------------------------------------------------------------------------------------
 
     def _read_structure(self) -> None:
-        file = self._h5
+        file, missing = self._h5, self._image.missing if self._image else 0
+        self.allowance = Allowance(self.size - missing, self._limit)
+        self.flaws = [f"its last {missing} bytes are missing"] if missing else []
         self.checked = GROUP in file
         self.layout = _layout(file, self.allowance)
         columns = {"point": self.layout.point_columns, "path": self.layout.path_columns}
@@ -275,7 +275,7 @@ class Contents:
         for slot in range(SLOTS):
             head = slots[slot, : HEAD.size].tobytes()
             length = HEAD.unpack(head)[1] if len(head) == HEAD.size else 0
-            if 0 < length <= min(slots.shape[1] - HEAD.size, self._image.length):
+            if 0 < length <= min(slots.shape[1] - HEAD.size, self.size):
                 found.append(slots[slot, : HEAD.size + length].tobytes())
         return found
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
-from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
@@ -15,55 +13,29 @@ from continuation.archive.checks import GROUP, RECORDS
 from continuation.archive.datasets import COLUMN_BYTES
 from continuation.archive.errors import ArchiveError
 from continuation.archive.image import Image
-from continuation.archive.locks import is_held
 from continuation.archive.schema import SCHEMA, UNCHECKED
 
-WRITER_SECONDS = 2.0
-"""Seconds for which a file that is being written may seem to be damaged: its writer is in the middle of something."""
-
-_PAUSE = 0.02
 FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError, RecursionError)
 """What h5py raises for a file that is not what it should be."""
 
 
-def open_for_reading(file: str | PathLike[str], *, truncated: bool = False) -> tuple[Any, Image]:
-    """The open HDF5 file, and the bytes under it; where the end is missing, with zeros there if `truncated`.
+def hdf5(image: Image, *, truncated: bool = False) -> Any:
+    """The HDF5 file in an image, open; where its end is missing, with zeros there if `truncated`.
 
-    Raises `ArchiveError` for a file that is missing, unreadable, not HDF5, truncated, foreign, or of a newer schema.
+    Raises `ArchiveError` for one that is not HDF5, truncated, foreign, or of a newer schema.
     """
-    name = File(file)
-    image = Image(name)
+    name = image.file
+    _check_length(image, truncated)
     try:
-        return _opened(name, image, truncated), image
-    except BaseException:
-        image.close()
-        raise
-
-
-def _opened(name: File, image: Image, truncated: bool) -> Any:
-    end = time.monotonic() + WRITER_SECONDS
-    while True:
-        try:
-            _check_length(image, truncated)
-            opened = _hdf5(name, image)
-            try:
-                _check_schema(name, opened)
-            except BaseException:
-                opened.close()
-                raise
-            return opened
-        except ArchiveError:
-            if image.closed_by_writer or time.monotonic() > end or not is_held(name):
-                raise
-        time.sleep(_PAUSE)
-        image.refresh()
-
-
-def _hdf5(name: File, image: Image) -> Any:
-    try:
-        return h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
+        opened = h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES)
     except FAULTS as error:
         raise ArchiveError(f"{name}: truncated or damaged, HDF5 cannot open it ({short(error)})") from None
+    try:
+        _check_schema(name, opened)
+    except BaseException:
+        opened.close()
+        raise
+    return opened
 
 
 def _check_length(image: Image, truncated: bool) -> None:

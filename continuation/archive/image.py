@@ -53,13 +53,12 @@ class Image:
         self.file, self.at = file, 0
         self.descriptor = _opened(file)
         try:
-            self.refresh()
+            self._begin()
         except BaseException:
             os.close(self.descriptor)
             raise
 
-    def refresh(self) -> None:
-        """Read the beginning anew, of a file that is being written."""
+    def _begin(self) -> None:
         try:
             head = os.pread(self.descriptor, HEAD_BYTES, 0)
         except OSError as error:

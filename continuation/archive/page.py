@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -67,7 +68,10 @@ def _fitted(line: str, width: int) -> list[str]:
     if len(line) <= width:
         return [line]
     indent = " " * min(len(line) - len(line.lstrip()) + 2, width // 2)
-    return textwrap.wrap(line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    # A command stays in one piece.
+    whole = re.sub(r"`[^`]*`", lambda command: command[0].replace(" ", _UNBROKEN), line)
+    parts = textwrap.wrap(whole, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    return [part.replace(_UNBROKEN, " ") for part in parts]
 
 
 def _page(archive: Archive) -> str:

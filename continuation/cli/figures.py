@@ -9,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
+from continuation.cli.archives import complaints
 from continuation.cli.parser import SUCCESS, Subparsers, UsageError, parsed
 
 SUFFIXES = (".png", ".pdf", ".svg")
@@ -40,17 +41,14 @@ def register(subparsers: Subparsers) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, draw, say where."""
-    from continuation.archive import ArchiveError, open_archive
+    from continuation.archive import open_archive
 
     if arguments.output is not None:
         check_picture("--output", arguments.output)
-    try:
-        with open_archive(arguments.file) as archive:
-            if not 0 <= arguments.path < len(archive):
-                raise UsageError("--path", f"expected a number below {len(archive)}, found {arguments.path}")
-            path = archive.path(arguments.path)
-    except ArchiveError as error:
-        raise UsageError("FILE", error) from error
+    with complaints("FILE"), open_archive(arguments.file) as archive:
+        if not 0 <= arguments.path < len(archive):
+            raise UsageError("--path", f"expected a number below {len(archive)}, found {arguments.path}")
+        path = archive.path(arguments.path)
     output = str(Path(arguments.file).with_suffix(".png")) if arguments.output is None else arguments.output
     check_picture("--output", output)
     try:
