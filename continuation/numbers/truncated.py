@@ -252,21 +252,17 @@ class Truncated:
     def _call(self, ufunc: np.ufunc, inputs: tuple[Any, ...]) -> Any:
         if ufunc is np.matmul and any(issparse(x) for x in inputs):
             return self._sparse_product(*inputs)
-        operands = [x if isinstance(x, Truncated | float) else gather(x, self.ONE) for x in inputs]
+        operands = [x if isinstance(x, Truncated) or type(x) is float else gather(x, self.ONE) for x in inputs]
         algebra = common([x for x in operands if isinstance(x, Truncated)])
         stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
+        if len(stores) == 2 and ufunc is not np.matmul:
+            stores = list(ufuncs.aligned(*stores))
         # Overflow shows as inf, as in any array; where no series exists, demand() raises.
         with np.errstate(all="ignore"):
-            if ufunc in ufuncs.UNARY:
-                return wrap(ufuncs.UNARY[ufunc](algebra, stores[0]), algebra)
-            if ufunc in ufuncs.BINARY:
-                return wrap(ufuncs.BINARY[ufunc](algebra, *ufuncs.aligned(*stores)), algebra)
-            if ufunc is np.matmul:
-                return wrap(ufuncs.matmul(algebra, *stores), algebra)
-            if ufunc in ufuncs.OPPOSITE:
-                return ufuncs.compared(ufunc, *ufuncs.aligned(*stores))
-            if ufunc in ufuncs.TESTS:
-                return ufuncs.TESTS[ufunc](*stores)
+            if ufunc in ufuncs.RULES:
+                return wrap(ufuncs.RULES[ufunc](algebra, *stores), algebra)
+            if ufunc in ufuncs.DECIDED:
+                return ufuncs.DECIDED[ufunc](*stores)
         raise self.unknown(f"numpy.{ufunc.__name__}")
 
     def _sparse_product(self, a: Any, b: Any) -> Any:
@@ -274,7 +270,6 @@ class Truncated:
         matrix, x = (b.T, a) if isinstance(a, Truncated) else (a, b)
         if x.ndim != 1:
             raise self.unknown(f"a sparse product with an array of {x.ndim} axes")
-
         return wrap(sparse_product(matrix, x.c), x.algebra)
 
 
@@ -308,10 +303,11 @@ def gather(x: Any, one: str = "an array of series") -> Any:
 
 
 def common(operands: Any) -> Algebra:
-    """The algebra of those that are no constants, which must agree."""
-    first, *others = operands if len(operands) == 1 else [x for x in operands if len(x.c) > 1] or operands[:1]
+    """The algebra of those that are no constants: one, and over one ring."""
+    first, *others = operands if len(operands) == 1 else sorted(operands, key=lambda x: len(x.c) == 1)
     for x in others:
-        if type(x.c) is not type(first.c) or len(x.c) != len(first.c) or x.algebra != first.algebra:
+        constant = len(x.c) == 1 or (len(x.c) == len(first.c) and x.algebra == first.algebra)
+        if not constant or x.OWN != first.OWN:
             orders = f"orders {len(first.c) - 1} and {len(x.c) - 1}"
             raise ValueError(f"{first.WHO} of different kinds meet {x.WHO}: {orders}")
     algebra: Algebra = first.algebra

@@ -179,14 +179,11 @@ def _composed(rule: series.Rule, algebra: Algebra, a: Store) -> Store:
     return compose(algebra, rule, a)
 
 
-UNARY: dict[np.ufunc, Callable[[Algebra, Store], Store]] = {
+RULES: dict[np.ufunc, Callable[..., Store]] = {
     np.positive: lambda algebra, a: a.copy(),
     np.negative: lambda algebra, a: -a,
     np.fabs: partial(_composed, series.absolute),
     **{f: partial(_composed, rule) for f, rule in ELEMENTARY.items()},
-}
-
-BINARY: dict[np.ufunc, Binary] = {
     np.add: _add,
     np.subtract: lambda algebra, a, b: a - b if len(a) == len(b) else _add(algebra, a, -b),
     np.multiply: _multiply,
@@ -197,11 +194,12 @@ BINARY: dict[np.ufunc, Binary] = {
     np.arctan2: _arctan2,
     np.maximum: _extremum("numpy.maximum", 1),
     np.minimum: _extremum("numpy.minimum", -1),
+    np.matmul: matmul,
 }
-"""Elementwise functions of two arguments, whose coefficients have been given the same number of axes."""
+"""Of an algebra and one or two coefficients; all but those of `matmul` have been given the same number of axes."""
 
 
-# --- decided by the leading coefficients ------------------------------------------------------------------
+# --- comparisons ---------------------------------------------------------------------------------------------
 
 
 OPPOSITE: dict[np.ufunc, np.ufunc] = {np.less: np.greater_equal, np.greater: np.less_equal, np.equal: np.not_equal}
@@ -234,8 +232,9 @@ def finite(c: Store) -> Any:
     return np.isfinite(c).all(axis=0)
 
 
-TESTS: dict[np.ufunc, Callable[[Store], Any]] = {
+DECIDED: dict[np.ufunc, Callable[..., Any]] = {
+    **{f: partial(compared, f) for f in OPPOSITE},
     np.isfinite: finite,
     np.isnan: lambda c: ~finite(c) if isinstance(c, Ends) else np.isnan(c).any(axis=0),
 }
-"""Decided by all coefficients."""
+"""What has no series."""
