@@ -71,6 +71,12 @@ class Derivative:
     products: Products
     pattern: Pattern | None = None
     notes: set[str] = field(factory=set)
+    agreement: float = field(init=False)
+    """What the check asks for: as the products do, or less where round-off within the residual leaves less."""
+
+    @agreement.default
+    def _first(self) -> float:
+        return self.products.agreement
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at a point, dense or sparse."""
@@ -81,9 +87,11 @@ class Derivative:
                 return answer
             self.pattern = self._grown(u, self.pattern)
             self.notes.add("a sparsity pattern that changed, looked for again")
-            answer = None if self.pattern is None else self._by_groups(u, self.pattern)
-            if answer is not None:
-                return answer
+            for agreement in (self.agreement, AGREEMENT):
+                self.agreement = agreement
+                answer = None if self.pattern is None else self._by_groups(u, self.pattern)
+                if answer is not None:
+                    return answer
             # What is no sum of its parts is no derivative that groups could give.
             self.pattern = None
             self.notes.add("a sparsity pattern that could not be found")
@@ -103,10 +111,9 @@ class Derivative:
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
         size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
         # Not finite: outside the domain, which is not the pattern's fault.
-        if (gap > self.products.agreement * size).any():
-            allowed = self.products.agreement * size
-            if (gap > np.maximum(allowed, self.products.agreement * float(allowed.max()))).any():
-                return None
+        allowed = self.agreement * size
+        if (gap > allowed).any() and (gap > np.maximum(allowed, self.agreement * float(allowed.max()))).any():
+            return None
         if scale is not None:
             entries, column = entries / scale[pattern.columns], column / scale[-1]
         return pattern.matrix(entries), np.ascontiguousarray(column)

@@ -175,3 +175,16 @@ def test_products_of_ones_own_make_the_matrix():
         path, own = (trace(each, **alone.options(one, "FAST")) for each in (Products(one, compiled=True), one))
         assert alone.folds_apart(path, own) <= 1e-13
         assert path.counts.residuals <= own.counts.residuals + 150
+
+
+def test_products_that_are_no_better_than_differences_miss_nothing():
+    class Differenced(alone.Plain):
+        def differential(self, y, lam, v):
+            ahead, behind = (self.residual(y + h * v[:-1], lam + h * v[-1]) for h in (1e-6, -1e-6))
+            return (ahead - behind) / 2e-6
+
+    bratu = alone.Bratu1D(80)
+    path = trace(Differenced(bratu), **alone.options(bratu, "FAST"))
+    assert path.success
+    assert path.counts.residuals < 40 * path.counts.jacobians
+    assert alone.folds_apart(path, trace(bratu, **alone.options(bratu, "FAST"))) <= 1e-9
