@@ -11,6 +11,7 @@ import json
 import os
 import resource
 import signal
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -31,7 +32,9 @@ def read_apart(read: Callable[[str], Mapping[str, Any]], file: str) -> Mapping[s
     """
     size = Path(file).stat().st_size
     with TemporaryFile() as out:
-        child = os.fork()
+        # Python warns of other threads, whose locks stay taken in the child: it takes none of theirs, and has an end.
+        with warnings.catch_warnings(action="ignore", category=DeprecationWarning):
+            child = os.fork()
         if not child:
             _answer(read, file, size, out)
         ended = False
