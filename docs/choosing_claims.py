@@ -18,7 +18,7 @@ class Charts:
 
     def __getitem__(self, study):
         if study not in self._read:
-            self._read[study] = chart.read(self.folder / f"{study}.h5")
+            self._read[study] = chart.read(self.folder / f"{study}.csv")
         return self._read[study]
 
 
@@ -223,9 +223,9 @@ def orders_from_13_to_20_are_good(charts):
 
 
 def chosen_order_is_near_the_best(charts):
-    from problems.charts.order import CostModel
+    from problems.charts.order import cost_model
 
-    table = CostModel().table(charts["order"])
+    table = cost_model(charts["order"])
     return max(line[table.head.index("chosen over fastest")] for line in table.rows) <= 4.0 / 3.0
 
 

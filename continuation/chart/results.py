@@ -1,13 +1,31 @@
-"""What a study found: one row a run, failures included."""
+"""What a study found: one row a run, failures included; kept as CSV, and what is read off it."""
 
 from __future__ import annotations
 
+import csv
+import io
+import json
+import math
 from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from pathlib import Path as File
+from typing import Any
 
-from attrs import field, frozen
+import numpy as np
+from attrs import asdict, field, fields, fields_dict, frozen
 
+from continuation.arrays import Array
 from continuation.chart.model import Failure
 from continuation.counts import Counts
+
+ERROR_FLOOR = 1e-13
+"""Errors below this are round-off, and count as equal."""
+
+FITTED = 3
+"""Sizes that a fitted exponent needs at least; it is made to the larger half of them, since costs are asymptotic."""
+
+PREFIX = "error: "
+"""Of the columns of errors in a file."""
 
 
 @frozen
@@ -19,6 +37,8 @@ class Row:
     problem, family : str
     n, seed : int
     method : str
+    outside : bool
+        Whether the method is another package's, or the textbooks'.
     rung : float
         The ladder's value; NaN where the ladder does not concern the method.
     failure, message : str
@@ -39,6 +59,7 @@ class Row:
     n: int
     seed: int
     method: str
+    outside: bool
     rung: float
     failure: str
     message: str
@@ -69,23 +90,32 @@ class Row:
         measure = WORK[name]
         return max(measure.of(self), measure.least)
 
+    def placed(self, error: str, work: str) -> tuple[float, float] | None:
+        """(error, work), the error to three digits and not below `ERROR_FLOOR`; None if it failed or has no error.
+
+        Errors that differ in the fourth digit say the same: neither run is better for it.
+
+        Parameters
+        ----------
+        error, work : str
+            Names in `errors` and `WORK`.
+        """
+        value = self.errors[error]
+        if self.failed or not math.isfinite(value):
+            return None
+        return max(float(f"{value:.2e}"), ERROR_FLOOR), self.work(work)
+
 
 @frozen
 class Work:
-    """A measure of work: what it is, how it is read off a row, what a run costs at least, and its unit.
+    """A measure of work: what it is, how it is read off a row, and what a run costs at least.
 
     A run that needs no factorisation at all counts as one, so that logarithms and ratios exist.
     """
 
-    quantity: str
+    label: str
     of: Callable[[Row], float]
     least: float = 1.0
-    unit: str = ""
-
-    @property
-    def label(self) -> str:
-        """Of an axis."""
-        return f"{self.quantity} ({self.unit})" if self.unit else self.quantity
 
 
 WORK: Mapping[str, Work] = {
@@ -93,7 +123,7 @@ WORK: Mapping[str, Work] = {
     "solves": Work("solves with a factorisation", lambda row: float(row.counts.solves)),
     "residuals": Work("residual evaluations", lambda row: float(row.counts.residuals)),
     "steps": Work("accepted steps", lambda row: float(row.counts.accepted)),
-    "seconds": Work("processor time", lambda row: row.seconds, 1e-9, "s"),
+    "seconds": Work("processor time (s)", lambda row: row.seconds, 1e-9),
 }
 """By name."""
 
@@ -107,8 +137,8 @@ class Results:
     study, title, ladder : str
     errors : mapping of str to str
         Name to axis label, the most telling first.
-    work : tuple of str
-    rows : tuple of Row
+    work : sequence of str
+    rows : sequence of Row
     provenance : mapping of str to str
         Versions, machine, BLAS threads.
     """
@@ -117,8 +147,8 @@ class Results:
     title: str
     ladder: str
     errors: Mapping[str, str]
-    work: tuple[str, ...]
-    rows: tuple[Row, ...]
+    work: Sequence[str]
+    rows: Sequence[Row]
     provenance: Mapping[str, str] = field(factory=dict)
 
     @property
@@ -164,3 +194,174 @@ class Results:
             raise ValueError(f"error: expected one of {', '.join(self.errors)}, found {error!r}")
         if work is not None and work not in WORK:
             raise ValueError(f"work: expected one of {', '.join(WORK)}, found {work!r}")
+
+
+_OWN = [each.name for each in fields(Row) if each.name not in ("errors", "counts")]
+_COUNTS = list(fields_dict(Counts))
+_HEAD = [each.name for each in fields(Results) if each.name != "rows"]
+
+
+def write(results: Results, file: str | PathLike[str]) -> File:
+    """Write results as CSV: a line a run under lines ``# name: JSON`` of what the rows have in common.
+
+    ``pandas.read_csv(file, comment="#")`` reads it, and `read`.
+
+    Parameters
+    ----------
+    results : Results
+    file : path
+        Replaced if it exists.
+
+    Returns
+    -------
+    Path
+    """
+    out = io.StringIO()
+    for name in _HEAD:
+        out.write(f"# {name}: {json.dumps(getattr(results, name))}\n")
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow([*_OWN, *_COUNTS, *(PREFIX + name for name in results.errors)])
+    for row in results.rows:
+        counts = asdict(row.counts)
+        # What begins with # would be read as a comment; a message has no use for it.
+        own = [value.replace("#", "") if isinstance(value := getattr(row, name), str) else value for name in _OWN]
+        table.writerow([*own, *(counts[name] for name in _COUNTS), *(row.errors[name] for name in results.errors)])
+    target = File(file)
+    target.write_text(out.getvalue(), encoding="utf-8")
+    return target
+
+
+def read(file: str | PathLike[str]) -> Results:
+    """Read the results of a study.
+
+    Parameters
+    ----------
+    file : path
+        Written by `write`.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    ValueError
+        If the file holds something else.
+    """
+    lines = File(file).read_text(encoding="utf-8").splitlines()
+    head = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
+    if list(head) != _HEAD:
+        raise ValueError(f"file: expected results that `write` wrote, found {file} without {', '.join(_HEAD)}")
+    common = {name: json.loads(value) for name, value in head.items()}
+    rows = [_row(cells, common["errors"]) for cells in csv.DictReader(lines[len(head) :])]
+    return Results(**common, rows=rows)
+
+
+def _row(cells: dict[str, str], errors: Mapping[str, str]) -> Row:
+    kinds: dict[str, Callable[[str], Any]] = {"int": int, "float": float, "str": str, "bool": "True".__eq__}
+    own = {name: kinds[str(fields_dict(Row)[name].type)](cells[name]) for name in _OWN}
+    counts = Counts(**{name: int(cells[name]) for name in _COUNTS})
+    return Row(**own, counts=counts, errors={name: float(cells[PREFIX + name]) for name in errors})
+
+
+def on_front(rows: Sequence[Row], error: str, work: str) -> list[Row]:
+    """The Pareto front: the rows of one problem that no other row beats in error and work, by falling error.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+    error, work : str
+        Names in `Row.errors` and `WORK`.
+    """
+    points = [(point, row) for row in rows if (point := row.placed(error, work)) is not None]
+    best = [
+        (point, row)
+        for point, row in points
+        if not any(e <= point[0] and w <= point[1] and (e, w) != point for (e, w), _ in points)
+    ]
+    return [row for _, row in sorted(best, key=lambda pair: (-pair[0][0], pair[0][1]))]
+
+
+def excess(results: Results, error: str, work: str) -> dict[tuple[str, str, float], float]:
+    """How many times the work of the best run that is at least as accurate; 1 on the front, infinite for failures.
+
+    Keyed by (problem, method, rung); a method without a rung has the key's last entry 0.
+
+    Parameters
+    ----------
+    results : Results
+    error, work : str
+        Names in `results.errors` and `WORK`.
+
+    Raises
+    ------
+    ValueError
+        If the error or the work is none of the results'.
+    """
+    results.check(error, work)
+    found = {}
+    for problem in results.problems:
+        placed = [(row, row.placed(error, work)) for row in results.of(problem=problem)]
+        points = [point for _, point in placed if point is not None]
+        for row, point in placed:
+            least = math.nan if point is None else min(w for e, w in points if e <= point[0])
+            key = (problem, row.method, 0.0 if math.isnan(row.rung) else row.rung)
+            found[key] = math.inf if point is None else point[1] / least
+    return found
+
+
+def ratios(results: Results, work: str, family: str | None = None) -> dict[str, Array]:
+    """For each method, a number a problem and rung: its work over the least of all methods; infinite where it failed.
+
+    Methods without a rung take part in each.
+
+    `family`: Only its problems; all by default.
+    """
+    results.check(work=work)
+    rows = results.of(family=family)
+    rungs = sorted({row.rung for row in rows if not math.isnan(row.rung)}) or [math.nan]
+    cost = {
+        (row.problem, rung, row.method): math.inf if row.failed else row.work(work)
+        for row in rows
+        for rung in (rungs if math.isnan(row.rung) else [row.rung])
+    }
+    cases = list(dict.fromkeys((problem, rung) for problem, rung, _ in cost))
+    table = np.array([[cost.get((*case, method), math.inf) for case in cases] for method in results.methods])
+    least = table.min(axis=0)
+    # Where all failed the least is infinite, and the quotient is to be.
+    least[np.isinf(least)] = 1.0
+    return dict(zip(results.methods, table / least))
+
+
+def by_size(results: Results, family: str, method: str, work: str) -> list[tuple[float, float]]:
+    """(n, mean work) of the runs that succeeded, by n."""
+    rows = [row for row in results.of(family=family, method=method) if not row.failed]
+    sizes = sorted({row.n for row in rows})
+    return [(float(n), float(np.mean([row.work(work) for row in rows if row.n == n]))) for n in sizes]
+
+
+def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
+    """The exponent p of work ~ n^p for each (family, method), by least squares on logarithms; NaN below `FITTED` sizes.
+
+    A size with several runs counts with their mean; failures are left out.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+
+    Raises
+    ------
+    ValueError
+        If the work is none of the results'.
+    """
+    results.check(work=work)
+    found = {}
+    for family in results.families:
+        for method in results.methods:
+            points = by_size(results, family, method, work)
+            upper = np.log(points[-max(FITTED, len(points) // 2) :]).reshape(-1, 2)
+            enough = len(upper) >= FITTED
+            found[family, method] = float(np.polyfit(upper[:, 0], upper[:, 1], 1)[0]) if enough else math.nan
+    return found

@@ -12,8 +12,8 @@ from continuation.chart import (
     CURVE_DISTANCE,
     END_POINT,
     TURNING_POINTS,
+    Lines,
     Method,
-    Precision,
     Problem,
     Study,
     longest_steps,
@@ -26,7 +26,7 @@ from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose
 from continuation.metric import Automatic, Euclidean, Relative, RootMeanSquare
 from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent, Taylor
 from problems.charts import rivals
-from problems.charts.subjects import bratu, cosine, freudenstein
+from problems.charts.subjects import bratu, bratu_square, cosine, freudenstein
 
 BUDGET = continuation.Budget(steps=3000)
 
@@ -96,22 +96,24 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     found = []
     for name, (title, parts) in PARTS.items():
         methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
-        if name == "presets" and compare:
-            methods.append(rivals.scipy_loop())
-        # Where no chart of times is drawn, the counts of one run are all there is to know.
-        timed = size == "full" or name == "presets"
+        # The presets are what users choose from: beside other software, on a sparse system too, and timed.
+        whole = name == "presets"
+        square = bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size]) if whole else None
+        # Where no picture of times is drawn, the counts of one run are all there is to know.
+        timed = size == "full" or whole
+        shown = [square.name, problems[-1].name] if square else []
         # The accuracy of a series is its own; the tolerance hardly matters to it, and a series is expensive.
         own = rungs[:: 2 if name == "series" else 1]
         found.append(
             Study(
                 name=f"engine-{name}",
                 title=f"Tolerance against work: {title}",
-                problems=problems,
-                methods=methods,
+                problems=[*problems, square] if square else problems,
+                methods=[*methods, *rivals.curve_followers(compare)] if whole else methods,
                 ladder=tolerances(*own),
                 errors=(END_POINT, TURNING_POINTS, *((ARCLENGTH,) if size == "full" else ())),
                 work=(*COUNTED, "seconds") if timed else COUNTED,
-                figures=tuple(Precision("end_point", work) for work in ("factorizations", "seconds")[: 1 + timed]),
+                figures=[Lines("end_point", ("seconds", "factorizations"), shown)] if shown else [],
                 repeats={"smoke": 0, "moderate": 1, "full": 3}[size] if timed else 0,
             )
         )
@@ -138,7 +140,7 @@ def _steps(problems: list[Problem], size: Size) -> Study:
         ladder=longest_steps(*steps),
         errors=(CURVE_DISTANCE, END_POINT),
         work=COUNTED,
-        figures=(Precision("curve_distance", "factorizations"),),
+        figures=[Lines("curve_distance", "factorizations")],
         repeats=0,
     )
 

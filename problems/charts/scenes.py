@@ -9,9 +9,8 @@ from typing import Any
 
 from attrs import asdict
 
-from continuation.chart import Answer, Error, Failure, Ladder, Method, Precision, Problem, Rung, Study, observed
+from continuation.chart import Answer, Dumbbell, Error, Failure, Ladder, Method, Problem, Rung, Study, observed
 from continuation.chart.catalogue import Size
-from continuation.chart.model import everywhere
 from continuation.counts import Counts
 from problems.scenes import Rival, available, error, make, memory, order, solve
 
@@ -65,7 +64,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     meshes = [_problem(name, make(name, larger.get(name))) for name in names if name in MESHES]
     exact = [_problem(name, make(name, larger.get(name))) for name in names if name not in MESHES]
     common: dict[str, Any] = {
-        "errors": (ERROR, ORDER, MEMORY), "work": ("seconds",), "figures": (Precision("answer", "seconds"),),
+        "errors": (ERROR, ORDER, MEMORY), "work": ("seconds",),
+        "figures": [Dumbbell("answer", "seconds", every=every) for every in (False, True)],
         "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": COMPILING,
     }  # fmt: skip
     ladder = Ladder("mesh", factors, lambda options, value: options)
@@ -128,9 +128,9 @@ def _refined(problem: Problem, factor: float) -> Any:
 
 
 def _method(
-    name: str, mesh: bool, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] = everywhere
+    name: str, mesh: bool, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] | None = None
 ) -> Method:
-    """A method that answers a scene."""
+    """A method that answers a scene: ours, or a rival that is one for some of them."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         factor = rung.value if mesh else 1.0
@@ -141,7 +141,7 @@ def _method(
         failure = Failure.NONE if well else Failure.WRONG_END
         return Answer(Counts(), observed={"answer": off, "factor": factor}, failure=failure, message=message)
 
-    return Method(name, run, mesh, applies)
+    return Method(name, run, mesh, applies or (lambda problem: True), outside=applies is not None)
 
 
 def _rival(name: str, mesh: bool) -> Method:
