@@ -17,6 +17,7 @@ A plug-in author charts a homotopy of their own in ten lines::
     chart.Lines("curve_distance", "factorizations").draw(results).savefig("mine.png")
 """
 
+from continuation.chart.dumbbell import Dumbbell
 from continuation.chart.errors import (
     ARCLENGTH,
     CURVE_DISTANCE,
@@ -27,9 +28,10 @@ from continuation.chart.errors import (
     observed,
 )
 from continuation.chart.ladder import Ladder, Rung, longest_steps, orders, tolerances
+from continuation.chart.measures import excess, exponents, on_front, ratios
 from continuation.chart.model import Answer, Failure, Method, Problem, Truth, reference, traced
-from continuation.chart.pictures import Dumbbell, Lines, Profile
-from continuation.chart.results import WORK, Results, Row, excess, exponents, on_front, ratios, read, write
+from continuation.chart.pictures import Lines, Profile
+from continuation.chart.results import WORK, Results, Row, read, write
 from continuation.chart.run import run
 from continuation.chart.study import Figure, Study
 from continuation.chart.table import Table, profile, runs, scaling, summary

@@ -9,7 +9,8 @@ from statistics import median
 import numpy as np
 from attrs import asdict, field, frozen
 
-from continuation.chart.results import Results, Row, by_size, excess, exponents, on_front, ratios
+from continuation.chart.measures import by_size, excess, exponents, on_front, ratios
+from continuation.chart.results import Results, Row
 
 Cell = str | int | float
 

@@ -89,7 +89,7 @@ def chart_presets(
         ],
         ladder=chart.tolerances(*rungs),
         errors=errors,
-        figures=[chart.Lines(error.name, ("factorizations", "seconds")) for error in errors],
+        figures=[chart.Lines(error.name, ("seconds", "factorizations")) for error in errors],
     )
     _one(study, folder, out)
 

@@ -70,7 +70,7 @@ def test_the_plain_loop_arrives_and_is_counted():
     study = chart.Study(
         name="loop",
         problems=[subjects.freudenstein()],
-        methods=[rivals.scipy_loop()],
+        methods=rivals.curve_followers(False),
         ladder=chart.tolerances(1e-8),
         errors=[chart.END_POINT],
         repeats=0,
@@ -151,7 +151,7 @@ def test_the_study_of_orders_names_the_order_that_is_taken():
     dense = by_name["H-equation, n = 10"]
     assert order.unknowns(dense) == len(Chandrasekhar(10).start()[0]) + 1
     assert order.unknowns(by_name["KKT, n = 10"]) == 31
-    table = order.CostModel().table(results)
+    table = order.cost_model(results)
     assert [line[0] for line in table.rows] == results.problems
 
 
