@@ -88,14 +88,17 @@ def plain_ticks(axis: Any) -> None:
 
 
 def to_round_off(axes: Axes) -> None:
-    """Errors fall to the right, where round-off is named."""
+    """Errors fall to the right; round-off is named where it is near."""
     from matplotlib.ticker import FuncFormatter, NullLocator
 
-    largest = max(axes.get_xlim()[1], 1e4 * ERROR_FLOOR)
-    axes.set_xlim(largest, 0.4 * ERROR_FLOOR)
-    exponent = round(math.log10(ERROR_FLOOR))
-    ticks = [10.0**k for k in range(exponent, math.floor(math.log10(largest)) + 1, 3)]
-    axes.set_xticks(ticks)
+    least, largest = axes.get_xlim()
+    # Three decades at least, and round-off where no more than those lie between.
+    least = 0.4 * ERROR_FLOOR if least < 1e3 * ERROR_FLOOR else least
+    largest = max(largest, 1e3 * least)
+    axes.set_xlim(largest, least)
+    stride = 3 if largest > 1e7 * least else 1
+    first, last = round(math.log10(ERROR_FLOOR)), math.floor(math.log10(largest))
+    axes.set_xticks([10.0**k for k in range(first, last + 1, stride) if 10.0**k > least])
     axes.xaxis.set_major_formatter(FuncFormatter(lambda e, _: "round-off" if e < 2.0 * ERROR_FLOOR else f"{e:.0e}"))
     axes.xaxis.set_minor_locator(NullLocator())
 

@@ -158,7 +158,8 @@ class Lines:
         name_ends(axes, ends)
         absent = [line.name.split(" (")[0] for line in lines if not line.points]
         if absent:
-            axes.set_title(f"failed: {', '.join(absent)}", fontsize="x-small", loc="right", color="0.4")
+            text = f"failed: {', '.join(absent)}"
+            axes.annotate(text, (0.02, 0.02), xycoords="axes fraction", fontsize="x-small", color="0.4")
 
 
 @frozen

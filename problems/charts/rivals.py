@@ -211,7 +211,24 @@ def curve_followers(compare: bool) -> list[Method]:
     if compare:
         # A name that finds no module is no rival.
         found |= {name: follow for name, module, follow in _FOLLOWERS if find_spec(module) is not None}
-    return [Method(name, follow, outside=True) for name, follow in found.items()]
+    return [Method(name, _quiet(follow), applies=_is_matrix, outside=True) for name, follow in found.items()]
+
+
+def _is_matrix(problem: Problem) -> bool:
+    """Whether H_y is an array or a sparse matrix, and no structure of our own as of banded systems."""
+    y, lam = problem.subject.start()
+    H_y, _ = problem.subject.jacobian(y, lam)
+    return isinstance(H_y, np.ndarray) or bool(sp.issparse(H_y))
+
+
+def _quiet(follow: Callable[[Problem, Rung], Answer]) -> Callable[[Problem, Rung], Answer]:
+    """Without warnings of numpy where a path is lost: the answer is judged."""
+
+    def run(problem: Problem, rung: Rung) -> Answer:
+        with np.errstate(all="ignore"):
+            return follow(problem, rung)
+
+    return run
 
 
 _FOLLOWERS = (("PITCON (dense)", "pysces", _pitcon), ("bice", "bice", _bice))
