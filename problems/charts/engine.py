@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 from typing import Any
 
 import continuation
@@ -13,7 +12,6 @@ from continuation.chart import (
     END_POINT,
     TURNING_POINTS,
     Lines,
-    Method,
     Problem,
     Study,
     longest_steps,
@@ -90,7 +88,7 @@ COUNTED = ("factorizations", "solves", "residuals")
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """One study a kind of part, one of longest steps, and at full size one of all combinations."""
+    """One study a kind of part, and one of longest steps."""
     problems = _problems(size)
     rungs = {"smoke": (1e-6,), "moderate": (1e-3, 1e-6, 1e-9), "full": (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)}[size]
     found = []
@@ -115,10 +113,10 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
                 work=(*COUNTED, "seconds") if timed else COUNTED,
                 figures=[Lines("end_point", ("seconds", "factorizations"), shown)] if shown else [],
                 repeats={"smoke": 0, "moderate": 1, "full": 3}[size] if timed else 0,
+                notes=rivals.notes([module for module, _ in rivals.FOLLOWERS.values()], compare and whole),
             )
         )
-    found.append(_steps(problems, size))
-    return [*found, _combinations(problems)] if size == "full" else found
+    return [*found, _steps(problems, size)]
 
 
 def _problems(size: Size) -> list[Problem]:
@@ -141,25 +139,5 @@ def _steps(problems: list[Problem], size: Size) -> Study:
         errors=(CURVE_DISTANCE, END_POINT),
         work=COUNTED,
         figures=[Lines("curve_distance", "factorizations")],
-        repeats=0,
-    )
-
-
-def _combinations(problems: Sequence[Problem]) -> Study:
-    """All predictors with all correctors and all controllers."""
-    choices = product(PREDICTORS.items(), CORRECTORS.items(), CONTROLLERS.items())
-    methods: list[Method] = [
-        traced(f"{p} | {c} | {k}", budget=BUDGET, **{**controller, **predictor, **corrector})
-        for (p, predictor), (c, corrector), (k, controller) in choices
-        if "controller" not in predictor or controller is next(iter(CONTROLLERS.values()))
-    ]
-    return Study(
-        name="engine-combinations",
-        title="All predictors with all correctors and controllers",
-        problems=problems,
-        methods=methods,
-        ladder=tolerances(1e-8),
-        errors=(END_POINT, TURNING_POINTS),
-        work=COUNTED,
         repeats=0,
     )

@@ -131,7 +131,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         "errors": (RESIDUAL,),
         "work": WORK if size == "full" else WORK[:2],
         "repeats": 3 if size == "full" else 0,
-        "notes": rivals.lcp_notes() if compare else (),
+        "notes": rivals.lcp_notes(compare),
     }
     examples = EXAMPLES[:3] if size == "smoke" else EXAMPLES
     paper = [Problem(f"example {e.number}", e.problem, options={"x0": e.x0}, family="ten examples") for e in examples]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import redirect_stdout
 from functools import partial
 from importlib import import_module
 from importlib.machinery import PathFinder
-from importlib.metadata import version
+from importlib.metadata import packages_distributions, version
 from importlib.util import find_spec, module_from_spec
 from typing import Any
 
@@ -209,8 +209,7 @@ def curve_followers(compare: bool) -> list[Method]:
     """The plain loop, and where it is asked for those of PITCON and bice that are installed."""
     found = {"plain scipy loop": _loop}
     if compare:
-        # A name that finds no module is no rival.
-        found |= {name: follow for name, module, follow in _FOLLOWERS if find_spec(module) is not None}
+        found |= {name: follow for name, (module, follow) in FOLLOWERS.items() if _installed(module)}
     return [Method(name, _quiet(follow), applies=_is_matrix, outside=True) for name, follow in found.items()]
 
 
@@ -231,11 +230,12 @@ def _quiet(follow: Callable[[Problem, Rung], Answer]) -> Callable[[Problem, Rung
     return run
 
 
-_FOLLOWERS = (("PITCON (dense)", "pysces", _pitcon), ("bice", "bice", _bice))
+FOLLOWERS = {"PITCON (dense)": ("pysces", _pitcon), "bice": ("bice", _bice)}
+"""Module and adapter by name."""
 
 
 def lcp_solvers() -> dict[str, Solver]:
-    """By name, those of quantecon, PIQP and Clarabel that can be imported; `lcp_notes` names the others."""
+    """By name, those of quantecon, PIQP and Clarabel that are installed; `lcp_notes` names the others."""
     found: dict[str, Solver] = {}
     for name, (module, solve) in _LCP.items():
         if not _installed(module):
@@ -247,23 +247,31 @@ def lcp_solvers() -> dict[str, Solver]:
     return found
 
 
-def lcp_notes() -> list[str]:
-    """Which outside solvers take part, with their versions, and which are left out."""
-    modules = {module: _installed(module) for module, _ in _LCP.values()}
-    there = [f"{module} {version(module)}" for module, found in modules.items() if found]
-    absent = [module for module, found in modules.items() if not found]
+def notes(modules: Iterable[str], compare: bool) -> list[str]:
+    """Which packages take part where they are asked for, with their versions, and which are left out."""
+    if not compare:
+        return []
+    installed = {module: _installed(module) for module in dict.fromkeys(modules)}
+    there = [_versioned(module) for module, found in installed.items() if found]
+    absent = [module for module, found in installed.items() if not found]
     return [
         *([f"outside solvers: {', '.join(there)}"] if there else []),
         *([f"outside solvers left out, not installed: {', '.join(absent)}"] if absent else []),
     ]
 
 
+def lcp_notes(compare: bool) -> list[str]:
+    """`notes` on the solvers of LCPs."""
+    return notes([module for module, _ in _LCP.values()], compare)
+
+
+def _versioned(module: str) -> str:
+    distributions = packages_distributions().get(module, [])
+    return " ".join([*distributions[:1], *(version(name) for name in distributions[:1])]) or module
+
+
 def _installed(module: str) -> bool:
-    try:
-        import_module(module)
-    except ImportError:
-        return False
-    return True
+    return find_spec(module) is not None
 
 
 def _quantecon(library: Any, problem: LCP) -> Solved:

@@ -38,6 +38,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             figures=[Profile("factorizations")],
             tables={"By family": profile},
             repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
-            notes=rivals.lcp_notes() if compare else (),
+            notes=rivals.lcp_notes(compare),
         )
     ]

@@ -57,7 +57,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         tables={"Factorisations": table},
         repeats=repeats,
         give_up=True,
-        notes=rivals.lcp_notes() if compare else (),
+        notes=rivals.lcp_notes(compare),
     )
     return [curves, complementarity]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from attrs import asdict
@@ -12,6 +11,7 @@ from attrs import asdict
 from continuation.chart import Answer, Dumbbell, Error, Failure, Ladder, Method, Problem, Rung, Study, observed
 from continuation.chart.catalogue import Size
 from continuation.counts import Counts
+from problems.charts.rivals import notes
 from problems.scenes import Rival, available, error, make, memory, order, solve
 
 WRONG = 1e-2
@@ -97,24 +97,8 @@ def _methods(problems: Sequence[Problem], mesh: bool, compare: bool) -> list[Met
 
 
 def _notes(problems: Sequence[Problem], compare: bool) -> list[str]:
-    """Which packages take part, and which rivals are left out."""
-    if not compare:
-        return []
-    rivals = {rival.name: rival for problem in problems for rival in problem.subject.rivals}
-    there = sorted({_versioned(rival.module) for rival in rivals.values() if rival.module and rival.installed})
-    absent = [rival.name for rival in rivals.values() if not rival.installed]
-    return [
-        *([f"outside solvers: {', '.join(there)}"] if there else []),
-        *([f"left out, not installed: {', '.join(absent)}"] if absent else []),
-    ]
-
-
-def _versioned(module: str) -> str:
-    distribution = {"sklearn": "scikit-learn"}.get(module, module)
-    try:
-        return f"{distribution} {version(distribution)}"
-    except PackageNotFoundError:
-        return distribution
+    """Which packages take part, and which are left out."""
+    return notes([rival.module for problem in problems for rival in problem.subject.rivals if rival.module], compare)
 
 
 def _refined(problem: Problem, factor: float) -> Any:
