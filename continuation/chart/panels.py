@@ -116,6 +116,7 @@ def name_ends(axes: Axes, ends: Sequence[tuple[float, float, str, str]]) -> None
     places = isotonic_regression(heights - apart).x + apart
     places = np.minimum(np.maximum(places, apart), max(1.0, apart[-1]) - apart[::-1])
     for place, (x, y, text, colour) in zip(places, ends):
-        tie = {"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkA": 1.0, "shrinkB": 4.0}
+        # From the middle of the name's left side.
+        tie = {"arrowstyle": "-", "color": colour, "linewidth": 0.6, "shrinkA": 1.0, "shrinkB": 4.0, "relpos": (0, 0.5)}
         where: dict[str, Any] = {"textcoords": "axes fraction", "va": "center", "annotation_clip": False}
         axes.annotate(text, (x, y), (1.05, place), fontsize="small", color=colour, arrowprops=tie, **where)
