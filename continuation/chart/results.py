@@ -13,7 +13,6 @@ from typing import Any
 
 from attrs import asdict, field, fields, fields_dict, frozen
 
-from continuation.chart.model import Failure
 from continuation.counts import Counts
 
 ERROR_FLOOR = 1e-13
@@ -68,11 +67,6 @@ class Row:
     def failed(self) -> bool:
         """Whether it has a failure."""
         return bool(self.failure)
-
-    @property
-    def spared(self) -> bool:
-        """Whether it was not run, as a smaller problem had been out of budget (`Study.give_up`)."""
-        return self.failure == Failure.BUDGET and self.counts == Counts()
 
     def work(self, name: str) -> float:
         """One of `WORK` by name, not below its least.

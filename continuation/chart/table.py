@@ -160,5 +160,5 @@ def scaling(results: Results, work: str = "factorizations") -> Table:
     for (family, method), power in exponents(results, work).items():
         costs = dict(by_size(results, family, method, work))
         if costs:
-            lines.append((family, method, *(costs.get(float(n), math.nan) for n in sizes), power))
+            lines.append((family, method, *(costs.get(float(n), math.nan) for n in sizes), round(power, 2)))
     return Table(("family", "method", *(f"n = {n}" for n in sizes), "exponent"), lines)

@@ -19,7 +19,6 @@ from continuation.plot.drawing import (
     chosen_components,
     label_axis,
     line_style,
-    marked,
     name_events,
     sign,
     tidy,
@@ -196,7 +195,7 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
     # An event stored with the points may lie on one of them; a length of zero has no logarithm.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
     _label_decades(axes, lengths[lengths > 0])
-    for event, _ in marked(path):
+    for event in path.events:
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)
     label_axis(axes, "arclength", [path])
     axes.set_ylabel("step in $s$")

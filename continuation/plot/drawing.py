@@ -81,12 +81,6 @@ class Drawn(Protocol):
         """The point at an arclength."""
 
 
-def marked(path: Drawn) -> list[tuple[Any, dict[str, Any]]]:
-    """The turning points, kinks and Hopf points, with their marks."""
-    hopf = ((event, {**TURN, **MARKS[Kind.HOPF]}) for event in path.events if event.kind == Kind.HOPF)
-    return [*((event, TURN) for event in path.turning_points), *((event, KINK) for event in path.kinks), *hopf]
-
-
 @frozen(eq=False)
 class Drawing:
     """A curve as lines to draw: dense output where there is some, else cubics through the stored points."""
