@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from attrs import frozen
 
@@ -85,8 +84,8 @@ class Dumbbell:
             axes.set_xlim(*_room(axes.get_xlim(), named))
         axes.set_ylim(0.6 - len(lines), 0.6)
         axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
-        for label, (_, rows, _) in zip(axes.get_yticklabels(), lines):
-            label.set_weight("normal" if rows else "bold")
+        for label, (_, rows, said) in zip(axes.get_yticklabels(), lines):
+            label.set_weight("normal" if rows or said else "bold")
         axes.set_xlabel(WORK[self.work].label)
         tidy(axes)
         axes.grid(axis="y", visible=False)
@@ -124,13 +123,12 @@ class Dumbbell:
         return math.inf if row.failed else row.work(self.work)
 
     def _key(self, axes: Axes) -> None:
-        """Above the panel: which mark is whose, and what the colours mean."""
-        place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "bottom"}
-        signs = [("◆ ours   ● theirs     error:", "0.3"), *((f"■ {name}", colour) for name, _, colour in ACCURACY)]
-        # As wide as their letters.
-        for k, (text, colour) in enumerate(signs):
-            before = sum(len(text) + 2 for text, _ in signs[:k])
-            axes.annotate(text, (0.0, 1.0), (5.4 * before, 5), color=colour, fontsize="small", **place)
+        """Below the panel: which mark is whose, and what the colours mean."""
+        classes = [(name, "s", colour) for name, _, colour in ACCURACY]
+        marks = [("ours", "D", "0.3"), ("theirs, error:", "o", "0.3"), *classes]
+        handles = [axes.plot([], [], mark, color=colour, label=name)[0] for name, mark, colour in marks]
+        axes.figure.legend(handles=handles, loc="outside lower left", ncols=len(handles), frameon=False,
+                           fontsize="small", handletextpad=0.1, columnspacing=1.2)  # fmt: skip
 
 
 def _room(limits: tuple[float, float], lines: Sequence[Sequence[tuple[float, str]]]) -> tuple[float, float]:
