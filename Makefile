@@ -60,13 +60,14 @@ $(VENV)/.dev: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev]"
 	touch $@ $(VENV)/.demo
 
-# The studies of speed against accuracy, at a moderate size: tables and figures in build/chart.
+# The studies of speed against accuracy, at a moderate size: tables and pictures in build/chart. Other software takes part
+# where it is installed (the names are in problems/charts/rivals.py and problems/scenes).
 # The longest first, so that two processes end together.
 STUDIES := engine lcp robustness scaling order scenes
 chart: $(VENV)/.chart
 	$(MAKE) -j2 $(STUDIES:%=chart-%)
 $(STUDIES:%=chart-%): chart-%: $(VENV)/.chart
-	$(TESTENV) $(BIN)/continuation chart $* --output build/chart
+	$(TESTENV) $(BIN)/continuation chart $* --compare --output build/chart
 
 docs: $(VENV)/.docs
 	$(TESTENV) $(BIN)/python -m sphinx -b html -W --keep-going docs build/docs

@@ -18,7 +18,7 @@ class Charts:
 
     def __getitem__(self, study):
         if study not in self._read:
-            self._read[study] = chart.read(self.folder / f"{study}.h5")
+            self._read[study] = chart.read(self.folder / f"{study}.csv")
         return self._read[study]
 
 
@@ -54,10 +54,32 @@ def median_excess(results, method, work="factorizations"):
 # -- presets -------------------------------------------------------------------------------------------------------
 
 
+PRESETS = ("DEFAULT", "FAST", "CONSERVATIVE", "SERIES")
+
+
 def series_needs_fewest_factorizations(charts):
     results = charts["engine-presets"]
-    return all(total(results, "SERIES") < total(results, m) for m in results.methods if m != "SERIES") and (
-        2.5 < total(results, "DEFAULT") / total(results, "SERIES") < 3.5
+    return all(total(results, "SERIES") < total(results, name) for name in PRESETS[:3]) and (
+        2.0 < total(results, "DEFAULT") / total(results, "SERIES") < 2.8
+    )
+
+
+def other_software_jumps(charts):
+    results = charts["engine-presets"]
+    rows = [row for row in results.of(problem="exponential-cosine, n = 5") if row.outside and row.failed]
+    return all(row.method != "PITCON (dense)" for row in rows) and any(row.failure == "wrong end" for row in rows)
+
+
+def pitcon_is_quick_on_small_dense_systems(charts):
+    results = charts["engine-presets"]
+
+    def seconds(method, kind):
+        rows = [row for row in results.of(method=method) if row.problem.startswith(kind) and not row.failed]
+        return median(row.seconds for row in rows) if rows else None
+
+    small, large = (seconds("PITCON (dense)", kind) for kind in ("exponential-cosine, n = 5", "Bratu 2D"))
+    return small is None or (
+        5.0 * small < seconds("DEFAULT", "exponential-cosine, n = 5") and large > 2.0 * seconds("DEFAULT", "Bratu 2D")
     )
 
 
@@ -71,7 +93,7 @@ def conservative_costs_several_times_default(charts):
 
 def presets_never_fail(charts):
     results = charts["engine-presets"]
-    return all(solved(results, name) == 1.0 for name in ("DEFAULT", "FAST", "CONSERVATIVE", "SERIES"))
+    return all(solved(results, name) == 1.0 for name in PRESETS)
 
 
 def fast_saves_an_eighth(charts):
@@ -81,7 +103,7 @@ def fast_saves_an_eighth(charts):
 def tolerance_is_cheap(charts):
     results = charts["engine-presets"]
     work = [total(results, "DEFAULT", rung=rung) for rung in sorted({row.rung for row in results.rows})]
-    return max(work) <= 1.1 * min(work)
+    return max(work) <= 1.15 * min(work)
 
 
 # -- predictors ----------------------------------------------------------------------------------------------------
@@ -95,8 +117,7 @@ def hermite_is_near_the_best(charts):
 
 def secant_is_worse(charts):
     results = charts["engine-predictors"]
-    failed = {row.problem for row in results.of(method="secant") if row.failed}
-    return ratio(results, "secant", "Hermite (DEFAULT)") > 1.4 and any("cosine" in name for name in failed)
+    return 1.1 < ratio(results, "secant", "Hermite (DEFAULT)") < 1.3 and 11 / 12 <= solved(results, "tangent") < 1.0
 
 
 def runge_kutta_is_dear(charts):
@@ -107,7 +128,7 @@ def series_and_pade_pay(charts):
     results = charts["engine-predictors"]
     series, pade = SERIES
     return (
-        0.4 < total(results, series) / total(results, "Hermite (DEFAULT)") < 0.55
+        0.5 < total(results, series) / total(results, "Hermite (DEFAULT)") < 0.65
         and total(results, pade) < 0.8 * total(results, series)
     )  # fmt: skip
 
@@ -138,10 +159,10 @@ def reuse_saves_factorizations(charts):
     )
 
 
-def broyden_saves_a_tenth(charts):
+def broyden_saves_nothing(charts):
     results = charts["engine-correctors"]
     return solved(results, "Broyden") == 1.0 and all(
-        0.8 < ratio(results, "Broyden", DEFAULT_CORRECTOR, work) < 0.96 for work in ("factorizations", "solves")
+        1.0 < ratio(results, "Broyden", DEFAULT_CORRECTOR, work) < 1.15 for work in ("factorizations", "solves")
     )
 
 
@@ -169,11 +190,12 @@ def default_controller_is_on_the_front(charts):
     results = charts["engine-controllers"]
     far = chart.excess(results, "end_point", "factorizations")
     own = [value for (_, name, _), value in far.items() if name == "Allgower-Georg (DEFAULT)"]
-    return median(own) == 1.0 and max(own) <= 7.0 / 6.0
+    least = min(total(results, name) for name in results.methods)
+    return median(own) == 1.0 and max(own) <= 1.75 and total(results, "Allgower-Georg (DEFAULT)") == least
 
 
 def geometric_is_dear(charts):
-    return ratio(charts["engine-controllers"], "geometric (the paper's)", "Allgower-Georg (DEFAULT)") > 1.4
+    return ratio(charts["engine-controllers"], "geometric (the paper's)", "Allgower-Georg (DEFAULT)") > 2.0
 
 
 # -- metric, series ------------------------------------------------------------------------------------------------
@@ -217,15 +239,13 @@ def orders_from_13_to_20_are_good(charts):
     results = charts["order"]
     pade = results.methods[-1]
     costs = [_relative_cost(results, pade, problem) for problem in results.problems]
-    return all(min(cost[K] for K in cost if K < 10) > 1.0 for cost in costs) and (
-        median(max(cost[K] for K in cost if 13 <= K <= 20) for cost in costs) < 1.35
-    )
+    return max(cost[K] for cost in costs for K in cost if 13 <= K <= 20) < 1.4
 
 
 def chosen_order_is_near_the_best(charts):
-    from problems.charts.order import CostModel
+    from problems.charts.order import cost_model
 
-    table = CostModel().table(charts["order"])
+    table = cost_model(charts["order"])
     return max(line[table.head.index("chosen over fastest")] for line in table.rows) <= 4.0 / 3.0
 
 
@@ -285,11 +305,11 @@ def factorizations_do_not_grow(charts):
     return all(abs(p) < 0.25 for p in chart.exponents(charts["scaling-curves"], "factorizations").values())
 
 
-def series_gains_with_size(charts):
+def series_comes_nearer_with_size(charts):
     rows = charts["scaling-curves"].of(family="H-equation (dense)")
-    sizes = sorted({row.n for row in rows})
-    fastest = [min((row for row in rows if row.n == n), key=lambda row: row.seconds).method for n in sizes]
-    return fastest[0] != "SERIES" and fastest[-1] == "SERIES" and sizes[-1] == 1000
+    seconds = {(row.method, row.n): row.seconds for row in rows}
+    first, last = (seconds["SERIES", n] / seconds["DEFAULT", n] for n in (10, 1000))
+    return first > 4.0 and 1.5 < last < 3.0
 
 
 def solve_is_robust_where_theory_says_so(charts):

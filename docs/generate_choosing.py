@@ -1,4 +1,4 @@
-"""The figures and tables of docs/choosing.md, and the check that its statements are true.
+"""The pictures and tables of docs/choosing.md and docs/scenes_measured.md, and the check that its statements are true.
 
     python docs/generate_choosing.py [FOLDER]
 
@@ -14,34 +14,52 @@ from pathlib import Path
 import choosing_claims
 import choosing_scenes
 
+from attrs import evolve
+
 from continuation import chart
-from continuation.chart.style import CHART_DPI
 from problems.charts import order
 
-PAGE = Path(__file__).with_name("choosing.md")
-IMAGES = PAGE.parent / "images"
+PAGES = [Path(__file__).with_name(name) for name in ("choosing.md", "scenes_measured.md")]
+IMAGES = Path(__file__).parent / "images"
+SCENES = ("scenes-meshes", "scenes-exact")
+OURS_AND_THEIRS = ["DEFAULT", "SERIES", "plain scipy loop", "PITCON (dense)", "bice"]
 
-END_POINT = chart.Precision("end_point", "factorizations")
-FIGURES = {
-    "engine-presets": END_POINT,
-    "engine-predictors": END_POINT,
-    "engine-correctors": END_POINT,
-    "engine-controllers": END_POINT,
-    "engine-steps": chart.Precision("curve_distance", "factorizations"),
-    "order": chart.Sweep("seconds", order.chosen),
-    "lcp-paper": chart.Profile("factorizations"),
-    "lcp-generated": chart.Precision("natural_residual", "factorizations"),
-    "scaling-curves": chart.Scaling("seconds"),
-    "scaling-lcp": chart.Scaling("seconds"),
-    "robustness": chart.Profile("factorizations"),
-    "scenes-meshes": chart.Precision("answer", "seconds"),
-    "scenes-exact": chart.Precision("answer", "seconds"),
-}
-TABLES = {
-    "cost-model": order.CostModel(),
-    "scaling-factorizations": chart.Scaling("factorizations"),
-    "profile-factorizations": chart.Profile("factorizations"),
-}
+
+def shown(results):
+    """A sparse system and a path that winds, of those of the presets."""
+    kinds = ("Bratu 2D", "exponential-cosine, n = 5")
+    return [name for kind in kinds for name in results.problems if name.startswith(kind)]
+
+
+def scenes(charts):
+    """All scenes as results of one study."""
+    first, second = (charts[name] for name in SCENES)
+    return evolve(first, title="Scenes: time to the answer", rows=[*first.rows, *second.rows])
+
+
+def pictures(charts):
+    """Each picture by the name of its file."""
+    presets, steps = charts["engine-presets"], charts["engine-steps"]
+    # Of the README: two paths, ours and theirs.
+    taken = [method for method in OURS_AND_THEIRS if method in presets.methods]
+    headline = chart.Lines("end_point", "seconds", shown(presets), taken)
+    yield "headline", headline, evolve(presets, title="Error at the end of the path against time")
+    yield "presets", chart.Lines("end_point", ("seconds", "factorizations"), shown(presets)), presets
+    yield "steps", chart.Lines("curve_distance", "factorizations"), steps
+    yield "order", chart.Lines("rung", "seconds", chosen=order.chosen), charts["order"]
+    yield "lcp-paper", chart.Profile("factorizations"), charts["lcp-paper"]
+    yield "robustness", chart.Profile("factorizations"), charts["robustness"]
+    yield "scaling-curves", chart.Lines("n", "seconds"), charts["scaling-curves"]
+    yield "scaling-lcp", chart.Lines("n", "seconds"), charts["scaling-lcp"]
+    every = scenes(charts)
+    yield "scenes", chart.Dumbbell("answer", "seconds"), every
+    names = sorted(every.problems)
+    for k in range(4):
+        part = names[k * len(names) // 4 : (k + 1) * len(names) // 4]
+        yield f"scenes-{k + 1}", chart.Dumbbell("answer", "seconds", part, every=True), evolve(every, title="")
+
+
+TABLES = {"cost-model": order.cost_model, "scaling": chart.scaling, "profile": chart.profile}
 
 CLAIMS = {
     name: test
@@ -56,9 +74,9 @@ TABLE = re.compile(r"<!-- table (\S+) -->\n.*?<!-- end -->", re.DOTALL)
 
 
 def draw(charts):
-    for study, figure in FIGURES.items():
-        file = IMAGES / f"chart_{study}-{figure.name}.png"
-        figure.draw(charts[study]).savefig(file, dpi=CHART_DPI)
+    for name, picture, results in pictures(charts):
+        file = IMAGES / f"chart_{name}.png"
+        picture.draw(results).savefig(file)
         print(file)
 
 
@@ -67,7 +85,7 @@ def tables(text, charts):
 
     def made(match):
         study, _, figure = match[1].partition("/")
-        table = TABLES[figure].table(charts[study]) if figure else chart.summary(charts[study])
+        table = TABLES[figure](charts[study]) if figure else chart.summary(charts[study])
         return f"<!-- table {match[1]} -->\n\n{table.markdown()}\n\n<!-- end -->"
 
     return TABLE.sub(made, text)
@@ -86,13 +104,13 @@ def main(folder):
     charts = choosing_claims.Charts(folder)
     IMAGES.mkdir(exist_ok=True)
     draw(charts)
-    text = PAGE.read_text(encoding="utf-8")
-    PAGE.write_text(tables(text, charts), encoding="utf-8")
-    print(PAGE)
-    wrong = false_claims(text, charts)
+    for page in PAGES:
+        page.write_text(tables(page.read_text(encoding="utf-8"), charts), encoding="utf-8")
+        print(page)
+    wrong = false_claims(PAGES[0].read_text(encoding="utf-8"), charts)
     print("\n".join(wrong), file=sys.stderr)
     return 1 if wrong else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]) if len(sys.argv) > 1 else PAGE.parent.parent / "build" / "chart"))
+    sys.exit(main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent.parent / "build" / "chart"))

@@ -1,4 +1,4 @@
-"""Speed against accuracy: studies of problems x methods x a ladder, their tables, files and figures.
+"""Speed against accuracy: studies of problems x methods x a ladder, a table of their runs, and three kinds of picture.
 
 A plug-in author charts a homotopy of their own in ten lines::
 
@@ -14,10 +14,10 @@ A plug-in author charts a homotopy of their own in ten lines::
     )
     results = chart.run(study)
     print(chart.runs(results).text())
-    chart.draw(results, "curve_distance", "factorizations").savefig("mine.png")
+    chart.Lines("curve_distance", "factorizations").draw(results).savefig("mine.png")
 """
 
-from continuation.chart.draw import Precision, draw
+from continuation.chart.dumbbell import Dumbbell
 from continuation.chart.errors import (
     ARCLENGTH,
     CURVE_DISTANCE,
@@ -27,24 +27,18 @@ from continuation.chart.errors import (
     Error,
     observed,
 )
-from continuation.chart.front import excess, on_front
 from continuation.chart.ladder import Ladder, Rung, longest_steps, orders, tolerances
-from continuation.chart.methods import traced
-from continuation.chart.model import Answer, Failure, Method, Problem
-from continuation.chart.profile import Profile, draw_profile
-from continuation.chart.results import WORK, Results, Row
+from continuation.chart.measures import excess, exponents, on_front, ratios
+from continuation.chart.model import Answer, Failure, Method, Problem, Truth, reference, traced
+from continuation.chart.pictures import Lines, Profile
+from continuation.chart.results import WORK, Results, Row, read, write
 from continuation.chart.run import run
-from continuation.chart.scaling import Scaling, draw_scaling, exponents
-from continuation.chart.store import read, write
 from continuation.chart.study import Figure, Study
-from continuation.chart.sweep import Sweep, draw_sweep
-from continuation.chart.table import Table, runs, summary
-from continuation.chart.truth import Truth, reference
+from continuation.chart.table import Table, profile, runs, scaling, summary
 
 __all__ = [
-    "ARCLENGTH", "CURVE_DISTANCE", "END_POINT", "NATURAL_RESIDUAL", "TURNING_POINTS", "WORK", "Answer", "Error",
-    "Failure", "Figure", "Ladder", "Method", "Precision", "Problem", "Profile", "Results", "Row", "Rung", "Scaling",
-    "Study", "Sweep", "Table", "Truth", "draw", "draw_profile", "draw_scaling", "draw_sweep", "excess", "exponents",
-    "longest_steps", "observed", "on_front", "orders", "read", "reference", "run", "runs", "summary", "tolerances",
-    "traced", "write",
+    "ARCLENGTH", "CURVE_DISTANCE", "END_POINT", "NATURAL_RESIDUAL", "TURNING_POINTS", "WORK", "Answer", "Dumbbell",
+    "Error", "Failure", "Figure", "Ladder", "Lines", "Method", "Problem", "Profile", "Results", "Row", "Rung", "Study",
+    "Table", "Truth", "excess", "exponents", "longest_steps", "observed", "on_front", "orders", "profile", "ratios",
+    "read", "reference", "run", "runs", "scaling", "summary", "tolerances", "traced", "write",
 ]  # fmt: skip

@@ -108,7 +108,9 @@ def orders(*values: int) -> Ladder:
 def _limited(options: Options, value: float) -> Options:
     controller = options.get("controller") or options.get("preset", DEFAULT).controller
     bounds = controller.bounds
-    limited = evolve(bounds, maximum=value, minimum=min(bounds.minimum, value))
+    # A first step that the controller leaves open, or one that is shorter, stays.
+    first = bounds.initial if bounds.initial is None else min(bounds.initial, value)
+    limited = evolve(bounds, maximum=value, minimum=min(bounds.minimum, value), initial=first)
     return {**options, "controller": evolve(controller, bounds=limited)}
 
 

@@ -1,13 +1,25 @@
-"""What a study found: one row a run, failures included."""
+"""What a study found: one row a run, failures included; kept as CSV."""
 
 from __future__ import annotations
 
+import csv
+import io
+import json
+import math
 from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from pathlib import Path as File
+from typing import Any
 
-from attrs import field, frozen
+from attrs import asdict, field, fields, fields_dict, frozen
 
-from continuation.chart.model import Failure
 from continuation.counts import Counts
+
+ERROR_FLOOR = 1e-13
+"""Errors below this are round-off, and count as equal."""
+
+PREFIX = "error: "
+"""Of the columns of errors in a file."""
 
 
 @frozen
@@ -19,6 +31,8 @@ class Row:
     problem, family : str
     n, seed : int
     method : str
+    outside : bool
+        Whether the method is another package's, or the textbooks'.
     rung : float
         The ladder's value; NaN where the ladder does not concern the method.
     failure, message : str
@@ -39,6 +53,7 @@ class Row:
     n: int
     seed: int
     method: str
+    outside: bool
     rung: float
     failure: str
     message: str
@@ -53,11 +68,6 @@ class Row:
         """Whether it has a failure."""
         return bool(self.failure)
 
-    @property
-    def spared(self) -> bool:
-        """Whether it was not run, as a smaller problem had been out of budget (`Study.give_up`)."""
-        return self.failure == Failure.BUDGET and self.counts == Counts()
-
     def work(self, name: str) -> float:
         """One of `WORK` by name, not below its least.
 
@@ -69,23 +79,32 @@ class Row:
         measure = WORK[name]
         return max(measure.of(self), measure.least)
 
+    def placed(self, error: str, work: str) -> tuple[float, float] | None:
+        """(error, work), the error to three digits and not below `ERROR_FLOOR`; None if it failed or has no error.
+
+        Errors that differ in the fourth digit say the same: neither run is better for it.
+
+        Parameters
+        ----------
+        error, work : str
+            Names in `errors` and `WORK`.
+        """
+        value = self.errors[error]
+        if self.failed or not math.isfinite(value):
+            return None
+        return max(float(f"{value:.2e}"), ERROR_FLOOR), self.work(work)
+
 
 @frozen
 class Work:
-    """A measure of work: what it is, how it is read off a row, what a run costs at least, and its unit.
+    """A measure of work: what it is, how it is read off a row, and what a run costs at least.
 
     A run that needs no factorisation at all counts as one, so that logarithms and ratios exist.
     """
 
-    quantity: str
+    label: str
     of: Callable[[Row], float]
     least: float = 1.0
-    unit: str = ""
-
-    @property
-    def label(self) -> str:
-        """Of an axis."""
-        return f"{self.quantity} ({self.unit})" if self.unit else self.quantity
 
 
 WORK: Mapping[str, Work] = {
@@ -93,7 +112,7 @@ WORK: Mapping[str, Work] = {
     "solves": Work("solves with a factorisation", lambda row: float(row.counts.solves)),
     "residuals": Work("residual evaluations", lambda row: float(row.counts.residuals)),
     "steps": Work("accepted steps", lambda row: float(row.counts.accepted)),
-    "seconds": Work("processor time", lambda row: row.seconds, 1e-9, "s"),
+    "seconds": Work("processor time (s)", lambda row: row.seconds, 1e-9),
 }
 """By name."""
 
@@ -107,8 +126,8 @@ class Results:
     study, title, ladder : str
     errors : mapping of str to str
         Name to axis label, the most telling first.
-    work : tuple of str
-    rows : tuple of Row
+    work : sequence of str
+    rows : sequence of Row
     provenance : mapping of str to str
         Versions, machine, BLAS threads.
     """
@@ -117,8 +136,8 @@ class Results:
     title: str
     ladder: str
     errors: Mapping[str, str]
-    work: tuple[str, ...]
-    rows: tuple[Row, ...]
+    work: Sequence[str]
+    rows: Sequence[Row]
     provenance: Mapping[str, str] = field(factory=dict)
 
     @property
@@ -164,3 +183,71 @@ class Results:
             raise ValueError(f"error: expected one of {', '.join(self.errors)}, found {error!r}")
         if work is not None and work not in WORK:
             raise ValueError(f"work: expected one of {', '.join(WORK)}, found {work!r}")
+
+
+_OWN = [each.name for each in fields(Row) if each.name not in ("errors", "counts")]
+_COUNTS = list(fields_dict(Counts))
+_HEAD = [each.name for each in fields(Results) if each.name != "rows"]
+
+
+def write(results: Results, file: str | PathLike[str]) -> File:
+    """Write results as CSV: a line a run under lines ``# name: JSON`` of what the rows have in common.
+
+    ``pandas.read_csv(file, comment="#")`` reads it, and `read`.
+
+    Parameters
+    ----------
+    results : Results
+    file : path
+        Replaced if it exists.
+
+    Returns
+    -------
+    Path
+    """
+    out = io.StringIO()
+    for name in _HEAD:
+        out.write(f"# {name}: {json.dumps(getattr(results, name))}\n")
+    table = csv.writer(out, lineterminator="\n")
+    table.writerow([*_OWN, *_COUNTS, *(PREFIX + name for name in results.errors)])
+    for row in results.rows:
+        counts = asdict(row.counts)
+        # What begins with # would be read as a comment; a message has no use for it.
+        own = [value.replace("#", "") if isinstance(value := getattr(row, name), str) else value for name in _OWN]
+        table.writerow([*own, *(counts[name] for name in _COUNTS), *(row.errors[name] for name in results.errors)])
+    target = File(file)
+    target.write_text(out.getvalue(), encoding="utf-8")
+    return target
+
+
+def read(file: str | PathLike[str]) -> Results:
+    """Read the results of a study.
+
+    Parameters
+    ----------
+    file : path
+        Written by `write`.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    ValueError
+        If the file holds something else.
+    """
+    lines = File(file).read_text(encoding="utf-8").splitlines()
+    head = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
+    if list(head) != _HEAD:
+        raise ValueError(f"file: expected results that `write` wrote, found {file} without {', '.join(_HEAD)}")
+    common = {name: json.loads(value) for name, value in head.items()}
+    rows = [_row(cells, common["errors"]) for cells in csv.DictReader(lines[len(head) :])]
+    return Results(**common, rows=rows)
+
+
+def _row(cells: dict[str, str], errors: Mapping[str, str]) -> Row:
+    kinds: dict[str, Callable[[str], Any]] = {"int": int, "float": float, "str": str, "bool": "True".__eq__}
+    own = {name: kinds[str(fields_dict(Row)[name].type)](cells[name]) for name in _OWN}
+    counts = Counts(**{name: int(cells[name]) for name in _COUNTS})
+    return Row(**own, counts=counts, errors={name: float(cells[PREFIX + name]) for name in errors})

@@ -1,24 +1,29 @@
-"""Running a study: every problem, method and rung, judged once and timed several times."""
+"""Running a study: every problem, method and rung, judged once, timed several times, and written to files."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Callable
+from pathlib import Path as File
 
 from continuation.archive.provenance import now, software
+from continuation.chart.errors import distance
 from continuation.chart.ladder import Rung
 from continuation.chart.model import Answer, Failure, Method, Problem
-from continuation.chart.results import Results, Row
+from continuation.chart.results import Results, Row, write
 from continuation.chart.study import Study
-from continuation.chart.threads import pinned
-from continuation.chart.verdict import verdict
+from continuation.chart.table import Table, runs, summary
 from continuation.counts import Counts
+from continuation.linear.threads import one_thread
+from continuation.path import Path
+from continuation.status import Status
 
 Watch = Callable[[int, int, Row], None]
 """Called after every run: (runs done, runs in all, row)."""
 
 
+@one_thread
 def run(study: Study, watch: Watch | None = None) -> Results:
     """Run a study.
 
@@ -40,25 +45,19 @@ def run(study: Study, watch: Watch | None = None) -> Results:
         for rung in (study.ladder.rungs if method.laddered else study.ladder.rungs[:1])
     ]
     rows: list[Row] = []
-    with pinned() as threads:
-        for problem, method, rung in cases:
-            spent = _spent(rows, problem, method) if study.give_up else None
-            rows.append(_row(study, problem, method, rung, spent))
-            if watch is not None:
-                watch(len(rows), len(cases), rows[-1])
+    for problem, method, rung in cases:
+        spent = _spent(rows, problem, method) if study.give_up else None
+        rows.append(_row(study, problem, method, rung, spent))
+        if watch is not None:
+            watch(len(rows), len(cases), rows[-1])
     return Results(
         study=study.name,
         title=study.title,
         ladder=study.ladder.name,
         errors={error.name: error.label for error in study.errors},
-        work=tuple(study.work),
-        rows=tuple(rows),
-        provenance={
-            **software(),
-            "created": now(),
-            "threads": threads,
-            **({"notes": "; ".join(study.notes)} if study.notes else {}),
-        },
+        work=study.work,
+        rows=rows,
+        provenance={**software(), "created": now(), **({"notes": "; ".join(study.notes)} if study.notes else {})},
     )
 
 
@@ -89,10 +88,11 @@ def _row(study: Study, problem: Problem, method: Method, rung: Rung, spent: Row 
         n=problem.n,
         seed=problem.seed,
         method=method.name,
+        outside=method.outside,
         rung=rung.value if method.laddered else math.nan,
         failure=failure,
         message=message,
-        errors={error.name: error.measure(problem, answer) for error in study.errors},
+        errors={error.name: float(error.measure(problem, answer)) for error in study.errors},
         counts=answer.counts,
         turns=0 if answer.path is None else len(answer.path.turning_points),
         seconds=min(again, default=seconds),
@@ -109,3 +109,68 @@ def _timed(problem: Problem, method: Method, rung: Rung) -> tuple[Answer, float]
         sentence = f"{type(error).__name__}: {error}"
         answer = Answer(counts=Counts(), failure=Failure.EXCEPTION, message=sentence)
     return answer, time.process_time() - begin
+
+
+def verdict(problem: Problem, answer: Answer) -> tuple[str, str]:
+    """(failure, message) of an answer; the failure is empty where none is seen.
+
+    A path with the right end but the wrong number of turning points has jumped, or left out a loop.
+    """
+    if answer.failure:
+        return answer.failure, answer.message
+    if answer.path is not None and (found := _of_path(problem, answer.path)) is not None:
+        return found
+    true = problem.truth.end
+    if true is None:
+        return Failure.NONE, answer.message
+    if answer.end is None:
+        return Failure.STOPPED, answer.message or "no end point"
+    error = distance(answer.end, true)
+    if error <= problem.truth.within:
+        return Failure.NONE, answer.message
+    return Failure.WRONG_END, f"the end point is {error:.1e} away from the true one"
+
+
+def _of_path(problem: Problem, path: Path) -> tuple[str, str] | None:
+    if not path.success:
+        return Failure.BUDGET if path.status is Status.BUDGET_EXHAUSTED else Failure.STOPPED, path.message
+    true, turns = problem.truth.turning_points, len(path.turning_points)
+    if true is not None and turns != len(true):
+        return Failure.JUMP, f"{turns} turning points, the path has {len(true)}"
+    return None
+
+
+def tables(study: Study, results: Results) -> dict[str, Table]:
+    """The summary by method, and the study's own tables, by title."""
+    return {"Methods": summary(results), **{title: make(results) for title, make in study.tables.items()}}
+
+
+def report(study: Study, results: Results, folder: File) -> list[File]:
+    """Write ``NAME.csv``, ``NAME.md`` and one ``NAME-FIGURE.png`` a figure; what is there is replaced.
+
+    The folder exists. Returned are the files; without matplotlib there are no figures among them.
+    """
+    page = folder / f"{study.name}.md"
+    page.write_text(_page(study, results), encoding="utf-8")
+    files = [write(results, folder / f"{study.name}.csv"), page]
+    for figure in study.figures:
+        try:
+            drawing = figure.draw(results)
+        except ImportError:
+            break
+        files.append(folder / f"{study.name}-{figure.name}.png")
+        drawing.savefig(files[-1])
+    return files
+
+
+def _page(study: Study, results: Results) -> str:
+    """Everything as Markdown."""
+    parts = [f"# {results.title}"]
+    found = tables(study, results)
+    failed = runs(results, failures_only=True)
+    if failed.rows:
+        found["Failures"] = failed
+    found["Runs"] = runs(results)
+    parts += [f"## {title}\n\n{table.markdown()}" for title, table in found.items()]
+    parts.append("\n".join(f"- {name}: {value}" for name, value in results.provenance.items()))
+    return "\n\n".join(parts) + "\n"

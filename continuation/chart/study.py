@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Protocol, runtime_checkable
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
 
 from attrs import Factory, field, frozen
 
@@ -16,7 +16,7 @@ from continuation.chart.table import Table
 
 
 class Figure(Protocol):
-    """A picture of results; with a table of them where it has the method of `SupportsTable` too."""
+    """A picture of results."""
 
     @property
     def name(self) -> str:
@@ -33,20 +33,6 @@ class Figure(Protocol):
         Returns
         -------
         matplotlib Figure
-        """
-        ...
-
-
-@runtime_checkable
-class SupportsTable(Protocol):
-    """Capability of a figure: the same as a table."""
-
-    def table(self, results: Results) -> Table:
-        """What it shows, in numbers.
-
-        Parameters
-        ----------
-        results : Results
         """
         ...
 
@@ -89,6 +75,8 @@ class Study:
         Names in `WORK`; the first one counts where there is room for one.
     figures : sequence of Figure
         What ``continuation chart`` draws.
+    tables : mapping of str to callable
+        By title, of the results: what ``continuation chart`` prints beside the summary by method.
     title : str
     repeats : int
         Timed runs after the first, which warms up and is judged; the shortest counts.
@@ -115,6 +103,7 @@ class Study:
     errors: Sequence[Error] = field(validator=_distinct)
     work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known_work)
     figures: Sequence[Figure] = ()
+    tables: Mapping[str, Callable[[Results], Table]] = field(factory=dict)
     title: str = field(default=Factory(lambda study: study.name, takes_self=True))
     repeats: int = field(default=2, validator=integer(0))
     patience: float = field(default=0.5, validator=NOT_NEGATIVE)

@@ -1,16 +1,15 @@
-"""Results as tables: text, CSV, Markdown."""
+"""Results as tables: text and Markdown."""
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterable, Sequence
 from statistics import median
 
+import numpy as np
 from attrs import asdict, field, frozen
 
-from continuation.chart.front import excess, on_front
+from continuation.chart.measures import by_size, excess, exponents, on_front, ratios
 from continuation.chart.results import Results, Row
 
 Cell = str | int | float
@@ -52,14 +51,6 @@ class Table:
         lines = self._aligned()
         rule = [("-" * (len(c) - 1) + ":") if right else "-" * len(c) for c, right in zip(lines[0], self._numeric())]
         return "\n".join(f"| {' | '.join(line)} |" for line in (lines[0], rule, *lines[1:]))
-
-    def csv(self) -> str:
-        """Comma-separated, numbers in full precision; NaN is an empty cell."""
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(self.head)
-        writer.writerows([["" if cell != cell else cell for cell in row] for row in self.rows])
-        return out.getvalue()
 
     def _numeric(self) -> list[bool]:
         return [any(not isinstance(row[k], str) for row in self.rows) for k in range(len(self.head))]
@@ -135,3 +126,39 @@ def _line(method: str, rows: Sequence[Row], far: dict[str, dict[tuple[str, str, 
 def _failures(rows: Iterable[Row]) -> str:
     found = [row.failure for row in rows if row.failed]
     return ", ".join(f"{found.count(name)} {name}" for name in dict.fromkeys(found))
+
+
+def profile(results: Results, work: str = "factorizations") -> Table:
+    """One line a family and method: the fraction solved at all, and within 1, 2 and 10 times the best work.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+    """
+    lines: list[tuple[Cell, ...]] = [
+        (family, method, values.size, *(float((values <= limit).mean()) for limit in (1.0, 2.0, 10.0)),
+         float(np.isfinite(values).mean()))
+        for family in results.families
+        for method, values in ratios(results, work, family).items()
+    ]  # fmt: skip
+    return Table(("family", "method", "runs", "best", "within 2", "within 10", "solved"), lines)
+
+
+def scaling(results: Results, work: str = "factorizations") -> Table:
+    """One line a family and method: the work at each size, and the exponent.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+    """
+    sizes = sorted({row.n for row in results.rows})
+    lines: list[tuple[Cell, ...]] = []
+    for (family, method), power in exponents(results, work).items():
+        costs = dict(by_size(results, family, method, work))
+        if costs:
+            lines.append((family, method, *(costs.get(float(n), math.nan) for n in sizes), round(power, 2)))
+    return Table(("family", "method", *(f"n = {n}" for n in sizes), "exponent"), lines)

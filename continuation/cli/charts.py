@@ -24,7 +24,7 @@ def register(subparsers: Subparsers) -> None:
     parser = subparsers.add_parser(
         "chart",
         help="speed against accuracy: run a ready study",
-        description="Run a study, print its table, and write results (HDF5, CSV, Markdown) and figures. Without a "
+        description="Run a study, print its table, and write results (CSV, Markdown) and pictures. Without a "
         "name, list the studies.",
     )
     parser.add_argument("name", metavar="NAME", nargs="?", help=f"a study, or {EVERY}")
@@ -89,14 +89,14 @@ def chart_presets(
         ],
         ladder=chart.tolerances(*rungs),
         errors=errors,
-        figures=[chart.Precision(error.name, work) for error in errors for work in ("factorizations", "seconds")],
+        figures=[chart.Lines(error.name, ("seconds", "factorizations")) for error in errors],
     )
     _one(study, folder, out)
 
 
 def _one(study: Study, folder: Path, out: TextIO) -> None:
     from continuation.chart import run as run_study
-    from continuation.chart.report import report, tables
+    from continuation.chart.run import report, tables
 
     results = run_study(study, _watch(study.name))
     for title, table in tables(study, results).items():

@@ -13,12 +13,14 @@ from continuation.plot.drawing import (
     Drawing,
     Drawn,
     across,
+    arrow,
     axes_or_new,
     check_path,
     chosen_components,
     label_axis,
     line_style,
-    marked,
+    name_events,
+    sign,
     tidy,
 )
 from continuation.plot.stretches import by_stability, draw_line
@@ -35,9 +37,10 @@ def plot_components(
     components: Iterable[int] | None = None,
     legend: bool = True,
 ) -> Axes:
-    """Draw components of y against the parameter or the arclength; turning points, kinks and Hopf points are marked.
+    """Draw components of y against the parameter or the arclength, with the events of the path.
 
-    Where the path knows its stability (`continuation.Stability`), it is solid where stable, and dashed elsewhere.
+    An arrow on each curve shows where the path goes. Where the path knows its stability (`continuation.Stability`), it
+    is solid where stable, and dashed elsewhere. Of events of one name the first is named, with their number.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ def plot_components(
     components : iterable of int, optional
         Which components; by default all of them, or twelve at even distances where there are more.
     legend : bool
-        Whether to name the curves.
+        Whether to name curves and events, and to draw the arrows.
 
     Raises
     ------
@@ -74,10 +77,16 @@ def plot_components(
     parts = by_stability(path, drawing.s)
     for k, (i, label) in enumerate(zip(chosen, labels)):
         draw_line(axes, horizontal, drawing.u[:, i], label, line_style(k), drawing.s, parts)
-    for event, mark in marked(path):
-        where = event.lam if against == "lam" else event.arclength
-        axes.plot([where] * len(chosen), event.y[chosen], zorder=3, **mark)
+    places = [(event, event.lam if against == "lam" else event.arclength, event.y[chosen]) for event in path.events]
+    for event, where, heights in places:
+        axes.plot([where] * len(chosen), heights, zorder=3, **sign(event))
     label_axis(axes, against, [path])
+    if legend:
+        name_events(axes, places)
+        for k, i in enumerate(chosen):
+            arrow(axes, horizontal, drawing.u[:, i], line_style(k)["color"])
+        if parts is not None:
+            axes.set_title("solid: stable, dashed: not", fontsize="x-small", color="0.4", loc="right")
     if len(chosen) == 1:
         axes.set_ylabel(labels[0])
     elif legend:
@@ -186,7 +195,7 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
     # An event stored with the points may lie on one of them; a length of zero has no logarithm.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
     _label_decades(axes, lengths[lengths > 0])
-    for event, _ in marked(path):
+    for event in path.events:
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)
     label_axis(axes, "arclength", [path])
     axes.set_ylabel("step in $s$")

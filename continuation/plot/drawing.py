@@ -81,12 +81,6 @@ class Drawn(Protocol):
         """The point at an arclength."""
 
 
-def marked(path: Drawn) -> list[tuple[Any, dict[str, Any]]]:
-    """The turning points, kinks and Hopf points, with their marks."""
-    hopf = ((event, {**TURN, **MARKS[Kind.HOPF]}) for event in path.events if event.kind == Kind.HOPF)
-    return [*((event, TURN) for event in path.turning_points), *((event, KINK) for event in path.kinks), *hopf]
-
-
 @frozen(eq=False)
 class Drawing:
     """A curve as lines to draw: dense output where there is some, else cubics through the stored points."""
@@ -241,13 +235,44 @@ def falls(path: Drawn) -> bool:
     return len(lam) > 1 and bool((np.diff(lam) <= 0.0).all()) and bool(lam[-1] < lam[0])
 
 
+def sign(event: Any) -> dict[str, Any]:
+    """How an event is marked."""
+    return {**TURN, **MARKS.get(event.kind, OTHER)}
+
+
+def called(event: Any) -> str:
+    """What an event is called in a picture: its kind, or its own name where that says more."""
+    known = event.kind in MARKS and event.kind is not Kind.HOPF
+    return str(event.kind.flag.replace("_", " ") if known else event.name)
+
+
+def name_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
+    """Write the name of the first event of each name beside it, with how many there are."""
+    names = [called(event) for event, _, _ in places]
+    for name in dict.fromkeys(names):
+        _, x, y = places[names.index(name)]
+        text = f"{name} ({names.count(name)})" if names.count(name) > 1 else name
+        # Towards the middle of the panel, where there is room.
+        right, up = (axes.transData + axes.transAxes.inverted()).transform((x, np.max(y)))
+        looks = {"fontsize": "x-small", "ha": "left" if right < 0.6 else "right", "va": "bottom" if up < 0.9 else "top"}
+        offset = (6 if right < 0.6 else -6, 4 if up < 0.9 else -4)
+        behind = {"facecolor": "white", "edgecolor": "none", "pad": 0.5, "alpha": 0.7}
+        axes.annotate(text, (x, np.max(y)), offset, textcoords="offset points", zorder=4, bbox=behind, **looks)
+
+
+def arrow(axes: Axes, x: Array, y: Array, colour: str) -> None:
+    """An arrow head on a line, at a point where it moves, two fifths of its points from its beginning."""
+    moves = np.flatnonzero(np.isfinite(y[1:]) & np.isfinite(y[:-1]) & ((np.diff(x) != 0.0) | (np.diff(y) != 0.0)))
+    if moves.size:
+        k = moves[2 * moves.size // 5]
+        head = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 11.0}
+        axes.annotate("", (x[k + 1], y[k + 1]), (x[k], y[k]), arrowprops=head)
+
+
 def mark_events(axes: Axes, places: Sequence[tuple[Any, float, Any]]) -> None:
     """Mark events at their coordinates, each kind in its own way, named once in the legend."""
     named = set(axes.get_legend_handles_labels()[1])
     for event, x, y in places:
-        known = event.kind in MARKS and event.kind is not Kind.HOPF
-        name = event.kind.flag.replace("_", " ") if known else event.name
-        heights = np.atleast_1d(y)
-        looks = MARKS.get(event.kind, OTHER)
-        axes.plot([x] * heights.size, heights, zorder=3, label="_" if name in named else name, **{**TURN, **looks})
+        heights, name = np.atleast_1d(y), called(event)
+        axes.plot([x] * heights.size, heights, zorder=3, label="_" if name in named else name, **sign(event))
         named.add(name)

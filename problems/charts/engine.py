@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 from typing import Any
 
 import continuation
@@ -12,8 +11,7 @@ from continuation.chart import (
     CURVE_DISTANCE,
     END_POINT,
     TURNING_POINTS,
-    Method,
-    Precision,
+    Lines,
     Problem,
     Study,
     longest_steps,
@@ -26,7 +24,7 @@ from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose
 from continuation.metric import Automatic, Euclidean, Relative, RootMeanSquare
 from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent, Taylor
 from problems.charts import rivals
-from problems.charts.subjects import bratu, cosine, freudenstein
+from problems.charts.subjects import bratu, bratu_square, cosine, freudenstein
 
 BUDGET = continuation.Budget(steps=3000)
 
@@ -90,33 +88,35 @@ COUNTED = ("factorizations", "solves", "residuals")
 
 
 def studies(size: Size, compare: bool) -> Sequence[Study]:
-    """One study a kind of part, one of longest steps, and at full size one of all combinations."""
+    """One study a kind of part, and one of longest steps."""
     problems = _problems(size)
     rungs = {"smoke": (1e-6,), "moderate": (1e-3, 1e-6, 1e-9), "full": (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)}[size]
     found = []
     for name, (title, parts) in PARTS.items():
         methods = [traced(label, budget=BUDGET, **options) for label, options in parts.items()]
-        if name == "presets" and compare:
-            methods.append(rivals.scipy_loop())
-        # Where no chart of times is drawn, the counts of one run are all there is to know.
-        timed = size == "full" or name == "presets"
+        # The presets are what users choose from: beside other software, on a sparse system too, and timed.
+        whole = name == "presets"
+        square = bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size]) if whole else None
+        # Where no picture of times is drawn, the counts of one run are all there is to know.
+        timed = size == "full" or whole
+        shown = [square.name, problems[-1].name] if square else []
         # The accuracy of a series is its own; the tolerance hardly matters to it, and a series is expensive.
         own = rungs[:: 2 if name == "series" else 1]
         found.append(
             Study(
                 name=f"engine-{name}",
                 title=f"Tolerance against work: {title}",
-                problems=problems,
-                methods=methods,
+                problems=[*problems, square] if square else problems,
+                methods=[*methods, *rivals.curve_followers(compare)] if whole else methods,
                 ladder=tolerances(*own),
                 errors=(END_POINT, TURNING_POINTS, *((ARCLENGTH,) if size == "full" else ())),
                 work=(*COUNTED, "seconds") if timed else COUNTED,
-                figures=tuple(Precision("end_point", work) for work in ("factorizations", "seconds")[: 1 + timed]),
+                figures=[Lines("end_point", ("seconds", "factorizations"), shown)] if shown else [],
                 repeats={"smoke": 0, "moderate": 1, "full": 3}[size] if timed else 0,
+                notes=rivals.notes([module for module, _ in rivals.FOLLOWERS.values()], compare and whole),
             )
         )
-    found.append(_steps(problems, size))
-    return [*found, _combinations(problems)] if size == "full" else found
+    return [*found, _steps(problems, size)]
 
 
 def _problems(size: Size) -> list[Problem]:
@@ -138,26 +138,6 @@ def _steps(problems: list[Problem], size: Size) -> Study:
         ladder=longest_steps(*steps),
         errors=(CURVE_DISTANCE, END_POINT),
         work=COUNTED,
-        figures=(Precision("curve_distance", "factorizations"),),
-        repeats=0,
-    )
-
-
-def _combinations(problems: Sequence[Problem]) -> Study:
-    """All predictors with all correctors and all controllers."""
-    choices = product(PREDICTORS.items(), CORRECTORS.items(), CONTROLLERS.items())
-    methods: list[Method] = [
-        traced(f"{p} | {c} | {k}", budget=BUDGET, **{**controller, **predictor, **corrector})
-        for (p, predictor), (c, corrector), (k, controller) in choices
-        if "controller" not in predictor or controller is next(iter(CONTROLLERS.values()))
-    ]
-    return Study(
-        name="engine-combinations",
-        title="All predictors with all correctors and controllers",
-        problems=problems,
-        methods=methods,
-        ladder=tolerances(1e-8),
-        errors=(END_POINT, TURNING_POINTS),
-        work=COUNTED,
+        figures=[Lines("curve_distance", "factorizations")],
         repeats=0,
     )

@@ -9,9 +9,9 @@ import numpy as np
 
 import continuation
 from continuation.arrays import Array
-from continuation.chart import Answer, Failure, Method, Precision, Problem, Profile, Rung, Study, observed, tolerances
+from continuation.chart import Answer, Failure, Method, Problem, Profile, Rung, Study, observed, tolerances
 from continuation.chart.catalogue import Size
-from continuation.chart.methods import answer_of
+from continuation.chart.model import answer_of
 from continuation.counts import Counts
 from problems import lcp
 from problems.charts import rivals
@@ -73,7 +73,7 @@ def direct(name: str, solve: Solver) -> Method:
             return Answer(counts, failure=Failure.STOPPED, message=message)
         return judged(problem.subject, x, counts, message=message)
 
-    return Method(name, run, laddered=False)
+    return Method(name, run, laddered=False, outside=True)
 
 
 def references() -> list[Method]:
@@ -130,9 +130,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         "ladder": tolerances(*rungs),
         "errors": (RESIDUAL,),
         "work": WORK if size == "full" else WORK[:2],
-        "figures": (Precision("natural_residual", "factorizations"), Profile("factorizations")),
         "repeats": 3 if size == "full" else 0,
-        "notes": rivals.lcp_notes() if compare else (),
+        "notes": rivals.lcp_notes(compare),
     }
     examples = EXAMPLES[:3] if size == "smoke" else EXAMPLES
     paper = [Problem(f"example {e.number}", e.problem, options={"x0": e.x0}, family="ten examples") for e in examples]
@@ -140,9 +139,10 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     families = ("semidefinite",) if size == "smoke" else ("semidefinite", "scaled P", "copositive")
     generated = [problem(family, n, 0) for family in families for n in orders]
     return [
-        Study(name="lcp-paper", title="The ten examples of Dutta, Das and Jana", problems=paper, **common),
+        Study(name="lcp-paper", title="The ten examples of Dutta, Das and Jana", problems=paper,
+              figures=[Profile("factorizations")], **common),
         Study(name="lcp-generated", title="Generated problems", problems=generated, give_up=True, **common),
-    ]
+    ]  # fmt: skip
 
 
 def problem(family: str, n: int, seed: int) -> Problem:

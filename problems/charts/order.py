@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from attrs import frozen
 
 import continuation
-from continuation.chart import END_POINT, Problem, Results, Row, Study, Sweep, Table, orders, reference, traced
+from continuation.chart import END_POINT, Lines, Problem, Results, Row, Study, Table, orders, reference, traced
 from continuation.chart.catalogue import Size
-from continuation.chart.style import Figure, legend_below, line_style, panels, tidy
 from continuation.controllers import SeriesRange
 from continuation.predictors import Taylor
 from continuation.predictors.taylor import best_order
@@ -49,7 +47,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             ladder=orders(*rungs),
             errors=(END_POINT,),
             work=("seconds", "factorizations", "solves"),
-            figures=(Sweep("seconds", chosen), Sweep("factorizations"), CostModel()),
+            figures=[Lines("rung", "seconds", chosen=chosen)],
+            tables={"Cost model": cost_model},
             repeats={"smoke": 0, "moderate": 1, "full": 5}[size],
             patience=0.6,
         )
@@ -74,53 +73,20 @@ def _kkt(n: int) -> Problem:
     return Problem(f"KKT, n = {n}", subject, reference(subject), n=n, family="KKT (dense)")
 
 
-@frozen
-class CostModel:
-    """What a step costs against the order K: ``seconds = b (f + K)``, fitted for each problem."""
+def cost_model(results: Results) -> Table:
+    """One line a problem: what a step of the last method costs, which order the library chooses, which was fastest.
 
-    name: str = "cost-model"
-
-    def fits(self, results: Results, method: str) -> dict[str, tuple[float, float]]:
-        """(f, b in seconds) for each problem, by least squares over the orders."""
-        found = {}
-        for problem in results.problems:
-            rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
-            if len(rows) >= 2:
-                K = np.array([row.rung for row in rows])
-                cost = np.array([row.seconds / row.counts.accepted for row in rows])
-                # Relative residuals: the short steps of low orders are as many as the long ones of high orders.
-                slope, constant = np.polyfit(K, cost, 1, w=1.0 / cost)
-                found[problem] = (float(constant / slope), float(slope))
-        return found
-
-    def table(self, results: Results) -> Table:
-        """One line a problem: the fit, the order that the library chooses and the one that was fastest."""
-        method = results.methods[-1]
-        lines = []
-        for problem, (f, slope) in self.fits(results, method).items():
-            rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
-            best = min(rows, key=lambda row: row.seconds)
-            N, choice = unknowns(rows[0]), chosen(rows[0])
-            taken = min(rows, key=lambda row: abs(row.rung - choice))
-            lines.append((problem, N, f, 1e6 * slope, int(choice), int(best.rung), taken.seconds / best.seconds))
-        head = ("problem", "N", "f", "b (us)", "order chosen", "fastest order", "chosen over fastest")
-        return Table(head, lines)
-
-    def draw(self, results: Results) -> Figure:
-        """Seconds a step against the order, with the fits."""
-        method = results.methods[-1]
-        figure, (axes,) = panels(1, height=4.0)
-        figure.set_size_inches(6.5, 5.4)
-        labels = []
-        for k, (problem, (f, slope)) in enumerate(self.fits(results, method).items()):
-            rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
-            K = np.array([row.rung for row in rows])
-            axes.plot(K, [row.seconds / row.counts.accepted for row in rows], **{**line_style(k), "linestyle": "none"})
-            axes.plot(K, slope * (f + K), **{**line_style(k), "marker": ""})
-            labels.append(f"{problem}: f = {f:.1f}")
-        axes.set_yscale("log")
-        axes.set_xlabel("order K")
-        axes.set_ylabel("time a step (s)")
-        tidy(axes, f"Cost of a step, {method}: points measured, lines b (f + K)")
-        legend_below(figure, labels, "")
-        return figure
+    ``seconds = b (f + K)`` at order K, fitted by least squares.
+    """
+    lines = []
+    for problem in results.problems:
+        rows = [row for row in results.of(problem=problem, method=results.methods[-1]) if not row.failed]
+        cost = np.array([row.seconds / row.counts.accepted for row in rows])
+        # Relative residuals: the short steps of low orders are as many as the long ones of high orders.
+        slope, constant = np.polyfit([row.rung for row in rows], cost, 1, w=1.0 / cost)
+        best = min(rows, key=lambda row: row.seconds)
+        N, choice = unknowns(rows[0]), chosen(rows[0])
+        taken = min(rows, key=lambda row: abs(row.rung - choice))
+        fit = float(constant / slope), float(1e6 * slope)
+        lines.append((problem, N, *fit, int(choice), int(best.rung), taken.seconds / best.seconds))
+    return Table(("problem", "N", "f", "b (us)", "order chosen", "fastest order", "chosen over fastest"), lines)

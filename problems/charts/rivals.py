@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from contextlib import redirect_stdout
 from functools import partial
 from importlib import import_module
-from importlib.metadata import version
+from importlib.machinery import PathFinder
+from importlib.metadata import packages_distributions, version
+from importlib.util import find_spec, module_from_spec
 from typing import Any
 
 import numpy as np
-import scipy.linalg
+import scipy.sparse as sp
+from attrs import field, frozen
+from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array
 from continuation.chart import Answer, Method, Problem, Rung
@@ -23,68 +29,213 @@ Solved = tuple[Array | None, Counts, str]
 Solver = Callable[[LCP], Solved]
 """A solver of the LCP that traces no path."""
 
-LOOP_STEPS = 1000
-"""Steps of the plain loop."""
+STEPS = 1000
+"""Of a path at most: the plain loop needs some hundred where it arrives."""
 
 
-def scipy_loop() -> Method:
-    """Keller's pseudo-arclength continuation in its simplest form, with scipy.
+@frozen
+class _Aim:
+    """Where a path ends: at a value of the parameter, crossed upwards (1) or downwards (-1)."""
 
-    For dense homotopies with a target. It detects no turning points, so that a loop that it leaves out is not noticed.
-    """
-    return Method("plain scipy loop", _loop)
+    value: float
+    direction: float
+
+    @classmethod
+    def of(cls, problem: Problem) -> _Aim:
+        """From the event that ends the path, or the homotopy's target."""
+        for event in problem.options.get("events", ()):
+            return cls(event.value, event.direction)
+        target = problem.subject.target
+        return cls(target, math.copysign(1.0, target - problem.subject.start()[1]))
+
+    def crossed(self, before: float, after: float) -> bool:
+        return self.direction * (before - self.value) < 0.0 <= self.direction * (after - self.value)
 
 
-def _loop(problem: Problem, rung: Rung) -> Answer:
-    homotopy, counts = problem.subject, Counts()
-    target = problem.options.get("target", getattr(homotopy, "target", 0.0))
-    if target is None:
-        raise ValueError("target: the plain loop needs one")
+@frozen
+class _Counted:
+    """The problem's functions of u = (y, lam), counted."""
 
-    def solve(u: Array, row: Array, r: Array, rho: float) -> Array:
-        counts.factorizations += 1
-        counts.solves += 1
-        H_y, H_lam = homotopy.jacobian(u[:-1], float(u[-1]))
-        whole = np.block([[np.asarray(H_y), H_lam[:, None]], [row[None, :]]])
-        return np.asarray(scipy.linalg.solve(whole, np.append(r, rho)))
+    homotopy: Any
+    counts: Counts = field(factory=Counts)
 
-    def correct(u: Array, row: Array) -> tuple[Array | None, int]:
+    @property
+    def start(self) -> Array:
+        y, lam = self.homotopy.start()
+        return np.append(y, lam)
+
+    def residual(self, u: Array) -> Array:
+        self.counts.residuals += 1
+        return np.asarray(self.homotopy.residual(u[:-1], float(u[-1])))
+
+    def jacobian(self, u: Array) -> tuple[Any, Array]:
+        self.counts.factorizations += 1
+        return self.homotopy.jacobian(u[:-1], float(u[-1]))  # type: ignore[no-any-return]
+
+    def solve(self, u: Array, row: Array, r: Array, rho: float) -> Array:
+        """The solution of H' x = r, row x = rho; a sparse H_y by two solves with it, a dense one with the whole."""
+        self.counts.solves += 1
+        H_y, H_lam = self.jacobian(u)
+        if not sp.issparse(H_y):
+            whole = np.block([[np.asarray(H_y), H_lam[:, None]], [row[None, :]]])
+            return np.linalg.solve(whole, np.append(r, rho))
+        w, x = splu(sp.csc_array(H_y)).solve(np.column_stack((H_lam, r))).T
+        lam = (rho - row[:-1] @ x) / (row[-1] - row[:-1] @ w)
+        return np.append(x - lam * w, lam)
+
+    def newton(self, u: Array, row: Array, tolerance: float) -> tuple[Array | None, int]:
+        """On H = 0 in the plane that is normal to `row`; how many iterations it took."""
         for k in range(8):
-            counts.residuals += 1
-            step = solve(u, row, -homotopy.residual(u[:-1], float(u[-1])), 0.0)
+            step = self.solve(u, row, -self.residual(u), 0.0)
             u = u + step
-            if np.linalg.norm(step) <= rung.value * (1.0 + np.linalg.norm(u)):
+            if np.linalg.norm(step) <= tolerance * (1.0 + np.linalg.norm(u)):
                 return u, k + 1
         return None, 8
 
-    y0, lam0 = homotopy.start()
-    u, unit = np.append(y0, lam0), np.zeros(len(y0) + 1)
-    unit[-1] = 1.0
-    v, h = math.copysign(1.0, target - lam0) * unit, 0.1
-    v = solve(u, v, np.zeros(len(y0)), 1.0)
+    def land(self, before: Array, after: Array, value: float, tolerance: float) -> Answer:
+        """Newton's method at the parameter's value, from between two points."""
+        guess = before + (value - before[-1]) / (after[-1] - before[-1]) * (after - before)
+        end, _ = self.newton(guess, np.eye(1, guess.size, guess.size - 1)[0], tolerance)
+        return Answer(self.counts, end=end)
+
+
+def _loop(problem: Problem, rung: Rung) -> Answer:
+    """Keller's pseudo-arclength continuation as one writes it in an afternoon; it looks for no turning points."""
+    aim, ours = _Aim.of(problem), _Counted(problem.subject)
+    u, counts = ours.start, ours.counts
+    zero, h = np.zeros(u.size - 1), 0.1
+    v = np.append(zero, 1.0 if aim.value > u[-1] else -1.0)
+    v = ours.solve(u, v, zero, 1.0)
     v /= np.linalg.norm(v)
-    while counts.accepted < LOOP_STEPS and h > 1e-9:
-        trial = u + h * v
-        if (trial[-1] - target) * (u[-1] - target) <= 0.0 and v[-1] != 0.0:
-            landed = u + (target - u[-1]) / v[-1] * v
-            landed[-1] = target
-            end, _ = correct(landed, unit)
-            if end is not None:
-                counts.accepted += 1
-                return Answer(counts, end=end)
-        following, iterations = correct(trial, v)
+    while counts.accepted < STEPS and h > 1e-9:
+        following, iterations = ours.newton(u + h * v, v, rung.value)
+        if following is not None and aim.crossed(u[-1], following[-1]):
+            answer = ours.land(u, following, aim.value, rung.value)
+            if answer.end is not None:
+                return answer
+            following = None
         if following is None:
             h, counts.rejected = h / 2.0, counts.rejected + 1
             continue
-        t = solve(following, v, np.zeros(len(y0)), 1.0)
-        u, v = following, t / np.linalg.norm(t)
         counts.accepted += 1
+        t = ours.solve(following, v, zero, 1.0)
+        u, v = following, t / np.linalg.norm(t)
         h *= 2.0 if iterations <= 3 else 1.0 if iterations <= 5 else 0.5
     raise ArithmeticError(f"the plain loop did not arrive in {counts.accepted} steps")
 
 
+def _bice(problem: Problem, rung: Rung) -> Answer:
+    """Its arclength stepper with its Newton solver for sparse matrices, allowed longer steps than by default."""
+    bice = import_module("bice")
+    aim, ours = _Aim.of(problem), _Counted(problem.subject)
+
+    class Wrapped(bice.Equation):  # type: ignore[name-defined, misc]
+        def __init__(self) -> None:
+            super().__init__(shape=(ours.start.size - 1,))
+            self.u, self.lam = ours.start[:-1], ours.start[-1]
+
+        def rhs(self, u: Array) -> Array:
+            return ours.residual(np.append(u, self.lam))
+
+        def jacobian(self, u: Array) -> Any:
+            return sp.csr_matrix(ours.jacobian(np.append(u, self.lam))[0])
+
+    model, equation = bice.Problem(), Wrapped()
+    model.add_equation(equation)
+    model.continuation_parameter = (equation, "lam")
+    model.settings.neigs = 0
+    stepper = model.continuation_stepper
+    stepper.ds, stepper.ds_max, stepper.ds_increase_factor, stepper.ndesired_newton_steps = 0.1, 30.0, 2.0, 4
+    stepper.convergence_tolerance = rung.value
+    before = ours.start
+    with redirect_stdout(io.StringIO()):
+        for _ in range(STEPS):
+            model.continuation_step()
+            after, ours.counts.accepted = np.append(equation.u, equation.lam), ours.counts.accepted + 1
+            if aim.crossed(before[-1], after[-1]):
+                return ours.land(before, after, aim.value, rung.value)
+            before = after
+    raise ArithmeticError(f"bice did not arrive in {STEPS} steps")
+
+
+def _pitcon(problem: Problem, rung: Rung) -> Answer:
+    """PITCON 6.1, dense, as pysces wraps it; it lands on the target itself."""
+    library, aim, ours = _pitcon_library(), _Aim.of(problem), _Counted(problem.subject)
+    x = ours.start
+    N = x.size
+
+    def residual(x: Array) -> tuple[Array, int]:
+        return np.append(ours.residual(x), 0.0), 0
+
+    def jacobian(x: Array) -> tuple[Array, int]:
+        H_y, H_lam = ours.jacobian(x)
+        whole = np.zeros((N, N))
+        whole[:-1] = np.column_stack((H_y.toarray() if sp.issparse(H_y) else H_y, H_lam))
+        return whole, 0
+
+    iwork, rwork = np.zeros(30 + N, dtype=np.int32), np.zeros(30 + 4 * N + N * N)
+    # It starts on lam, whose value is the target; Newton's method in full, with this Jacobian; where work space begins.
+    iwork[[1, 4, 7, 12, 13, 14, 15, 16]] = N, N, 6, 30, iwork.size, 30, rwork.size, 10
+    # Tolerances, least, largest and first step, direction, target.
+    rwork[:7] = rung.value, rung.value, 1e-6, 30.0, 0.1, 1.0 if aim.value > x[-1] else -1.0, aim.value
+    # A target lies between the last two points, and comes after them.
+    none, before, after = np.zeros(1, dtype=np.int32), float(x[-1]), float(x[-1])
+    for _ in range(STEPS):
+        error, iwork, rwork, x = library.pitcon1(jacobian, np.zeros(1), residual, none, iwork, rwork, x)
+        if error:
+            raise ArithmeticError(f"PITCON ended with error {error}")
+        if iwork[0] == 3 and aim.crossed(before, after):
+            return Answer(ours.counts, end=x.copy())
+        if iwork[0] == 2:
+            before, after, ours.counts.accepted = after, float(x[-1]), ours.counts.accepted + 1
+    raise ArithmeticError(f"PITCON did not arrive in {STEPS} calls")
+
+
+def _pitcon_library() -> Any:
+    """The compiled routine alone: pysces itself, once imported, prints a page and makes folders."""
+    package = find_spec("pysces")
+    if package is None or package.submodule_search_locations is None:
+        raise ImportError("pysces is not installed")
+    places = [f"{place}/pitcon" for place in package.submodule_search_locations]
+    spec = PathFinder.find_spec("pitcon", places)
+    if spec is None or spec.loader is None:
+        raise ImportError("this pysces has no PITCON")
+    library = module_from_spec(spec)
+    spec.loader.exec_module(library)
+    return library
+
+
+def curve_followers(compare: bool) -> list[Method]:
+    """The plain loop, and where it is asked for those of PITCON and bice that are installed."""
+    found = {"plain scipy loop": _loop}
+    if compare:
+        found |= {name: follow for name, (module, follow) in FOLLOWERS.items() if _installed(module)}
+    return [Method(name, _quiet(follow), applies=_is_matrix, outside=True) for name, follow in found.items()]
+
+
+def _is_matrix(problem: Problem) -> bool:
+    """Whether H_y is an array or a sparse matrix, and no structure of our own as of banded systems."""
+    y, lam = problem.subject.start()
+    H_y, _ = problem.subject.jacobian(y, lam)
+    return isinstance(H_y, np.ndarray) or bool(sp.issparse(H_y))
+
+
+def _quiet(follow: Callable[[Problem, Rung], Answer]) -> Callable[[Problem, Rung], Answer]:
+    """Without warnings of numpy where a path is lost: the answer is judged."""
+
+    def run(problem: Problem, rung: Rung) -> Answer:
+        with np.errstate(all="ignore"):
+            return follow(problem, rung)
+
+    return run
+
+
+FOLLOWERS = {"PITCON (dense)": ("pysces", _pitcon), "bice": ("bice", _bice)}
+"""Module and adapter by name."""
+
+
 def lcp_solvers() -> dict[str, Solver]:
-    """By name, those of quantecon, PIQP and Clarabel that can be imported; `lcp_notes` names the others."""
+    """By name, those of quantecon, PIQP and Clarabel that are installed; `lcp_notes` names the others."""
     found: dict[str, Solver] = {}
     for name, (module, solve) in _LCP.items():
         if not _installed(module):
@@ -96,23 +247,31 @@ def lcp_solvers() -> dict[str, Solver]:
     return found
 
 
-def lcp_notes() -> list[str]:
-    """Which outside solvers take part, with their versions, and which are left out."""
-    modules = {module: _installed(module) for module, _ in _LCP.values()}
-    there = [f"{module} {version(module)}" for module, found in modules.items() if found]
-    absent = [module for module, found in modules.items() if not found]
+def notes(modules: Iterable[str], compare: bool) -> list[str]:
+    """Which packages take part where they are asked for, with their versions, and which are left out."""
+    if not compare:
+        return []
+    installed = {module: _installed(module) for module in dict.fromkeys(modules)}
+    there = [_versioned(module) for module, found in installed.items() if found]
+    absent = [module for module, found in installed.items() if not found]
     return [
         *([f"outside solvers: {', '.join(there)}"] if there else []),
         *([f"outside solvers left out, not installed: {', '.join(absent)}"] if absent else []),
     ]
 
 
+def lcp_notes(compare: bool) -> list[str]:
+    """`notes` on the solvers of LCPs."""
+    return notes([module for module, _ in _LCP.values()], compare)
+
+
+def _versioned(module: str) -> str:
+    distributions = packages_distributions().get(module, [])
+    return " ".join([*distributions[:1], *(version(name) for name in distributions[:1])]) or module
+
+
 def _installed(module: str) -> bool:
-    try:
-        import_module(module)
-    except ImportError:
-        return False
-    return True
+    return find_spec(module) is not None
 
 
 def _quantecon(library: Any, problem: LCP) -> Solved:
@@ -137,8 +296,6 @@ def _piqp(library: Any, problem: LCP) -> Solved:
 
 def _clarabel(library: Any, problem: LCP) -> Solved:
     """The same program as a cone program."""
-    import scipy.sparse as sp
-
     A, n = sp.csc_matrix(_dense(problem)), problem.n
     settings = library.DefaultSettings()
     settings.verbose = False

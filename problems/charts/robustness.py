@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import continuation
-from continuation.chart import Profile, Study, tolerances
+from continuation.chart import Profile, Study, profile, tolerances
 from continuation.chart.catalogue import Size
 from problems.charts import rivals
 from problems.charts.families import FAMILIES
@@ -35,8 +35,9 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             ladder=tolerances(1e-8),
             errors=(RESIDUAL,),
             work=WORK,
-            figures=(Profile("factorizations"), Profile("seconds")),
+            figures=[Profile("factorizations")],
+            tables={"By family": profile},
             repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
-            notes=rivals.lcp_notes() if compare else (),
+            notes=rivals.lcp_notes(compare),
         )
     ]

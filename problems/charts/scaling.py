@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import continuation
-from continuation.chart import END_POINT, Problem, Scaling, Study, tolerances, traced
+from continuation.chart import END_POINT, Lines, Problem, Study, tolerances, traced
+from continuation.chart import scaling as table
 from continuation.chart.catalogue import Size
 from continuation.correctors import Broyden
 from problems import lcp
@@ -27,7 +28,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         ladder=tolerances(1e-8),
         errors=(END_POINT,),
         work=("seconds", "factorizations"),
-        figures=(Scaling("seconds"), Scaling("factorizations")),
+        figures=[Lines("n", "seconds")],
+        tables={"Factorisations": table},
         repeats=repeats,
         patience=2.0,
     )
@@ -51,10 +53,11 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         ladder=tolerances(1e-8),
         errors=(RESIDUAL,),
         work=("seconds", "factorizations"),
-        figures=(Scaling("seconds"), Scaling("factorizations")),
+        figures=[Lines("n", "seconds")],
+        tables={"Factorisations": table},
         repeats=repeats,
         give_up=True,
-        notes=rivals.lcp_notes() if compare else (),
+        notes=rivals.lcp_notes(compare),
     )
     return [curves, complementarity]
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from attrs import asdict
 
-from continuation.chart import Answer, Error, Failure, Ladder, Method, Precision, Problem, Rung, Study, observed
+from continuation.chart import Answer, Dumbbell, Error, Failure, Ladder, Method, Problem, Rung, Study, observed
 from continuation.chart.catalogue import Size
-from continuation.chart.model import everywhere
 from continuation.counts import Counts
+from problems.charts.rivals import notes
 from problems.scenes import Rival, available, error, make, memory, order, solve
 
 WRONG = 1e-2
@@ -65,7 +64,8 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     meshes = [_problem(name, make(name, larger.get(name))) for name in names if name in MESHES]
     exact = [_problem(name, make(name, larger.get(name))) for name in names if name not in MESHES]
     common: dict[str, Any] = {
-        "errors": (ERROR, ORDER, MEMORY), "work": ("seconds",), "figures": (Precision("answer", "seconds"),),
+        "errors": (ERROR, ORDER, MEMORY), "work": ("seconds",),
+        "figures": [Dumbbell("answer", "seconds", every=every) for every in (False, True)],
         "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": COMPILING,
     }  # fmt: skip
     ladder = Ladder("mesh", factors, lambda options, value: options)
@@ -97,24 +97,8 @@ def _methods(problems: Sequence[Problem], mesh: bool, compare: bool) -> list[Met
 
 
 def _notes(problems: Sequence[Problem], compare: bool) -> list[str]:
-    """Which packages take part, and which rivals are left out."""
-    if not compare:
-        return []
-    rivals = {rival.name: rival for problem in problems for rival in problem.subject.rivals}
-    there = sorted({_versioned(rival.module) for rival in rivals.values() if rival.module and rival.installed})
-    absent = [rival.name for rival in rivals.values() if not rival.installed]
-    return [
-        *([f"outside solvers: {', '.join(there)}"] if there else []),
-        *([f"left out, not installed: {', '.join(absent)}"] if absent else []),
-    ]
-
-
-def _versioned(module: str) -> str:
-    distribution = {"sklearn": "scikit-learn"}.get(module, module)
-    try:
-        return f"{distribution} {version(distribution)}"
-    except PackageNotFoundError:
-        return distribution
+    """Which packages take part, and which are left out."""
+    return notes([rival.module for problem in problems for rival in problem.subject.rivals if rival.module], compare)
 
 
 def _refined(problem: Problem, factor: float) -> Any:
@@ -128,9 +112,9 @@ def _refined(problem: Problem, factor: float) -> Any:
 
 
 def _method(
-    name: str, mesh: bool, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] = everywhere
+    name: str, mesh: bool, ask: Callable[[Any], Any], applies: Callable[[Problem], bool] | None = None
 ) -> Method:
-    """A method that answers a scene."""
+    """A method that answers a scene: ours, or a rival that is one for some of them."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         factor = rung.value if mesh else 1.0
@@ -141,7 +125,7 @@ def _method(
         failure = Failure.NONE if well else Failure.WRONG_END
         return Answer(Counts(), observed={"answer": off, "factor": factor}, failure=failure, message=message)
 
-    return Method(name, run, mesh, applies)
+    return Method(name, run, mesh, applies or (lambda problem: True), outside=applies is not None)
 
 
 def _rival(name: str, mesh: bool) -> Method:

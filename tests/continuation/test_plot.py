@@ -9,7 +9,7 @@ from attrs import evolve
 
 import continuation
 from continuation.plot import plot_bifurcation, plot_components, plot_heat, plot_profiles, plot_steps
-from problems.bifurcation import Bratu1D, Pitchfork
+from problems.bifurcation import Bratu1D, Circle, Pitchfork
 
 mpl.use("Agg")
 from matplotlib.figure import Figure
@@ -55,9 +55,37 @@ def test_components_lie_on_the_path_between_the_points_too(path, axes):
 
 def test_turning_points_are_marked_on_every_curve(path, axes):
     plot_components(path, axes)
-    (mark,) = marks(axes)
+    mark, _ = marks(axes)
     np.testing.assert_allclose(mark.get_xdata(), [1, 1], atol=1e-9)
     np.testing.assert_allclose(mark.get_ydata(), [0, 0], atol=1e-5)
+
+
+def heads(axes):
+    """Arrows, as (from, to)."""
+    return [(text.xyann, text.xy) for text in axes.texts if not text.get_text()]
+
+
+def test_events_are_named_and_arrows_go_where_the_path_goes(path, axes):
+    plot_components(path, axes)
+    assert {text.get_text() for text in axes.texts} == {"", "turning point", "component 0 = 1"}
+    for (_, before), (_, after) in heads(axes):
+        # Both unknowns grow along the path.
+        assert after > before
+    assert len(heads(axes)) == 2
+    plot_components(path, bare := Figure().subplots(), legend=False)
+    assert not bare.texts
+
+
+def test_of_events_of_one_name_the_first_is_named_with_their_number(axes):
+    plot_components(continuation.trace(Circle()), axes)
+    assert [text.get_text() for text in axes.texts if text.get_text()] == ["turning point (2)"]
+
+
+def test_stability_is_said(axes):
+    path = continuation.trace(Pitchfork(), observers=[continuation.Stability()])
+    path.plot(axes)
+    assert axes.get_title(loc="right") == "solid: stable, dashed: not"
+    assert {line.get_linestyle() for line in lines(axes)} == {"-", "--"}
 
 
 def test_against_arclength(path, axes):
@@ -67,7 +95,7 @@ def test_against_arclength(path, axes):
     assert s[0] == 0
     assert s[-1] == path.arclength[-1]
     np.testing.assert_allclose(line.get_ydata(), path(s)[:, 1], atol=2e-3)
-    (mark,) = marks(axes)
+    mark, _ = marks(axes)
     assert mark.get_xdata()[0] == path.turning_points[0].arclength
     assert axes.get_ylabel() == "$y_{1}$"
 

@@ -70,7 +70,7 @@ def test_the_plain_loop_arrives_and_is_counted():
     study = chart.Study(
         name="loop",
         problems=[subjects.freudenstein()],
-        methods=[rivals.scipy_loop()],
+        methods=rivals.curve_followers(False),
         ladder=chart.tolerances(1e-8),
         errors=[chart.END_POINT],
         repeats=0,
@@ -87,7 +87,7 @@ def test_absent_outside_solvers_are_named_and_left_out(monkeypatch):
         study = module.studies("smoke", True)[-1]
         assert "Lemke" in [method.name for method in study.methods]
         assert study.notes == ["outside solvers left out, not installed: quantecon, piqp, clarabel"]
-    assert module.studies("smoke", False)[-1].notes == ()
+    assert module.studies("smoke", False)[-1].notes == []
 
 
 def test_an_outside_solver_is_judged_by_the_certificate_unless_it_says_itself_that_it_failed(monkeypatch):
@@ -151,7 +151,7 @@ def test_the_study_of_orders_names_the_order_that_is_taken():
     dense = by_name["H-equation, n = 10"]
     assert order.unknowns(dense) == len(Chandrasekhar(10).start()[0]) + 1
     assert order.unknowns(by_name["KKT, n = 10"]) == 31
-    table = order.CostModel().table(results)
+    table = order.cost_model(results)
     assert [line[0] for line in table.rows] == results.problems
 
 
@@ -172,7 +172,27 @@ def test_scenes_are_answered_by_ours_and_by_the_methods_that_apply_to_them():
 
 
 def test_absent_rivals_of_scenes_are_named(monkeypatch):
+    monkeypatch.setattr(rivals, "_installed", lambda module: False)
     monkeypatch.setattr(scenes.Rival, "installed", property(lambda rival: not rival.module))
     (meshes, _) = scenes.studies("smoke", True)
-    assert "PIQP" in meshes.notes[0]
-    assert "not installed" in meshes.notes[0]
+    assert "not installed: " in meshes.notes[0]
+    assert "piqp" in meshes.notes[0]
+    assert engine.studies("smoke", True)[0].notes == ["outside solvers left out, not installed: pysces, bice"]
+
+
+@pytest.mark.parametrize("name", rivals.FOLLOWERS)
+def test_installed_followers_come_to_the_end_of_a_path(name):
+    module, _ = rivals.FOLLOWERS[name]
+    pytest.importorskip(module)
+    study = chart.Study(
+        name="followers",
+        problems=[subjects.bratu_square(5)],
+        methods=[method for method in rivals.curve_followers(True) if method.name == name],
+        ladder=chart.tolerances(1e-8),
+        errors=[chart.END_POINT],
+        repeats=0,
+    )
+    (row,) = chart.run(study).rows
+    assert (row.failure, row.outside) == ("", True)
+    assert row.errors["end_point"] < 1e-6
+    assert row.counts.factorizations > 0

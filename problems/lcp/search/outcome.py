@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from attrs import frozen
@@ -221,6 +222,22 @@ class Solution:
     def relative_residual(self) -> float:
         """The same with each row relative to its own terms: see `Certificate`."""
         return math.inf if self.certificate is None else self.certificate.relative_residual
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw why the search went where it went: its words, the path that led to x, the face of x, the residual.
+
+        Parameters
+        ----------
+        axes : matplotlib Axes, optional
+            Into which the face alone is drawn; a new figure with all of it otherwise.
+
+        Returns
+        -------
+        matplotlib Figure, or Axes
+        """
+        from problems.lcp.picture import draw_face, draw_solution
+
+        return draw_solution(self) if axes is None else draw_face(self, axes)
 
     def sensitivity(self) -> Sensitivity:
         """How x moves with A and q: products with the derivative and its transpose; one-sided at biactive indices.

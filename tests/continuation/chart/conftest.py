@@ -38,7 +38,7 @@ def study():
         ladder=chart.tolerances(1e-4, 1e-8),
         errors=[chart.END_POINT, chart.TURNING_POINTS, chart.ARCLENGTH, chart.CURVE_DISTANCE],
         work=["factorizations", "seconds"],
-        figures=[chart.Precision("end_point", "factorizations"), chart.Profile("factorizations")],
+        figures=[chart.Lines("end_point", "factorizations"), chart.Profile("factorizations")],
         repeats=1,
     )
 

@@ -1,16 +1,17 @@
-"""Work-precision studies on paths in closed form: what is counted, what counts as a failure, what is kept and drawn."""
+"""Studies on paths in closed form: what is counted, what counts as a failure, what is kept and drawn."""
 
 import math
+from itertools import pairwise
 
 import matplotlib as mpl
 import numpy as np
 import pytest
 from attrs import evolve
+from matplotlib.text import Text
 
 import continuation
 from continuation import chart
-from continuation.archive.errors import ArchiveError, ArchiveExistsError
-from continuation.chart.report import report
+from continuation.chart.run import report
 from continuation.counts import Counts
 from continuation.predictors import Hermite
 from problems.bifurcation import Circle, ExponentialCosine
@@ -126,89 +127,143 @@ def test_what_was_out_of_budget_is_not_run_on_larger_problems():
     assert ran == [("small", 1e-2), ("small", 1e-4), ("middle", 1e-2), ("other", 1e-2)]
     assert [row.failure for row in rows] == ["", "", *["budget"] * 6]
     assert rows[4].message == "Not run: it was out of budget on middle."
-    assert [row.spared for row in rows] == [False] * 3 + [True] * 3 + [False, True]
+    assert [row.message.startswith("Not run") for row in rows] == [False] * 3 + [True] * 3 + [False, True]
     del ran[:]
     chart.run(evolve(study, give_up=False))
     assert len(ran) == len(rows)
 
 
-def same(a, b):
-    """Equality of rows, NaN equal to NaN."""
-    return repr(a) == repr(b)
-
-
-def test_results_come_back_from_their_file(results, tmp_path):
-    file = chart.write(results, tmp_path / "closed.h5")
+def test_results_come_back_from_their_file_to_the_last_bit(results, tmp_path):
+    file = chart.write(results, tmp_path / "closed.csv")
     again = chart.read(file)
-    assert same(again.rows, results.rows)
-    assert (again.study, again.title, again.ladder, again.errors, again.work) == (
-        results.study, results.title, results.ladder, results.errors, results.work
+    # NaN is not equal to itself; its text is.
+    assert repr(again.rows) == repr(list(results.rows))
+    assert (again.study, again.title, again.ladder, again.errors) == (
+        results.study, results.title, results.ladder, results.errors
     )  # fmt: skip
-    assert again.provenance["threads"] == results.provenance["threads"]
+    assert again.provenance == results.provenance
     assert chart.runs(again).text() == chart.runs(results).text()
-    with pytest.raises(ArchiveExistsError):
-        chart.write(results, file)
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(ValueError, match="file: expected results that `write` wrote"):
+        chart.read(tmp_path / "other.csv")
 
 
-def test_the_file_is_one_for_xarray(results, tmp_path):
-    xarray = pytest.importorskip("xarray")
-    with xarray.open_dataset(chart.write(results, tmp_path / "x.h5"), engine="h5netcdf") as data:
-        assert data.sizes == {"run": len(results.rows)}
-        assert data.seconds.attrs["units"] == "s"
-        assert data.factorizations.values.tolist() == [r.counts.factorizations for r in results.rows]
+def test_the_file_is_one_for_pandas(results, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    data = pandas.read_csv(chart.write(results, tmp_path / "x.csv"), comment="#")
+    assert data["factorizations"].tolist() == [row.counts.factorizations for row in results.rows]
+    np.testing.assert_array_equal(data["error: end_point"], [row.errors["end_point"] for row in results.rows])
 
 
-def test_a_file_of_another_kind_is_refused(tmp_path):
-    h5py = pytest.importorskip("h5py")
-    with h5py.File(tmp_path / "other.h5", "w") as file:
-        file.attrs["schema"] = "continuation-chart-2"
-    with pytest.raises(ArchiveError, match="continuation-chart-1"):
-        chart.read(tmp_path / "other.h5")
-    with pytest.raises(ArchiveError, match="cannot be opened"):
-        chart.read(tmp_path / "none.h5")
+def names(axes):
+    """What is written at lines: by the place of its line's end."""
+    return {text.get_text(): text.xy for text in axes.texts}
 
 
-def test_the_chart_shows_lines_front_and_failures(results):
-    # Turning points are round-off at either tolerance: a panel of that has no front.
-    figure = chart.draw(results, "curve_distance", "factorizations")
-    figure.canvas.draw()
-    (panel,) = figure.axes
-    (strip,) = panel.child_axes
+def apart(axes):
+    """The least distance of two names, in lines of their print."""
+    axes.figure.draw_without_rendering()
+    # Without the lines that tie them.
+    boxes = sorted((Text.get_window_extent(text) for text in axes.texts), key=lambda box: box.y0)
+    return min((b.y0 - a.y0) / a.height for a, b in pairwise(boxes))
+
+
+def test_lines_end_at_their_names(results):
+    figure = chart.Lines("curve_distance", ("factorizations", "seconds")).draw(results)
+    panel, timed = figure.axes
     assert panel.get_xscale() == panel.get_yscale() == "log"
-    line = panel.get_lines()[0]
-    assert line.get_ydata().tolist() == [r.counts.factorizations for r in results.of(method="Hermite")]
-    rings = panel.get_lines()[-1]
-    front = chart.on_front(results.rows, "curve_distance", "factorizations")
-    assert rings.get_ydata().tolist() == [r.counts.factorizations for r in front]
-    marks = [float(mark.get_xdata()[0]) for mark in strip.get_lines()]
-    failed = [results.methods.index(r.method) for r in results.rows if r.failed]
-    assert marks == failed
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()][: len(results.methods)] == results.methods
+    assert panel.xaxis_inverted()
+    rows = results.of(method="Hermite")
+    assert panel.get_lines()[0].get_ydata().tolist() == [r.counts.factorizations for r in rows]
+    assert timed.get_lines()[0].get_ydata().tolist() == [r.seconds for r in rows]
+    last = (rows[-1].errors["curve_distance"], rows[-1].counts.factorizations)
+    assert names(panel)["Hermite"] == pytest.approx(last, rel=1e-2)
+    # What has no point on the panel is named above it.
+    assert "failed: jumps, broke, raises, lies" in names(panel)
 
 
-def test_lines_differ_by_more_than_colour():
-    from continuation.chart.style import line_style
-
-    looks = [line_style(k) for k in range(20)]
-    assert len({(a["marker"], a["linestyle"]) for a in looks}) == len(looks)
-
-
-@pytest.mark.parametrize("bad", [{"error": "none"}, {"work": "none"}])
-def test_an_unknown_axis_is_named(results, bad):
-    with pytest.raises(ValueError, match=f"{next(iter(bad))}: expected one of"):
-        chart.draw(results, **{"error": "end_point", "work": "seconds", **bad})
+def test_names_do_not_overlap_however_near_their_lines_are():
+    rows = [made("p", f"method {k}", 1e-6, 100 + k) for k in range(9)]
+    results = chart.Results("s", "t", "tolerance", {"e": "error"}, ["factorizations"], rows)
+    for picture in (chart.Lines("e", "factorizations"), chart.Profile("factorizations")):
+        (panel,) = picture.draw(results).axes
+        assert len(names(panel)) == 9
+        assert apart(panel) > 0.95
 
 
-@pytest.mark.parametrize("kind", ["problems", "methods"])
-def test_what_is_not_there_is_not_drawn(results, kind):
-    with pytest.raises(ValueError, match=f"{kind}: expected some of"):
-        chart.draw(results, "end_point", "seconds", **{kind: ["none"]})
+def made(problem, method, error, work, *, outside=False, failure="", rung=1.0, n=1):
+    counts = Counts(factorizations=work)
+    return chart.Row(problem, "f", n, -1, method, outside, rung, failure, "", {"e": error}, counts, 0, 1.0, 1)
+
+
+def test_a_dumbbell_is_ours_against_the_best_of_the_others_sorted_by_their_ratio():
+    rows = [
+        made("even", "ours", 1e-15, 10), made("even", "slow", 1e-9, 70, outside=True),
+        made("even", "quick", 1e-4, 20, outside=True), made("lost", "ours", 1e-15, 10),
+        made("lost", "quick", 1e-15, 5, outside=True), made("won", "ours", 1e-15, 10),
+        made("won", "slow", 1e-15, 99, outside=True), made("won", "quick", 1.0, 1, outside=True, failure="wrong end"),
+        made("alone", "ours", 1e-15, 10),
+    ]  # fmt: skip
+    results = chart.Results("s", "t", "mesh", {"e": "error"}, ["factorizations"], rows)
+    (panel,) = chart.Dumbbell("e", "factorizations").draw(results).axes
+    assert [label.get_text() for label in panel.get_yticklabels()] == ["won", "even", "lost", "alone"]
+    said = [text.get_text() for text in panel.texts]
+    assert [each for each in said if "×" in each or each == "no rival"] == [
+        "9.9× quicker", "2.0× quicker", "2.0× slower", "no rival"
+    ]  # fmt: skip
+    assert [each for each in said if each in ("quick", "slow")] == ["slow", "quick", "quick"]
+    panel.figure.draw_without_rendering()
+    inside = panel.get_window_extent()
+    assert all(
+        inside.x0 <= text.get_window_extent().x0 and text.get_window_extent().x1 <= inside.x1
+        for text in panel.texts
+        if text.get_text() in ("quick", "slow")
+    )
+    (every,) = chart.Dumbbell("e", "factorizations", ["won", "even"], every=True).draw(results).axes
+    labels = [label.get_text() for label in every.get_yticklabels()]
+    assert labels == ["won", "ours", "slow", "quick", "even", "ours", "quick", "slow"]
+    assert "wrong end" in [text.get_text() for text in every.texts]
+
+
+def test_a_dumbbell_is_taken_at_the_last_rung():
+    rows = [
+        made("p", "ours", 1e-6, 4, rung=1.0), made("p", "ours", 1e-6, 5, rung=2.0),
+        made("p", "other", 1e-6, 2, rung=1.0, outside=True), made("p", "other", 1e-6, 10, rung=2.0, outside=True),
+    ]  # fmt: skip
+    results = chart.Results("s", "t", "mesh", {"e": "error"}, ["factorizations"], rows)
+    (panel,) = chart.Dumbbell("e", "factorizations").draw(results).axes
+    assert "2.0× quicker" in [text.get_text() for text in panel.texts]
+
+
+def test_ours_are_in_colours_and_others_in_grey():
+    rows = [made("p", f"{k}", 1e-6, 10 * k + 1, outside=k > 2) for k in range(6)]
+    results = chart.Results("s", "t", "tolerance", {"e": "error"}, ["factorizations"], rows)
+    (panel,) = chart.Lines("e", "factorizations").draw(results).axes
+    colours = [mpl.colors.to_rgb(line.get_color()) for line in panel.get_lines()]
+    assert [len(set(colour)) == 1 for colour in colours] == [False] * 3 + [True] * 3
+    assert len(set(colours)) == 6
+
+
+@pytest.mark.parametrize(
+    ("picture", "complaint"),
+    [
+        (chart.Lines("none", "seconds"), "error: expected one of"),
+        (chart.Lines("end_point", "none"), "work: expected one of"),
+        (chart.Lines("end_point", "seconds", ["none"]), "problems: expected some of"),
+        (chart.Lines("end_point", "seconds", None, ["none"]), "methods: expected some of"),
+        (chart.Profile("none"), "work: expected one of"),
+        (chart.Dumbbell("none", "seconds"), "error: expected one of"),
+        (chart.Dumbbell("end_point", "seconds", []), "problems: expected some of"),
+    ],
+)
+def test_what_is_not_there_is_not_drawn(results, picture, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        picture.draw(results)
 
 
 def test_without_matplotlib_there_are_no_figures(study, results, tmp_path, monkeypatch):
     def missing(*_, **__):
         raise ImportError("none here")
 
-    monkeypatch.setattr("continuation.chart.style.require_matplotlib", missing)
-    assert [file.suffix for file in report(study, results, tmp_path)] == [".h5", ".csv", ".md"]
+    monkeypatch.setattr("continuation.chart.panels.require_matplotlib", missing)
+    assert [file.suffix for file in report(study, results, tmp_path)] == [".csv", ".md"]

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import continuation
@@ -17,6 +18,16 @@ def test_the_ladder_of_orders_sets_the_order_and_needs_a_series():
     assert rung.apply({"preset": continuation.SERIES})["predictor"].order == 7
     with pytest.raises(TypeError, match="predictor: expected a Taylor predictor"):
         rung.apply({})
+
+
+@pytest.mark.parametrize("preset", [continuation.DEFAULT, continuation.SERIES], ids=lambda preset: preset.name)
+@pytest.mark.parametrize("longest", [3.0, 0.02])
+def test_the_ladder_of_longest_steps_is_kept_to_by_every_preset(preset, longest):
+    (rung,) = chart.longest_steps(longest).rungs
+    path = continuation.trace(cosine(2).subject, **rung.apply({"preset": preset}))
+    assert path.success
+    # A step is measured along the tangent, the arc that it makes is longer by its curvature.
+    assert np.diff(path.arclength).max() <= 1.01 * longest
 
 
 @pytest.mark.parametrize(

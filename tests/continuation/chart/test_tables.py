@@ -6,24 +6,22 @@ import pytest
 from attrs import evolve
 
 from continuation import chart
-from continuation.chart.front import ERROR_FLOOR
-from continuation.chart.profile import profile_table, ratios
-from continuation.chart.scaling import scaling_table
+from continuation.chart.results import ERROR_FLOOR
 from continuation.counts import Counts
 
 
 def test_profiles_reach_as_far_as_anything_is_solved():
-    figure = chart.draw_profile(made(("a", 1.0, 1, ""), ("b", 1.0, 700, ""), ("c", 1.0, 1, "jump")), "factorizations")
-    (panel,) = figure.axes
+    results = made(("a", 1.0, 1, ""), ("b", 1.0, 700, ""), ("c", 1.0, 1, "jump"))
+    (panel,) = chart.Profile("factorizations").draw(results).axes
     assert panel.get_xlim() == (1.0, 1000.0)
-    steps = [line for line in panel.get_lines() if line.get_linestyle() != "None"]
-    assert [line.get_ydata()[-1] for line in steps] == [1.0, 1.0, 0.0]
+    assert [line.get_ydata()[-1] for line in panel.get_lines()] == [1.0, 1.0, 0.0]
+    assert {text.get_text() for text in panel.texts} == {"a  100 %", "b  100 %", "c  0 %"}
 
 
 def made(*points):
     """Results of one problem: (method, error, factorisations, failure)."""
     rows = [
-        chart.Row("p", "p", 1, -1, name, 1.0, failure, "", {"e": error}, Counts(factorizations=work), 0, 1.0, 1)
+        chart.Row("p", "p", 1, -1, name, False, 1.0, failure, "", {"e": error}, Counts(factorizations=work), 0, 1.0, 1)
         for name, error, work, failure in points
     ]
     return chart.Results("s", "t", "tolerance", {"e": "error"}, ("factorizations",), tuple(rows))
@@ -53,10 +51,10 @@ def test_the_front_is_what_nothing_beats():
 
 def test_profiles_count_failures_as_unsolved():
     results = made(("a", 1.0, 10, ""), ("b", 1.0, 15, ""), ("c", 1.0, 1, "jump"))
-    assert {name: values.tolist() for name, values in ratios(results, "factorizations").items()} == {
+    assert {name: values.tolist() for name, values in chart.ratios(results, "factorizations").items()} == {
         "a": [1.0], "b": [1.5], "c": [math.inf]
     }  # fmt: skip
-    assert profile_table(results, "factorizations").rows == (
+    assert chart.profile(results, "factorizations").rows == (
         ("p", "a", 1, 1.0, 1.0, 1.0, 1.0),
         ("p", "b", 1, 0.0, 1.0, 1.0, 1.0),
         ("p", "c", 1, 0.0, 0.0, 0.0, 0.0),
@@ -71,15 +69,14 @@ def test_exponents_are_fitted_to_the_larger_sizes():
     )
     results = evolve(made(), rows=rows)
     assert chart.exponents(results, "factorizations")["p", "a"] == pytest.approx(3.0)
-    assert scaling_table(results, "factorizations").rows[0][-1] == pytest.approx(3.0)
+    assert chart.scaling(results, "factorizations").rows[0][-1] == 3.0
     assert math.isnan(chart.exponents(evolve(results, rows=rows[:2]), "factorizations")["p", "a"])
 
 
-def test_tables_as_text_csv_and_markdown():
+def test_tables_as_text_and_markdown():
     table = chart.Table(("name", "n"), [("a|b", 1), ("c", math.nan)])
     assert table.text() == "name    n\n----  ---\na/b     1\nc"
     assert table.markdown() == "| name |   n |\n| ---- | --: |\n| a/b  |   1 |\n| c    |     |"
-    assert table.csv() == "name,n\na|b,1\nc,\n"
 
 
 def test_errors_that_agree_to_three_digits_are_equal():

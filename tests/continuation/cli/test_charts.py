@@ -20,7 +20,7 @@ def installed(monkeypatch):
         methods=[chart.traced("Hermite"), chart.Method("raises", boom, laddered=False)],
         ladder=chart.tolerances(1e-6),
         errors=[chart.END_POINT],
-        figures=[chart.Precision("end_point", "factorizations"), chart.Profile("factorizations")],
+        figures=[chart.Lines("end_point", "factorizations"), chart.Profile("factorizations")],
         repeats=0,
     )
 
@@ -47,13 +47,12 @@ def test_the_command_writes_everything(installed, tmp_path, capsys):
     for _ in range(2):
         assert command("closed", "--smoke", "--output", str(folder)) == 0
     assert sorted(file.name for file in folder.iterdir()) == [
-        "closed-end_point-factorizations.png", "closed-profile-factorizations.png", "closed.csv", "closed.h5",
-        "closed.md",
+        "closed-end_point-factorizations.png", "closed-profile-factorizations.png", "closed.csv", "closed.md",
     ]  # fmt: skip
     assert "1 exception" in capsys.readouterr().out
     page = (folder / "closed.md").read_text()
     assert "| exception |" in page
-    assert "threads: " in page
+    assert "blas_threads: " in page
 
 
 def test_the_command_lists_the_studies_and_names_a_wrong_one(installed, capsys):

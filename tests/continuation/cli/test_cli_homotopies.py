@@ -76,9 +76,9 @@ def test_a_chart_of_the_presets_on_the_path(run, tmp_path):
     assert status == SUCCESS
     assert "REACHED_TARGET" in out
     names = {file.name.removeprefix("freudenstein-roth") for file in folder.iterdir()}
-    errors, works = ("end_point", "turning_points"), ("factorizations", "seconds")
-    assert names == {".h5", ".csv", ".md", *(f"-{error}-{work}.png" for error in errors for work in works)}
-    results = chart.read(folder / "freudenstein-roth.h5")
+    pictures = {f"-{error}-seconds-factorizations.png" for error in ("end_point", "turning_points")}
+    assert names == {".csv", ".md", *pictures}
+    results = chart.read(folder / "freudenstein-roth.csv")
     assert set(results.methods) == {"FAST", "DEFAULT", "CONSERVATIVE", "SERIES"}
     assert len(results.rows) == 8
     for row in results.rows:
@@ -92,7 +92,7 @@ def test_a_chart_of_a_homotopy_of_ones_own_beside_json(run, home):
     status, out, err = run("trace", "my_homotopies:Root", "--chart", "chart", "--chart-tolerances", "1e-6", "--json")
     assert status == SUCCESS
     json.loads(out)
-    assert "my_homotopies-Root-end_point-factorizations.png" in err
+    assert "my_homotopies-Root-end_point-seconds-factorizations.png" in err
     assert (home / "chart" / "my_homotopies-Root.md").exists()
 
 
