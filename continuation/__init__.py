@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from continuation.path import LocatedEvent, Path, Step
     from continuation.path.interrupted import Interrupted
     from continuation.predictors import Predictor
+    from continuation.renewal import Followed, follow
     from continuation.stability import HopfPoint, Stability
     from continuation.status import Kind, Status
     from continuation.step.guard import Guard
@@ -68,6 +69,7 @@ _HOMES = {
     "path": "LocatedEvent Path Step",
     "predictors": "Predictor",
     "step.presets": "CONSERVATIVE DEFAULT FAST SERIES Preset",
+    "renewal": "Followed follow",
     "stability": "HopfPoint Stability",
     "status": "Kind Status",
     "step.options": "Options",
@@ -98,6 +100,7 @@ __all__ = [
     "EvaluationError",
     "Event",
     "Family",
+    "Followed",
     "Guard",
     "Homotopy",
     "HopfPoint",
@@ -129,6 +132,7 @@ __all__ = [
     "check_jacobian",
     "cite",
     "diagram",
+    "follow",
     "from_functions",
     "kink_rays",
     "refine",

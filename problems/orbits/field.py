@@ -1,0 +1,103 @@
+"""The right-hand side of x' = f(x, p), at many points at once, with its derivatives."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import evolve, field, frozen
+
+from continuation.arguments.checks import complain
+from continuation.arrays import Array
+from continuation.citation.bibliography import SQUIRE_TRAPP
+from continuation.evaluation.derivatives import AGREEMENT, sizes
+
+TINY = 1e-200
+"""The complex step: its square is below everything (Squire and Trapp 1998)."""
+
+REACH = 6e-6
+"""Of central differences, beside the size of a component: the third root of round-off."""
+
+
+@frozen(eq=False)
+class Field:
+    """f of all columns, and how it is differentiated.
+
+    `function`: Of (x, p), x of shape (n,) or (n, k). `columns`: Whether it takes many columns. `complexes`: Whether it
+    is right on complex numbers. `own`: Its derivative (f_x, f_p) if there is one. `beside`: What is handed to both
+    behind p.
+    """
+
+    function: Callable[..., Any]
+    columns: bool
+    complexes: bool
+    own: Callable[..., Any] | None = None
+    beside: tuple[Any, ...] = ()
+    references: tuple[str, ...] = field(init=False)
+
+    @references.default
+    def _references(self) -> tuple[str, ...]:
+        return (SQUIRE_TRAPP,) if self.complexes and self.own is None else ()
+
+    def __call__(self, x: Array, p: Any) -> Array:
+        """f, shape (n, k)."""
+        if self.columns:
+            found: Array = np.asarray(self.function(x, p, *self.beside))
+            return found
+        return np.stack([np.asarray(self.function(one, p, *self.beside)) for one in x.T], axis=1)
+
+    def derivatives(self, x: Array, p: float) -> tuple[Array, Array]:
+        """(f_x, f_p) at the columns of x, shapes (k, n, n) and (k, n)."""
+        n, k = x.shape
+        if self.own is not None:
+            ways = [self.own(x, p, *self.beside)] if self.columns else [self.own(one, p, *self.beside) for one in x.T]
+            by_x, by_p = (np.stack([np.asarray(way[j]) for way in ways], axis=-1) for j in (0, 1))
+            by_x, by_p = by_x.reshape(n, n, -1), by_p.reshape(n, -1)
+            return np.moveaxis(np.broadcast_to(by_x, (n, n, k)), 2, 0), np.broadcast_to(by_p, (n, k)).T
+        copies = np.repeat(x[:, :, None], n, axis=2)
+        h = REACH * sizes(np.abs(x).max(axis=1))
+        steps = np.eye(n)[:, None, :] * (TINY * 1j if self.complexes else h)
+        whole = (copies + steps).reshape(n, -1)
+        if self.complexes:
+            by_x = self(whole, p).imag / TINY
+            by_p = self(x, complex(p, TINY)).imag / TINY
+        else:
+            by_x = (self(whole, p) - self((copies - steps).reshape(n, -1), p)) / np.tile(2.0 * h, k)
+            step = REACH * float(sizes(np.array([p]))[0])
+            by_p = (self(x, p + step) - self(x, p - step)) / (2.0 * step)
+        return np.moveaxis(by_x.reshape(n, k, n), 1, 0), by_p.T
+
+
+def field_of(function: Any, jacobian: Any, beside: tuple[Any, ...], x: Array, p: float) -> Field:
+    """How to call a function, and how to differentiate it: tried at some columns, shape (n, k) with k > 1.
+
+    Raises `TypeError`, `ValueError` if it is no function, or gives something else than n numbers.
+    """
+    for name, given in (("f", function), ("jacobian", jacobian)):
+        if not callable(given) and (name == "f" or given is not None):
+            raise complain(TypeError, name, "a function of (x, p)", given)
+    single = np.asarray(function(x[:, 0].copy(), p, *beside))
+    if single.shape != (len(x),) or single.dtype.kind not in "fiu":
+        raise complain(ValueError, "f", f"{len(x)} real numbers, as x has", single)
+    alone = Field(function, False, False, jacobian, beside)
+    plain = evolve(alone, columns=_agrees(lambda: evolve(alone, columns=True)(x.copy(), p), alone(x, p)))
+    if jacobian is not None:
+        return plain
+    steps = evolve(plain, complexes=True)
+    right = all(_agrees(lambda: steps.derivatives(x, p)[j], plain.derivatives(x, p)[j]) for j in (0, 1))
+    return steps if right else plain
+
+
+def _agrees(make: Callable[[], Array], known: Array) -> bool:
+    """Whether an array can be made, without complaints, and is another one but for errors of differences."""
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("error", np.exceptions.ComplexWarning)
+            found = make()
+    except (TypeError, ArithmeticError, ValueError, AttributeError, IndexError, np.exceptions.ComplexWarning):
+        return False
+    if found.shape != known.shape:
+        return False
+    return bool((np.abs(found - known) <= AGREEMENT * float(np.abs(known).max(initial=0.0))).all())
