@@ -22,9 +22,9 @@ known to the root of round-off, as the one that is always there is."""
 INFINITE = 1e-300
 """The denominator of a multiplier that is beyond all numbers."""
 
-TELLING = 1e-4
-"""Multipliers of which the one that is 1 is off by more tell nothing: orbits that are nearly homoclinic have one that
-is larger than the inverse of round-off."""
+
+TELLING = 0.5
+"""Multipliers of which the first, that is 1, is off by more are not known."""
 
 
 @frozen(eq=False, slots=False)
@@ -49,29 +49,27 @@ class Multipliers:
         return np.append(found[first], rest[np.argsort(-np.abs(rest))])
 
     @property
-    def telling(self) -> bool:
-        """Whether the one that is 1 is found."""
-        return bool(np.abs(self.values[0] - 1.0) <= TELLING)
-
-    @property
     def unstable(self) -> int:
         """How many lie outside of the unit circle."""
         return int((np.abs(self.values[1:]) > 1.0 + UNSTABLE).sum())
 
     @property
     def doubling(self) -> float:
-        """The product of mu + 1, each divided by its size: it changes its sign where one is -1; nan if unknown."""
-        if not self.telling:
-            return float("nan")
-        alpha, beta = self._pencil[0]
-        unit = beta.conj() / np.maximum(np.abs(beta), np.finfo(float).tiny)
-        return float(np.prod((alpha + beta) * unit / np.hypot(np.abs(alpha), np.abs(beta))).real)
+        """The product of mu + 1 over all but the first, each divided by its size: it changes its sign where one is -1.
+
+        The first, 1, is left out, since orbits that are nearly homoclinic have another that is larger than the inverse
+        of round-off, beside which it is lost.
+        """
+        if abs(self.values[0] - 1.0) > TELLING:
+            return 1.0
+        rest = self.values[1:]
+        return float(np.prod((rest + 1.0) / np.hypot(1.0, np.abs(rest))).real)
 
     @property
     def torus(self) -> float:
-        """Of the pair nearest to the unit circle how far outside it lies; -1 where there is no pair, nan if unknown."""
-        if not self.telling:
-            return float("nan")
+        """Of the pair nearest to the unit circle how far outside it lies; -1 where there is no pair."""
+        if abs(self.values[0] - 1.0) > TELLING:
+            return -1.0
         pairs = self.values[(self.values.imag > 0.0) & (np.angle(self.values) > SAME_ANGLE)]
         if not pairs.size:
             return -1.0

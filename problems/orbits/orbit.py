@@ -482,12 +482,14 @@ class PeriodicOrbit:
         new = given.corrected(tangent)
         return new, np.append(*new.start()), tangent
 
-    @property
+    @cached_property
     def metric(self) -> Weighted:
-        """The mean square of X in units of `scale`, the relative change of T, and p beside its size."""
+        """The mean square of X in units of `scale`, T beside its size, and p by how far it moves X by that in a period."""
         X = np.tile(self.scale, len(self.states)) * np.sqrt(self.states.size)
         size = np.concatenate([X, [self.period], np.ones(self.mesh.size - 2)])
-        return Weighted(size**-2.0, float(sizes(np.array([self.parameter]))[0]) ** -2.0)
+        moved = self.field.derivatives(self.states.T, self.parameter)[1] / self.scale
+        reach = self.period * float(np.sqrt(np.mean(moved**2)))
+        return Weighted(size**-2.0, reach**2 if reach > 0.0 else 1.0)
 
     @property
     def leaving(self) -> tuple[Array, Array]:
