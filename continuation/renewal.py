@@ -91,7 +91,7 @@ class Followed:
         event : LocatedEvent or Step
         """
         for homotopy, path in zip(self.homotopies, self.paths):
-            if any(event.u is point.u for point in (*path.steps, *path.events)):
+            if any(getattr(event, "u", None) is point.u for point in (*path.steps, *path.events)):
                 return homotopy
         raise complain(ValueError, "event", "an event or a step of this path", event)
 

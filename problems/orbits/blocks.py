@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from attrs import frozen
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
@@ -177,9 +177,9 @@ class Bordered:
     def _small(self) -> tuple[Array, Array]:
         A, B, C = self.blocks.last
         matrix = np.vstack([np.hstack([A + B, C]), self.rows @ self._basis])
-        lu, pivots = lu_factor(matrix, check_finite=False)
+        lu, pivots, _ = dgetrf(matrix)
         if not (np.isfinite(lu).all() and lu.diagonal().all()):
-            raise SingularError("the condensed matrix is singular")
+            raise SingularError("the condensed matrix is singular, or not finite")
         return lu, pivots
 
     @cached_property
@@ -198,7 +198,7 @@ class Bordered:
         own = self.blocks.backward(np.zeros((2, n, 1)), np.zeros((k, 1)), parts).ravel()
         rest = np.concatenate([last, np.append(r[M:], rho) / self.sizes])
         rest[n:] -= self.rows[:, :M] @ own
-        z = self._basis @ lu_solve(self._small, rest, check_finite=False)
+        z = self._basis @ dgetrs(*self._small, rest)[0]
         z[:M] += own
         z = z * self.scale
         return np.concatenate([z[:-1], given, z[-1:]])

@@ -70,14 +70,21 @@ class Field:
         return np.moveaxis(by_x.reshape(n, k, n), 1, 0), by_p.T
 
 
-def field_of(function: Any, jacobian: Any, beside: tuple[Any, ...], x: Array, p: float) -> Field:
-    """How to call a function, and how to differentiate it: tried at some columns, shape (n, k) with k > 1.
+ASIDE = 0.1
+"""How far from a point, in its components' sizes, f is tried: at an equilibrium alone what is not linear is not seen."""
+
+
+def field_of(
+    function: Any, jacobian: Any, beside: tuple[Any, ...], point: Array, size: Array, p: float
+) -> Field:
+    """How to call a function, and how to differentiate it: tried about a point, shape (n,).
 
     Raises `TypeError`, `ValueError` if it is no function, or gives something else than n numbers.
     """
     for name, given in (("f", function), ("jacobian", jacobian)):
         if not callable(given) and (name == "f" or given is not None):
             raise complain(TypeError, name, "a function of (x, p)", given)
+    x = point[:, None] + ASIDE * size[:, None] * np.cos(np.outer(np.arange(1.0, point.size + 1.0), np.arange(3.0)))
     single = np.asarray(function(x[:, 0].copy(), p, *beside))
     if single.shape != (len(x),) or single.dtype.kind not in "fiu":
         raise complain(ValueError, "f", f"{len(x)} real numbers, as x has", single)

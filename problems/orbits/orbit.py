@@ -24,7 +24,7 @@ from problems.orbits.field import Field, field_of
 from problems.orbits.grid import Grid
 from problems.orbits.here import Here
 from problems.orbits.multipliers import Multipliers
-from problems.orbits.starts import STILL, circle_at, one_period
+from problems.orbits.starts import circle_at, one_period
 
 KEPT = 4
 """Points that are kept: a step's residual, factorisation, events and what is observed there ask for the same one."""
@@ -59,10 +59,10 @@ def _second(beside: dict[str, Any]) -> tuple[Any, ...]:
     return () if beside.get("second") is None else (beside["second"],)
 
 
-def _deviation(orbit: PeriodicOrbit) -> Array:
-    """Standard deviations; of what stands still, the largest or its own size."""
-    spread = orbit.states.std(axis=0)
-    return np.where(spread > 0.0, spread, np.maximum(np.abs(orbit.states).max(axis=0), 1.0))
+def _spread(states: Array) -> Array:
+    """Standard deviations; of what stands still its own size, or 1."""
+    spread = states.std(axis=0)
+    return np.where(spread > 0.0, spread, sizes(states[0]))
 
 
 @frozen(eq=False, slots=False)
@@ -116,7 +116,7 @@ class PeriodicOrbit:
     jacobian_of_f: Callable[..., Any] | None = field(default=None, alias="jacobian")
     second: Any = None
     smallest: float = field(default=1e-3, validator=POSITIVE_FINITE)
-    scale: Array = field(default=Factory(_deviation, takes_self=True), converter=np.asarray, repr=False)
+    scale: Array = field(default=Factory(lambda self: _spread(self.states), takes_self=True), converter=np.asarray, repr=False)
     heading: Array | None = field(default=None, repr=False)
     _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
     target: ClassVar[None] = None
@@ -149,7 +149,7 @@ class PeriodicOrbit:
     def field(self) -> Field:
         """f at many points, and its derivatives."""
         beside = () if self.second is None else (self.second,)
-        return field_of(self.f, self.jacobian_of_f, beside, self.states[:4].T, self.parameter)
+        return field_of(self.f, self.jacobian_of_f, beside, self.states[0], self.scale, self.parameter)
 
     @cached_property
     def _reference(self) -> Array:
@@ -183,7 +183,7 @@ class PeriodicOrbit:
         """
         x, p = as_point(point)
         grid = Grid(_mesh(intervals), degree)
-        field = field_of(f, beside.get("jacobian"), _second(beside), np.stack([x, x + STILL * sizes(x)], axis=1), p)
+        field = field_of(f, beside.get("jacobian"), _second(beside), x, sizes(x), p)
         circle = circle_at(field, x, p, grid)
         states, mesh = x + radius * circle.motion, grid.mesh
         given = cls(
@@ -220,7 +220,7 @@ class PeriodicOrbit:
         times, states = real_vector("t", t), _table(x)
         if times.shape != (len(states),) or len(times) < 4 or not (np.diff(times) > 0.0).all():
             raise complain(ValueError, "t", f"{len(states)} times that rise, one a state", t)
-        field = field_of(f, beside.get("jacobian"), _second(beside), states[-4:].T, parameter)
+        field = field_of(f, beside.get("jacobian"), _second(beside), states[-1], _spread(states), parameter)
         cut, period, grid = one_period(field, times, states, parameter, Grid(_mesh(intervals), degree))
         found = cls(f, cut, period, parameter, grid.mesh, degree, **beside).corrected()
         for _ in range(ADAPTED):
@@ -350,6 +350,11 @@ class PeriodicOrbit:
     def start(self) -> tuple[Array, float]:
         """The given orbit and its period, and the parameter."""
         return np.concatenate([self.states.ravel(), [self.period], self.mesh[1:-1]]), self.parameter
+
+    @property
+    def period_index(self) -> int:
+        """Where T is among the unknowns: ``TargetValue(50.0, component=orbit.period_index)``."""
+        return self.states.size
 
     def unknowns(self, y: Array) -> tuple[Grid, Array, float]:
         """What the unknowns say: the grid, X of shape (N m, n), and T.

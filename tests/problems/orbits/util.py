@@ -1,15 +1,9 @@
-"""Vector fields with known orbits, and simulations of them."""
+"""Vector fields and simulations that several tests use."""
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-
-def normal_form(z, p, second=1.0):
-    """r' = r (p + second r^2 - r^4), theta' = 1: orbits of period 2 pi, a fold of cycles at p = -second^2 / 4."""
-    x, y = z
-    r = x * x + y * y
-    a = p + second * r - r * r
-    return np.stack([a * x - y, a * y + x])
+from problems.orbits import normal_form
 
 
 def bent(z, p):
@@ -19,7 +13,7 @@ def bent(z, p):
     return np.stack([x_dot, y_dot - 3.0 * x * x * x_dot])
 
 
-def normal_form_by_hand(z, p):
+def by_hand(z, p):
     """The normal form's derivative."""
     x, y = z
     r = x * x + y * y
@@ -31,38 +25,25 @@ def normal_form_by_hand(z, p):
 
 
 def one_by_one(z, p):
-    """The normal form for those who call with one state: `if` sees no columns."""
+    """The normal form for one state at a time: `if` sees no columns."""
     if z[0] > 1e9:
         return z
     return normal_form(z, p)
 
 
-def rigid(z, p):
-    """A field that complex numbers cannot tell: the size of a complex number is no analytic function."""
+def of_sizes(z, p):
+    """The normal form with sizes: no analytic function, so that complex steps are wrong."""
     x, y = z
     r = np.abs(x) ** 2 + np.abs(y) ** 2
     a = p + r - r * r
     return np.stack([a * x - y, a * y + x])
 
 
-def van_der_pol(z, mu):
-    x, y = z
-    return np.stack([y, mu * (1.0 - x * x) * y - x])
-
-
-def brusselator(z, b):
-    x, y = z
-    return np.stack([1.0 - (b + 1.0) * x + x * x * y, b * x - x * x * y])
-
-
-def roessler(z, c, a=0.2):
-    x, y, w = z
-    return np.stack([-y - w, x + a * y, 0.2 + w * (x - c)])
-
-
-def lorenz(z, r):
-    x, y, w = z
-    return np.stack([10.0 * (y - x), r * x - y - x * w, x * y - 8.0 / 3.0 * w])
+def two_circles(z, p):
+    """A circle of period 2 pi, stable, and across it a focus that loses its stability at p = 0: a torus."""
+    x, y, u, v = z
+    a, b = 1.0 - x * x - y * y, p - u * u - v * v
+    return np.stack([a * x - y, a * y + x, b * u - 0.3 * v, b * v + 0.3 * u])
 
 
 def simulated(f, p, x0, settling=100.0, time=60.0):
