@@ -6,21 +6,18 @@ goes on from there. Nothing in a trace knows of it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from contextlib import nullcontext
 from os import PathLike
 from typing import Any, Protocol, Unpack, runtime_checkable
 
-import numpy as np
 from attrs import evolve, field, frozen
 
 from continuation.archive.atomic import as_file
 from continuation.archive.writer import PathLog
-from continuation.arguments.checks import complain, instance_with, integer
+from continuation.arguments.checks import complain, instance_with
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.homotopy import offers
 from continuation.path import Path
 from continuation.path.parts import shifted
 from continuation.status import Status
@@ -90,8 +87,9 @@ class Followed:
         ----------
         event : LocatedEvent or Step
         """
+        u = getattr(event, "u", None)
         for homotopy, path in zip(self.homotopies, self.paths):
-            if any(getattr(event, "u", None) is point.u for point in (*path.steps, *path.events)):
+            if any(u is step.u for step in path.steps) or any(u is known.u for known in path.events):
                 return homotopy
         raise complain(ValueError, "event", "an event or a step of this path", event)
 
@@ -132,7 +130,8 @@ def follow(
     if not isinstance(every, int) or isinstance(every, bool) or every < 1:
         raise complain(ValueError, "every", "a positive integer", every)
     given = checked(options)["budget"] or Budget()
-    homotopies, paths, left, asked = [homotopy], [], given.steps, {**options}
+    homotopies, left, asked = [homotopy], given.steps, dict[str, Any](options)
+    paths: list[Path] = []
     with nullcontext() if archive is None else PathLog(as_file("archive", archive)) as log:
         while True:
             part = {**asked, "budget": evolve(given, steps=min(every, left))}
@@ -148,6 +147,6 @@ def follow(
             renewed, u, v = homotopies[-1].renewed(last.u, last.tangent)
             homotopies.append(renewed)
             asked["start"] = (u, v)
-            controller = asked.get("controller") or (asked.get("preset") or DEFAULT).controller
+            controller: Any = asked.get("controller") or (asked.get("preset") or DEFAULT).controller
             # A trace begins with short steps; this one goes on.
             asked["controller"] = evolve(controller, bounds=evolve(controller.bounds, initial=last.step_length))

@@ -1,6 +1,6 @@
-"""Periodic orbits: a homotopy, and models with known ones."""
+"""Periodic orbits: a homotopy; `problems.orbits.models` has vector fields with known ones."""
 
-from problems.orbits.models import brusselator, from_model, lorenz, normal_form, roessler, van_der_pol
+from problems.orbits.models import from_model
 from problems.orbits.orbit import PeriodicOrbit
 
-__all__ = ["PeriodicOrbit", "brusselator", "from_model", "lorenz", "normal_form", "roessler", "van_der_pol"]
+__all__ = ["PeriodicOrbit", "from_model"]

@@ -9,6 +9,7 @@ Stable parallel algorithms for two-point boundary value problems, SIAM J. Sci. S
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from attrs import frozen
@@ -102,7 +103,9 @@ class Condensed:
         for j in range(len(self.levels) - 1, -1, -1):
             level = self.levels[j]
             count, p = len(level.turned), level.inverse.shape[1]
-            outer = np.concatenate([coarse[:count], coarse[1 : count + 1], np.broadcast_to(g, (count, *g.shape))], axis=1)
+            outer = np.concatenate(
+                [coarse[:count], coarse[1 : count + 1], np.broadcast_to(g, (count, *g.shape))], axis=1
+            )
             middle = -(level.follows @ outer)
             if parts is not None:
                 middle += parts[j][:, :, None]
@@ -155,8 +158,8 @@ class Bordered:
 
     `rows`, of shape (k, M + k): The further equations and the border, divided by `sizes`. `scale`, of shape (M + k,):
     Of the unknowns. `equations`, of shape (M,): What the equations are divided by. All of `blocks` and `rows` is in
-    these units. `pinned`: The border's entries at unknowns behind the M + k - 1, each of which has an equation of its own
-    that says what it is; the parameter comes last.
+    these units. `pinned`: The border's entries at unknowns behind the M + k - 1, each with an equation of its own that
+    says what it is; the parameter comes last.
     """
 
     blocks: Condensed
@@ -174,7 +177,8 @@ class Bordered:
         return np.concatenate([self.blocks.backward(np.array([x, x]), g).reshape(-1, n + k), g])
 
     @cached_property
-    def _small(self) -> tuple[Array, Array]:
+    def small(self) -> tuple[Array, Any]:
+        """LU of what is left when all but x_0 and g is eliminated; SingularError where that is singular."""
         A, B, C = self.blocks.last
         matrix = np.vstack([np.hstack([A + B, C]), self.rows @ self._basis])
         lu, pivots, _ = dgetrf(matrix)
@@ -185,7 +189,7 @@ class Bordered:
     @cached_property
     def sign(self) -> int:
         """Sign of the determinant."""
-        lu, pivots = self._small
+        lu, pivots = self.small
         return int(self.blocks.sign() * lu_sign(pivots, lu.diagonal()))
 
     def solve(self, r: Array, rho: float) -> Array:
@@ -198,11 +202,7 @@ class Bordered:
         own = self.blocks.backward(np.zeros((2, n, 1)), np.zeros((k, 1)), parts).ravel()
         rest = np.concatenate([last, np.append(r[M:], rho) / self.sizes])
         rest[n:] -= self.rows[:, :M] @ own
-        z = self._basis @ dgetrs(*self._small, rest)[0]
+        z = self._basis @ dgetrs(*self.small, rest)[0]
         z[:M] += own
         z = z * self.scale
         return np.concatenate([z[:-1], given, z[-1:]])
-
-    def factored(self) -> Bordered:
-        """The same, all of it worked out."""
-        return self if self._small else self

@@ -71,12 +71,10 @@ class Field:
 
 
 ASIDE = 0.1
-"""How far from a point, in its components' sizes, f is tried: at an equilibrium alone what is not linear is not seen."""
+"""How far from a point, in its components' sizes, f is tried: at an equilibrium what is not linear is not seen."""
 
 
-def field_of(
-    function: Any, jacobian: Any, beside: tuple[Any, ...], point: Array, size: Array, p: float
-) -> Field:
+def field_of(function: Any, jacobian: Any, beside: tuple[Any, ...], point: Array, size: Array, p: float) -> Field:
     """How to call a function, and how to differentiate it: tried about a point, shape (n,).
 
     Raises `TypeError`, `ValueError` if it is no function, or gives something else than n numbers.
@@ -93,8 +91,12 @@ def field_of(
     if jacobian is not None:
         return plain
     steps = evolve(plain, complexes=True)
-    right = all(_agrees(lambda: steps.derivatives(x, p)[j], plain.derivatives(x, p)[j]) for j in (0, 1))
-    return steps if right else plain
+
+    def whole(f: Field) -> Array:
+        by_x, by_p = f.derivatives(x, p)
+        return np.concatenate([by_x, by_p[:, :, None]], axis=2)
+
+    return steps if _agrees(lambda: whole(steps), whole(plain)) else plain
 
 
 def _agrees(make: Callable[[], Array], known: Array) -> bool:

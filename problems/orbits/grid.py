@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from attrs import field, frozen
 from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
 
 from continuation.arrays import Array
 
@@ -45,18 +46,18 @@ class Grid:
     @cached_property
     def inner(self) -> Array:
         """The nodes of [0, 1], m + 1 of them."""
-        return 0.5 - 0.5 * np.cos(np.pi * np.arange(self.degree + 1) / self.degree)
+        return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(self.degree + 1) / self.degree))
 
     @cached_property
     def gauss(self) -> tuple[Array, Array]:
         """The m Gauss points of [0, 1], and their weights."""
         points, weights = leggauss(self.degree)
-        return 0.5 * points + 0.5, 0.5 * weights
+        return np.asarray(0.5 * points + 0.5), np.asarray(0.5 * weights)
 
     @cached_property
     def coefficients(self) -> Array:
         """From values at the nodes to coefficients of powers."""
-        return np.linalg.inv(np.vander(self.inner, increasing=True))
+        return np.asarray(np.linalg.inv(np.vander(self.inner, increasing=True)))
 
     @cached_property
     def value(self) -> Array:
@@ -71,7 +72,7 @@ class Grid:
         return powers @ self.coefficients
 
     @cached_property
-    def index(self) -> Array:
+    def index(self) -> NDArray[np.intp]:
         """Which nodes an interval has, shape (N, m + 1): the last of the last one is the first."""
         found = np.arange(self.intervals)[:, None] * self.degree + np.arange(self.degree + 1)
         return found % (self.intervals * self.degree)
@@ -141,11 +142,19 @@ class Grid:
         largest = np.abs(np.polynomial.polynomial.polyval(t, nodal)).max()
         return float((self.highest(X) * self.widths ** (self.degree + 1)).max() * largest)
 
-    def adapted(self, X: Array, intervals: int, degree: int) -> Grid:
-        """A grid on which the error is the same in all intervals, about."""
+    def suited(self, X: Array, intervals: int, degree: int) -> tuple[Grid, Array]:
+        """A grid on which the error is the same in all intervals, about, and where its nodes are on this one.
+
+        It begins where the function is fastest: near an equilibrium, where a homoclinic orbit rests, its velocity and
+        what grows along it have nearly one direction, and multipliers cannot be told there.
+        """
         density = self.highest(X) ** (1.0 / (self.degree + 1))
         density = density + LEVEL * float(density @ self.widths) if density.any() else np.ones_like(density)
         grown = np.append(0.0, np.cumsum(density * self.widths))
         mesh = np.interp(np.linspace(0.0, grown[-1], intervals + 1), grown, self.mesh)
-        mesh[0], mesh[-1] = 0.0, 1.0
-        return Grid(mesh, degree)
+        widths = np.diff(mesh)
+        k = int(np.argmax(np.linalg.norm(np.diff(self.at(X, mesh), axis=0), axis=1) / widths))
+        turned = np.append(0.0, np.cumsum(np.roll(widths, -k)))
+        turned[-1] = 1.0
+        new = Grid(turned, degree)
+        return new, new.nodes + mesh[k]

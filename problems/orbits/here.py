@@ -20,8 +20,8 @@ class Here:
     """All that is known there, each worked out once.
 
     `X` of shape (N m, n). `times`, of shape (N - 1,): The mesh, as unknowns that the equations pin to that of the grid:
-    a point of a path then says all that is to be known of its orbit. `reference`, of shape (N, m, n): The derivative of the orbit in the phase condition, in the
-    units of `scale` twice.
+    a point of a path then says all that is to be known of its orbit. `reference`, of shape (N, m, n): The derivative of
+    the orbit in the phase condition, divided by the square of `scale`.
     """
 
     field: Field
@@ -44,7 +44,7 @@ class Here:
 
     @cached_property
     def flow(self) -> Array:
-        """f at the Gauss points, shape (N, m, n)."""
+        """F at the Gauss points, shape (N, m, n)."""
         return np.asarray(self.field(self._columns, self.p), dtype=float).T.reshape(self._values.shape)
 
     @cached_property
@@ -124,7 +124,9 @@ class Here:
         rows = np.stack([np.append(self._phase_row, [0.0, 0.0]), np.append(border[:size], border[-1])]) * scale
         sizes = np.abs(rows).max(axis=1)
         sizes = np.where(sizes > 0.0, sizes, 1.0)
-        return Bordered(condensed, rows / sizes[:, None], sizes, scale, equations, border[size:-1]).factored()
+        system = Bordered(condensed, rows / sizes[:, None], sizes, scale, equations, border[size:-1])
+        assert system.small
+        return system
 
     @cached_property
     def multipliers(self) -> Multipliers:
@@ -133,8 +135,45 @@ class Here:
         return Multipliers(A, B)
 
     def mode(self, mu: float) -> Array:
-        """The solution of the linearised equation that belongs to the multiplier nearest to a number, shape (N m, n)."""
+        """How the linearised equation moves the orbit along the multiplier nearest to a number, shape (N m, n)."""
         x = self.multipliers.vector(mu)
         blocks = self._condensed[0]
         ends = np.stack([x, mu * x])[:, :, None]
         return blocks.backward(ends, np.zeros((blocks.k, 1)))[:, :, 0] * self.scale
+
+    @property
+    def amplitude(self) -> float:
+        """The mean deviation from the mean, in units of the scale."""
+        X, weights = self.X / self.scale, np.zeros(len(self.X))
+        np.add.at(weights, self.grid.index, self.grid.quadrature @ self.grid.value)
+        return float(np.sqrt(np.abs(weights @ (X - weights @ X) ** 2).mean()))
+
+    @property
+    def phase_cosine(self) -> float:
+        """The cosine between the velocity and that of the orbit in the phase condition, in the mean over the period."""
+        root = np.sqrt(self.grid.quadrature)[:, :, None]
+        own, reference = root * self.flow / self.scale, root * self.reference * self.scale
+        return float((own * reference).sum() / (np.linalg.norm(own) * np.linalg.norm(reference)))
+
+    @property
+    def doubling(self) -> float:
+        """As of the multipliers."""
+        return self.multipliers.doubling
+
+    @property
+    def torus(self) -> float:
+        """As of the multipliers."""
+        return self.multipliers.torus
+
+    def observed(self) -> dict[str, float]:
+        """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""
+        (low, high), values = self.grid.extremes(self.X), self.multipliers.values
+        found = {"period": self.T}
+        for k in range(self.scale.size):
+            found |= {f"min {k}": float(low[k]), f"max {k}": float(high[k])}
+        return found | {
+            "unstable": float(self.multipliers.unstable),
+            "multiplier": float(np.abs(values[1:]).max(initial=0.0)),
+            "trivial": float(np.abs(values[0] - 1.0)),
+            "error": self.grid.error(self.X / self.scale),
+        }

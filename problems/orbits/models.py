@@ -11,7 +11,7 @@ from problems.orbits.orbit import PeriodicOrbit
 
 
 def normal_form(z: Any, p: Any, second: Any = 1.0) -> Array:
-    """r' = r (p + second r^2 - r^4), theta' = 1: orbits of period 2 pi, and a fold of cycles at p = -second^2 / 4."""
+    """R' = r (p + second r^2 - r^4), theta' = 1: orbits of period 2 pi, and a fold of cycles at p = -second^2 / 4."""
     x, y = z
     r = x * x + y * y
     a = p + second * r - r * r

@@ -8,61 +8,24 @@ from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import Factory, evolve, field, frozen
+from attrs import Factory, evolve, field, fields_dict, frozen
 
 from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, integer, real_vector
 from continuation.arrays import Array
-from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.curves.arguments import as_point
 from continuation.evaluation.derivatives import sizes
-from continuation.events import Event, Monitor
-from continuation.metric import Weighted, norm
+from continuation.events import Event
+from continuation.metric import Weighted
 from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
 from problems.options import quiet
+from problems.orbits.arguments import as_mesh, as_table, beside_of, check_times, spread
 from problems.orbits.blocks import Bordered
-from problems.orbits.field import Field, field_of
+from problems.orbits.equations import TRANSVERSAL, Equations, Watch
+from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
-from problems.orbits.here import Here
 from problems.orbits.multipliers import Multipliers
-from problems.orbits.starts import circle_at, one_period
-
-KEPT = 4
-"""Points that are kept: a step's residual, factorisation, events and what is observed there ask for the same one."""
-
-NEWTON, CONVERGED, NEARLY = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
-"""From a guess, whose first increments may grow; the last increment in the metric of the orbit, and the one below which
-increments that no longer halve are round-off."""
-
-ADAPTED = 4
-"""Meshes of a simulation: from the way that it goes to equal errors, after which nothing changes (van der Pol's)."""
-
-TRANSVERSAL = 0.1
-"""The cosine between the orbit's velocity and that of the reference, in the mean over a period, below which the phase
-condition no longer tells orbits apart that differ in phase: a digit is lost to it there."""
-
-
-def _table(value: Any) -> Array:
-    found = real_vector("states", value)
-    if found.ndim != 2 or not np.isfinite(found).all():
-        raise complain(ValueError, "states", "a table of finite numbers, a row for each node", value)
-    return found
-
-
-def _mesh(value: Any) -> Array:
-    found = np.linspace(0.0, 1.0, value + 1) if isinstance(value, int) and value > 1 else real_vector("mesh", value)
-    if found.ndim != 1 or found.size < 3 or found[0] != 0.0 or found[-1] != 1.0 or not (np.diff(found) > 0.0).all():
-        raise complain(ValueError, "mesh", "a number of intervals, at least 2, or times that rise from 0 to 1", value)
-    return found
-
-
-def _second(beside: dict[str, Any]) -> tuple[Any, ...]:
-    return () if beside.get("second") is None else (beside["second"],)
-
-
-def _spread(states: Array) -> Array:
-    """Standard deviations; of what stands still its own size, or 1."""
-    spread = states.std(axis=0)
-    return np.where(spread > 0.0, spread, sizes(states[0]))
+from problems.orbits.newton import newton
+from problems.orbits.starts import ADAPTED, circle_at, one_period
 
 
 @frozen(eq=False, slots=False)
@@ -71,8 +34,8 @@ class PeriodicOrbit:
 
     X is a continuous piecewise polynomial of degree m on N intervals that satisfies the equation at the m Gauss points
     of each. Its error is of order m + 1 in their lengths, of order 2 m at the mesh points and in the period. The
-    unknowns are X at the N m nodes, one node after another, T, and the N - 1 inner points of the mesh, which equations of
-    their own keep where they are: so a point of a path, in a file too, says what orbit it is. The path's parameter is p.
+    unknowns are X at the N m nodes, one after another, T, and the N - 1 inner points of the mesh, which equations of
+    their own keep where they are: a point of a path, in a file too, says what orbit it is. The path's parameter is p.
     The phase condition is int <X, X_ref'> = 0, with X_ref the orbit that is given.
 
     Make one by `from_hopf`, `from_solution`, `from_orbit` or `doubled`.
@@ -108,17 +71,18 @@ class PeriodicOrbit:
     """
 
     f: Callable[..., Any]
-    states: Array = field(converter=_table, repr=False)
+    states: Array = field(converter=as_table, repr=False)
     period: float = field(validator=POSITIVE_FINITE)
     parameter: float = field(validator=FINITE)
-    mesh: Array = field(default=20, converter=_mesh, repr=False)
+    mesh: Array = field(default=20, converter=as_mesh, repr=False)
     degree: int = field(default=4, validator=integer(2))
     jacobian_of_f: Callable[..., Any] | None = field(default=None, alias="jacobian")
     second: Any = None
     smallest: float = field(default=1e-3, validator=POSITIVE_FINITE)
-    scale: Array = field(default=Factory(lambda self: _spread(self.states), takes_self=True), converter=np.asarray, repr=False)
+    scale: Array = field(
+        default=Factory(lambda self: spread(self.states), takes_self=True), converter=np.asarray, repr=False
+    )
     heading: Array | None = field(default=None, repr=False)
-    _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
     target: ClassVar[None] = None
     renewed_at: ClassVar[tuple[str, ...]] = ("phase condition fails",)
     parameter_name: ClassVar[str] = "p"
@@ -130,30 +94,18 @@ class PeriodicOrbit:
             raise ValueError(f"states: expected {wanted} rows, one a node, found {len(self.states)}")
         if self.scale.shape != self.states.shape[1:] or not (self.scale > 0.0).all():
             raise complain(ValueError, "scale", f"{self.states.shape[1]} positive numbers", self.scale)
-        assert self.field
+        assert self.equations
 
     def __getstate__(self) -> dict[str, Any]:
         """What is worked out again when it is needed is left out."""
-        return {a.name: getattr(self, a.name) for a in self.__attrs_attrs__ if a.name != "_recent"}  # type: ignore[attr-defined]
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Nothing is known of any point."""
-        self.__dict__.update(state, _recent={})
+        return {name: getattr(self, name) for name in fields_dict(PeriodicOrbit)}
 
     @cached_property
-    def grid(self) -> Grid:
-        """The mesh, and the polynomials on it."""
-        return Grid(self.mesh, self.degree)
-
-    @cached_property
-    def field(self) -> Field:
-        """f at many points, and its derivatives."""
+    def equations(self) -> Equations:
+        """The same as equations for other unknowns."""
         beside = () if self.second is None else (self.second,)
-        return field_of(self.f, self.jacobian_of_f, beside, self.states[0], self.scale, self.parameter)
-
-    @cached_property
-    def _reference(self) -> Array:
-        return self.grid.slopes(self.states) / self.scale**2
+        f = field_of(self.f, self.jacobian_of_f, beside, self.states[0], self.scale, self.parameter)
+        return Equations(f, Grid(self.mesh, self.degree), self.scale, self.states)
 
     @classmethod
     def from_hopf(
@@ -176,21 +128,19 @@ class PeriodicOrbit:
 
         Raises
         ------
-        ValueError
-            If it is no Hopf point.
-        ArithmeticError
-            If Newton's method does not reach the orbit.
+        ValueError, ArithmeticError
+            If it is no Hopf point, or Newton's method does not reach the orbit.
         """
         x, p = as_point(point)
-        grid = Grid(_mesh(intervals), degree)
-        field = field_of(f, beside.get("jacobian"), _second(beside), x, sizes(x), p)
+        grid = Grid(as_mesh(intervals), degree)
+        field = field_of(f, beside.get("jacobian"), beside_of(beside), x, sizes(x), p)
         circle = circle_at(field, x, p, grid)
         states, mesh = x + radius * circle.motion, grid.mesh
         given = cls(
             f, states, circle.period, p, mesh, degree, smallest=radius / 4.0, scale=circle.scale, heading=circle.motion,
             **beside,
         )  # fmt: skip
-        return given.corrected(circle.motion)
+        return given._corrected(circle.motion)
 
     @classmethod
     def from_solution(
@@ -212,17 +162,14 @@ class PeriodicOrbit:
 
         Raises
         ------
-        ValueError
-            If it does not come back.
-        ArithmeticError
-            If Newton's method does not reach an orbit.
+        ValueError, ArithmeticError
+            If it does not come back, or Newton's method does not reach an orbit.
         """
-        times, states = real_vector("t", t), _table(x)
-        if times.shape != (len(states),) or len(times) < 4 or not (np.diff(times) > 0.0).all():
-            raise complain(ValueError, "t", f"{len(states)} times that rise, one a state", t)
-        field = field_of(f, beside.get("jacobian"), _second(beside), states[-1], _spread(states), parameter)
-        cut, period, grid = one_period(field, times, states, parameter, Grid(_mesh(intervals), degree))
-        found = cls(f, cut, period, parameter, grid.mesh, degree, **beside).corrected()
+        times, states = real_vector("t", t), as_table(x)
+        check_times(times, states)
+        field = field_of(f, beside.get("jacobian"), beside_of(beside), states[-1], spread(states), parameter)
+        cut, period, grid = one_period(field, times, states, parameter, Grid(as_mesh(intervals), degree))
+        found = cls(f, cut, period, parameter, grid.mesh, degree, **beside)._corrected()
         for _ in range(ADAPTED):
             found = cls.from_orbit(found)
         return found
@@ -233,20 +180,11 @@ class PeriodicOrbit:
 
         Parameters
         ----------
-        f : callable
+        f, degree, **beside
             As for the class.
         point : LocatedEvent, Step or (y, p)
         components : int
             n.
-        degree : int
-            That of the path.
-        **beside
-            As for the class.
-
-        Raises
-        ------
-        ValueError
-            If no orbit with such components and of this degree has so many unknowns.
         """
         y, p = as_point(point)
         N, left = divmod(y.size, components * degree + 1)
@@ -269,36 +207,16 @@ class PeriodicOrbit:
             A point of its path, by default its start. The phase condition is that of this orbit from now on.
         intervals, degree : int, optional
             Others than before.
-
-        Raises
-        ------
-        ArithmeticError
-            If Newton's method does not reach the orbit on the new mesh.
         """
-        return orbit.remeshed(at, intervals, degree).corrected()
-
-    def remeshed(self, at: Any = None, intervals: int | None = None, degree: int | None = None) -> PeriodicOrbit:
-        """As `from_orbit`, interpolated only."""
-        return self._remeshed(at, intervals, degree)[0]
+        return orbit._remeshed(at, intervals, degree)[0]._corrected()
 
     def _remeshed(self, at: Any, intervals: int | None, degree: int | None) -> tuple[PeriodicOrbit, Array]:
-        """The orbit, and where its nodes were in the old time.
-
-        It begins where it is fastest: near an equilibrium, where a homoclinic orbit rests, its velocity and what grows
-        along it have nearly one direction, and multipliers cannot be told there.
-        """
+        """The orbit, and where its nodes were in the old time."""
         y, lam = self.start() if at is None else as_point(at)
-        old, X, T = self.unknowns(y)
-        new = old.adapted(X / self.scale, intervals or old.intervals, degree or self.degree)
-        way = np.linalg.norm(np.diff(old.at(X, new.mesh), axis=0) / self.scale, axis=1) / new.widths
-        k = int(np.argmax(way))
-        mesh = np.append(0.0, np.cumsum(np.roll(new.widths, -k)))
-        mesh[-1] = 1.0
-        times = Grid(mesh, new.degree).nodes + new.mesh[k]
-        made = evolve(
-            self, states=old.at(X, times), period=T, parameter=lam, mesh=mesh, degree=new.degree, heading=None
-        )
-        return made, times
+        old, X, T = self.equations.unknowns(y)
+        new, times = old.suited(X / self.scale, intervals or old.intervals, degree or self.degree)
+        given = evolve(self, states=old.at(X, times), mesh=new.mesh, degree=new.degree, heading=None)
+        return evolve(given, period=T, parameter=lam), times
 
     def doubled(self, at: Any = None, radius: float = 1e-2) -> PeriodicOrbit:
         """The orbit of twice the period that leaves a period doubling; trace from `leaving`.
@@ -310,42 +228,26 @@ class PeriodicOrbit:
         radius : float
             How far from it, in units of `scale`; 0 for the doubling itself on twice the mesh, at which a
             `continuation.Curve` of branch points begins.
-
-        Raises
-        ------
-        ArithmeticError
-            If Newton's method does not reach the orbit.
         """
         y, lam = self.start() if at is None else as_point(at)
-        grid, X, T = self.unknowns(y)
-        mode = evolve(self, mesh=grid.mesh, states=X).here(y, lam).mode(-1.0)
+        grid, X, T = self.equations.unknowns(y)
+        mode = evolve(self, mesh=grid.mesh, states=X).equations.here(y, lam).mode(-1.0)
         mode = mode / np.sqrt(np.mean((mode / self.scale) ** 2))
         twice, way = np.tile(X, (2, 1)), np.concatenate([mode, -mode])
         mesh = np.append(0.5 * grid.mesh[:-1], 0.5 + 0.5 * grid.mesh)
         given = evolve(self, states=twice, period=2.0 * T, parameter=lam, mesh=mesh, heading=way)
-        return given.corrected(way, radius) if radius else given
+        return given._corrected(way, radius) if radius else given
 
-    def corrected(self, heading: Array | None = None, ahead: float = 0.0) -> PeriodicOrbit:
+    def _corrected(self, heading: Array | None = None, ahead: float = 0.0) -> PeriodicOrbit:
         """The orbit by Newton's method, at its parameter, or across a heading at a distance from here."""
         u = np.append(*self.start())
-        border = np.append(np.zeros(u.size - 1), 1.0)
+        weights, border = self.metric.weights(u, u, None), np.append(np.zeros(u.size - 1), 1.0)
         if heading is not None:
             way = heading if heading.shape == u.shape else self._direction(heading)
-            u, border = u + ahead * way, self.metric.weights(u, u, None) * way
-        newton, weights = Iteration(u, NEWTON), self.metric.weights(u, u, None)
-
-        def increment() -> Array:
-            y, lam = newton.x[:-1], float(newton.x[-1])
-            return self.bordered(y, lam, border).solve(-self.residual(y, lam), 0.0)
-
-        def done(size: float) -> bool:
-            return size <= CONVERGED or (size <= NEARLY and newton.ratio >= HALVING)
-
-        with np.errstate(all="ignore"):
-            if not newton.run(increment, lambda step: norm(weights, step), done):
-                raise ArithmeticError(f"Newton's method does not reach a periodic orbit near p = {self.parameter:.6g}")
-        _, X, T = self.unknowns(newton.x[:-1])
-        return evolve(self, states=X, period=T, parameter=float(newton.x[-1]))
+            u, border = u + ahead * way, weights * way
+        u = newton(self, u, weights, border)
+        _, X, T = self.equations.unknowns(u[:-1])
+        return evolve(self, states=X, period=T, parameter=float(u[-1]))
 
     def start(self) -> tuple[Array, float]:
         """The given orbit and its period, and the parameter."""
@@ -353,146 +255,80 @@ class PeriodicOrbit:
 
     @property
     def period_index(self) -> int:
-        """Where T is among the unknowns: ``TargetValue(50.0, component=orbit.period_index)``."""
+        """Where T is among the unknowns: for ``TargetValue(50.0, component=orbit.period_index)``."""
         return self.states.size
-
-    def unknowns(self, y: Array) -> tuple[Grid, Array, float]:
-        """What the unknowns say: the grid, X of shape (N m, n), and T.
-
-        Parameters
-        ----------
-        y : ndarray, shape (N m n + N,)
-        """
-        size = self.states.size
-        mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
-        grid = self.grid if np.array_equal(mesh, self.mesh) else Grid(mesh, self.degree)
-        return grid, y[:size].reshape(self.states.shape), float(y[size])
-
-    def here(self, y: Array, lam: float) -> Here:
-        """The equations at a point.
-
-        Parameters
-        ----------
-        y : ndarray, shape (N m n + N,)
-        lam : float
-        """
-        key = np.append(y, lam).tobytes()
-        if key not in self._recent:
-            y, size = np.array(y, dtype=float), self.states.size
-            X, T, times = y[:size].reshape(self.states.shape), float(y[size]), y[size + 1 :]
-            here = Here(self.field, self.grid, self.scale, self._reference, X, T, times, float(lam))
-            self._recent[key] = here
-            if len(self._recent) > KEPT:
-                del self._recent[next(iter(self._recent))]
-        return self._recent[key]
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """X' - T f(X, p) at the Gauss points, and the phase condition; shape (N m n + N,)."""
         if not isinstance(y, np.ndarray) or y.dtype == object:
             raise TypeError("the residual of periodic orbits runs on arrays of floats alone")
-        return self.here(y, lam).residual()
+        return self.equations.here(y, lam).residual()
 
     @quiet
     def differential(self, y: Array, lam: float, v: Array) -> Array:
         """The derivative applied to a direction."""
-        return self.here(y, lam).applied(v)
+        return self.equations.here(y, lam).applied(v)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[sp.csc_array, Array]:
         """The derivative by (X, T), sparse, and by p."""
-        return self.here(y, lam).matrices()
+        return self.equations.here(y, lam).matrices()
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> Bordered:
         """The derivative with a border, factored."""
-        return self.here(y, lam).bordered(border)
+        return self.equations.here(y, lam).bordered(border)
 
     def multipliers(self, y: Array, lam: float) -> Multipliers:
-        """The Floquet multipliers of an orbit.
+        """The Floquet multipliers of an orbit: of unknowns y, at a parameter.
 
         Parameters
         ----------
-        y : ndarray, shape (N m n + N,)
-        lam : float
+        y, lam : ndarray and float
         """
-        return self.here(y, lam).multipliers
+        return self.equations.here(y, lam).multipliers
 
     def at(self, y: Array, t: Any) -> Array:
         """The orbit at times of [0, 1], shape (len(t), n).
 
         Parameters
         ----------
-        y : ndarray, shape (N m n + N,)
-            The unknowns.
-        t : array_like
-            In periods.
+        y, t : array_like
+            The unknowns, and times in periods.
         """
-        grid, X, _ = self.unknowns(y)
+        grid, X, _ = self.equations.unknowns(y)
         return grid.at(X, np.asarray(t, dtype=float))
 
     def observe(self, y: Array, lam: float) -> dict[str, float]:
         """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""
-        here = self.here(y, lam)
-        low, high = self.grid.extremes(here.X)
-        values = here.multipliers.values
-        found = {"period": here.T}
-        for k in range(self.scale.size):
-            found |= {f"min {k}": float(low[k]), f"max {k}": float(high[k])}
-        second = values[1] if values.size > 1 else 0.0
-        return found | {
-            "unstable": float(here.multipliers.unstable),
-            "multiplier": float(np.abs(second)),
-            "trivial": float(np.abs(values[0] - 1.0)),
-            "error": self.grid.error(here.X / self.scale),
-        }
+        return self.equations.here(y, lam).observed()
 
     @property
     def events(self) -> tuple[Event, ...]:
         """Period doublings and tori; where orbits shrink to a Hopf point, and where the phase condition fails."""
         return (
-            Monitor(self._doubling, "period doubling"),
-            Monitor(self._torus, "torus"),
-            Monitor(self._amplitude, "Hopf point", 1, -1),
-            Monitor(self._phase, "phase condition fails", 1),
+            Watch(self, "doubling", "period doubling"),
+            Watch(self, "torus", "torus"),
+            Watch(self, "amplitude", "Hopf point", self.smallest, 1, -1),
+            Watch(self, "phase_cosine", "phase condition fails", TRANSVERSAL, 1),
         )
 
-    def _doubling(self, u: Array, v: Array) -> float:
-        return self.multipliers(u[:-1], float(u[-1])).doubling
-
-    def _torus(self, u: Array, v: Array) -> float:
-        return self.multipliers(u[:-1], float(u[-1])).torus
-
-    def _amplitude(self, u: Array, v: Array) -> float:
-        """The mean deviation from the mean, beside the smallest that is an orbit."""
-        X = self.unknowns(u[:-1])[1] / self.scale
-        weights = np.zeros(len(X))
-        np.add.at(weights, self.grid.index, self.grid.quadrature @ self.grid.value)
-        from_mean = X - weights @ X
-        return float(np.log(np.sqrt(np.abs(weights @ from_mean**2).mean()) / self.smallest))
-
-    def _phase(self, u: Array, v: Array) -> float:
-        here = self.here(u[:-1], float(u[-1]))
-        weights = self.grid.quadrature[:, :, None] + np.zeros_like(here.flow)
-        velocity, reference = here.flow / self.scale, self._reference * self.scale
-        sizes = [float(np.sqrt((weights * one**2).sum())) for one in (velocity, reference)]
-        return float((weights * velocity * reference).sum()) / (sizes[0] * sizes[1]) - TRANSVERSAL
-
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:
-        """This orbit on a mesh that suits it, with itself in the phase condition; see `continuation.renewal`."""
-        old, size = self.unknowns(u[:-1])[0], self.states.size
+        """An orbit of the path on a mesh that suits it, in its own phase condition; see `continuation.renewal`."""
+        old, size = self.equations.unknowns(u[:-1])[0], self.states.size
         given, times = self._remeshed((u[:-1], float(u[-1])), None, None)
         way = old.at(v[:size].reshape(self.states.shape), times)
         tangent = np.concatenate([way.ravel(), v[size : size + 1], np.zeros(self.mesh.size - 2), v[-1:]])
-        new = given.corrected(tangent)
+        new = given._corrected(tangent)
         return new, np.append(*new.start()), tangent
 
     @cached_property
     def metric(self) -> Weighted:
-        """The mean square of X in units of `scale`, T beside its size, and p by how far it moves X by that in a period."""
+        """The mean square of X in units of `scale`, T beside its size, p by how far it moves X by that in a period."""
         X = np.tile(self.scale, len(self.states)) * np.sqrt(self.states.size)
         size = np.concatenate([X, [self.period], np.ones(self.mesh.size - 2)])
-        moved = self.field.derivatives(self.states.T, self.parameter)[1] / self.scale
+        moved = self.equations.flow.derivatives(self.states.T, self.parameter)[1] / self.scale
         reach = self.period * float(np.sqrt(np.mean(moved**2)))
         return Weighted(size**-2.0, reach**2 if reach > 0.0 else 1.0)
 
@@ -510,4 +346,4 @@ class PeriodicOrbit:
     @property
     def references(self) -> tuple[str, ...]:
         """Of collocation, of its linear algebra, and of derivatives where f has none."""
-        return (DE_BOOR_SWARTZ, WRIGHT, *self.field.references)
+        return (DE_BOOR_SWARTZ, WRIGHT, *self.equations.flow.references)

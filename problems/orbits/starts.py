@@ -28,6 +28,10 @@ MISSED = 0.3
 """A best return that misses by more is no period: the simulation has not settled."""
 
 
+ADAPTED = 4
+"""Meshes of a simulation: from the way that it goes to equal errors, after which nothing changes (van der Pol's)."""
+
+
 @frozen(eq=False)
 class Circle:
     """The orbits about a Hopf point to first order: x + radius Re (q exp(2 pi i t)), with q in units of `scale`.

@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 
 import continuation
 from continuation import TargetValue
-from problems.orbits import PeriodicOrbit, brusselator, normal_form, roessler, van_der_pol
+from problems.orbits import PeriodicOrbit
+from problems.orbits.models import brusselator, normal_form, roessler, van_der_pol
 
 from .util import bent, by_hand, of_sizes, one_by_one, simulated
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from continuation.linear import SingularError
-from problems.orbits import PeriodicOrbit, lorenz, normal_form
+from problems.orbits import PeriodicOrbit
+from problems.orbits.grid import Grid
+from problems.orbits.models import lorenz, normal_form
 
 from .util import two_circles
 
@@ -53,8 +55,7 @@ def test_small_multipliers_keep_their_digits_beside_large_ones():
         a = 1.0 - u * u - v * v
         return np.stack([x, -y, a * u - v, a * v + u])
 
-    given = PeriodicOrbit(f, np.zeros((80, 4)), 2.0 * np.pi, 0.0, 20, 4, scale=np.ones(4))
-    t = 2.0 * np.pi * given.grid.nodes
+    t = 2.0 * np.pi * Grid(np.linspace(0.0, 1.0, 21), 4).nodes
     states = np.stack([0.0 * t, 0.0 * t, np.cos(t), np.sin(t)], axis=1)
     circle = PeriodicOrbit(f, states, 2.0 * np.pi, 0.0, 20, 4, scale=np.ones(4))
     found = np.sort(circle.multipliers(*circle.start()).values.real)

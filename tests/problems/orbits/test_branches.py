@@ -5,7 +5,8 @@ import pytest
 
 import continuation
 from continuation import Budget, Curve, Family, Kind, TargetValue
-from problems.orbits import PeriodicOrbit, brusselator, normal_form, roessler
+from problems.orbits import PeriodicOrbit
+from problems.orbits.models import brusselator, normal_form, roessler
 
 from .util import simulated, two_circles
 
@@ -25,7 +26,7 @@ def test_a_branch_leads_from_the_hopf_point_of_a_path_of_equilibria():
 def test_a_torus_where_a_pair_crosses_the_unit_circle():
     t = 2.0 * np.pi * np.arange(80) / 80
     states = np.stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t], axis=1)
-    orbit = PeriodicOrbit(two_circles, states, 2.0 * np.pi, -0.1, 20, 4, scale=np.ones(4)).corrected()
+    orbit = PeriodicOrbit(two_circles, states, 2.0 * np.pi, -0.1, 20, 4, scale=np.ones(4))
     path = continuation.trace(orbit, direction=1, events=[TargetValue(0.1)])
     torus, _ = path.events
     assert torus.name == "torus"

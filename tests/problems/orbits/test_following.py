@@ -6,7 +6,8 @@ import pytest
 import continuation
 from continuation import Budget, TargetValue
 from continuation.archive import open_archive, resume
-from problems.orbits import PeriodicOrbit, from_model, lorenz, normal_form
+from problems.orbits import PeriodicOrbit, from_model
+from problems.orbits.models import lorenz, normal_form
 
 
 def test_orbits_of_lorenz_up_to_period_50():
@@ -62,7 +63,8 @@ def test_a_path_on_which_the_phase_condition_fails_says_so():
 def test_what_cannot_be_meant_is_refused():
     good = {"states": np.ones((80, 2)), "period": 1.0, "parameter": 0.0}
     for wrong, name in [
-        ({"states": np.ones((79, 2))}, "states"), ({"states": [1.0]}, "states"), ({"states": np.full((80, 2), np.nan)}, "states"),
+        ({"states": np.ones((79, 2))}, "states"), ({"states": [1.0]}, "states"),
+        ({"states": np.full((80, 2), np.nan)}, "states"),
         ({"period": 0.0}, "period"), ({"parameter": np.nan}, "parameter"), ({"mesh": 1}, "mesh"),
         ({"mesh": [0.0, 0.5, 0.5, 1.0]}, "mesh"), ({"degree": 1}, "degree"), ({"scale": [1.0]}, "scale"),
         ({"scale": [1.0, 0.0]}, "scale"), ({"jacobian": 3}, "jacobian"), ({"smallest": 0.0}, "smallest"),

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from problems.orbits import normal_form
+from problems.orbits.models import normal_form
 
 
 def bent(z, p):
