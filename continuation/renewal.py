@@ -134,19 +134,18 @@ def follow(
     paths: list[Path] = []
     with nullcontext() if archive is None else PathLog(as_file("archive", archive)) as log:
         while True:
-            part = {**asked, "budget": evolve(given, steps=min(every, left))}
-            path = trace(homotopies[-1], archive=log, **part)
+            steps = min(every, left)
+            path = trace(homotopies[-1], archive=log, **{**asked, "budget": evolve(given, steps=steps)})
             paths.append(path)
             left -= path.counts.accepted
-            due = path.status is Status.BUDGET_EXHAUSTED and path.counts.accepted >= min(every, left + every)
+            due = path.status is Status.BUDGET_EXHAUSTED and path.counts.accepted >= steps
             if path.status is Status.STOPPED_AT_EVENT:
-                due = bool(path.events) and path.events[-1].name in homotopies[-1].renewed_at
+                due = path.events[-1].name in homotopies[-1].renewed_at
             if not due or left <= 0:
                 return Followed(tuple(homotopies), tuple(paths))
             last = path.steps[-1]
-            renewed, u, v = homotopies[-1].renewed(last.u, last.tangent)
+            renewed, *asked["start"] = homotopies[-1].renewed(last.u, last.tangent)
             homotopies.append(renewed)
-            asked["start"] = (u, v)
             controller: Any = asked.get("controller") or (asked.get("preset") or DEFAULT).controller
             # A trace begins with short steps; this one goes on.
             asked["controller"] = evolve(controller, bounds=evolve(controller.bounds, initial=last.step_length))

@@ -126,6 +126,6 @@ def following(first: Sequence[Step], second: Sequence[Step], events: Sequence[Lo
 def shifted(a: Step, second: Sequence[Step], events: Sequence[LocatedEvent]) -> Pieces:
     """The steps of a path behind its start, and its events, counted on from a step at that start."""
     return (
-        [evolve(s, index=s.index + a.index, arclength=s.arclength + a.arclength) for s in list(second)[1:]],
-        [evolve(event, step=event.step + a.index, arclength=event.arclength + a.arclength) for event in events],
+        [evolve(s, index=s.index + a.index, arclength=a.arclength + s.arclength) for s in list(second)[1:]],
+        [evolve(event, step=event.step + a.index, arclength=a.arclength + event.arclength) for event in events],
     )

@@ -2,5 +2,6 @@
 
 from problems.orbits.models import from_model
 from problems.orbits.orbit import PeriodicOrbit
+from problems.orbits.pictures import plot_orbits
 
-__all__ = ["PeriodicOrbit", "from_model"]
+__all__ = ["PeriodicOrbit", "from_model", "plot_orbits"]
