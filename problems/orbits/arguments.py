@@ -5,10 +5,30 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from attrs import field, frozen
 
-from continuation.arguments.checks import complain, real_vector
+from continuation.arguments.checks import POSITIVE_FINITE, complain, integer, real_vector
 from continuation.arrays import Array
 from continuation.evaluation.derivatives import sizes
+from problems.orbits.grid import Grid
+
+DEGREES = integer(2, 12)
+"""Below two an interval has nothing inside; beyond twelve powers on an interval, by which values are found between the
+nodes, lose more digits to round-off than another degree gains."""
+
+
+@frozen
+class Asked:
+    """How fine a grid is asked for, and how far from where a branch begins; checked."""
+
+    intervals: int = field(validator=integer(2))
+    degree: int = field(validator=DEGREES)
+    radius: float = field(default=1.0, validator=POSITIVE_FINITE)
+
+    @property
+    def grid(self) -> Grid:
+        """Of equal intervals."""
+        return Grid(np.linspace(0.0, 1.0, self.intervals + 1), self.degree)
 
 
 def as_table(value: Any) -> Array:

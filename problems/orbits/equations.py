@@ -14,11 +14,11 @@ from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 from problems.orbits.here import Here
 
-TRANSVERSAL = 0.1
+PHASE_COSINE = 0.1
 """The cosine between the orbit's velocity and that of the reference, in the mean over a period, below which the phase
 condition no longer tells orbits apart that differ in phase: a digit is lost to it there."""
 
-KEPT = 4
+ORBITS_KEPT = 4
 """Points that are kept: a step's residual, factorisation, events and what is observed there ask for the same one."""
 
 
@@ -50,7 +50,7 @@ class Equations:
             y, size = np.array(y, dtype=float), self.states.size
             X, T, times = y[:size].reshape(self.states.shape), float(y[size]), y[size + 1 :]
             self._recent[key] = Here(self.flow, self.grid, self.scale, self._reference, X, T, times, float(lam))
-            if len(self._recent) > KEPT:
+            if len(self._recent) > ORBITS_KEPT:
                 del self._recent[next(iter(self._recent))]
         return self._recent[key]
 

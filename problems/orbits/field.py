@@ -14,10 +14,10 @@ from continuation.arrays import Array
 from continuation.citation.bibliography import SQUIRE_TRAPP
 from continuation.evaluation.derivatives import AGREEMENT, sizes
 
-TINY = 1e-200
+COMPLEX_STEP = 1e-200
 """The complex step: its square is below everything (Squire and Trapp 1998)."""
 
-REACH = 6e-6
+CENTRAL_STEP = 6e-6
 """Of central differences, beside the size of a component: the third root of round-off."""
 
 
@@ -57,20 +57,20 @@ class Field:
             by_x, by_p = by_x.reshape(n, n, -1), by_p.reshape(n, -1)
             return np.moveaxis(np.broadcast_to(by_x, (n, n, k)), 2, 0), np.broadcast_to(by_p, (n, k)).T
         copies = np.repeat(x[:, :, None], n, axis=2)
-        h = REACH * sizes(np.abs(x).max(axis=1))
-        steps = np.eye(n)[:, None, :] * (TINY * 1j if self.complexes else h)
+        h = CENTRAL_STEP * sizes(np.abs(x).max(axis=1))
+        steps = np.eye(n)[:, None, :] * (COMPLEX_STEP * 1j if self.complexes else h)
         whole = (copies + steps).reshape(n, -1)
         if self.complexes:
-            by_x = self(whole, p).imag / TINY
-            by_p = self(x, complex(p, TINY)).imag / TINY
+            by_x = self(whole, p).imag / COMPLEX_STEP
+            by_p = self(x, complex(p, COMPLEX_STEP)).imag / COMPLEX_STEP
         else:
             by_x = (self(whole, p) - self((copies - steps).reshape(n, -1), p)) / np.tile(2.0 * h, k)
-            step = REACH * float(sizes(np.array([p]))[0])
+            step = CENTRAL_STEP * float(sizes(np.array([p]))[0])
             by_p = (self(x, p + step) - self(x, p - step)) / (2.0 * step)
         return np.moveaxis(by_x.reshape(n, k, n), 1, 0), by_p.T
 
 
-ASIDE = 0.1
+TRIED_ASIDE = 0.1
 """How far from a point, in its components' sizes, f is tried: at an equilibrium what is not linear is not seen."""
 
 
@@ -82,7 +82,9 @@ def field_of(function: Any, jacobian: Any, beside: tuple[Any, ...], point: Array
     for name, given in (("f", function), ("jacobian", jacobian)):
         if not callable(given) and (name == "f" or given is not None):
             raise complain(TypeError, name, "a function of (x, p)", given)
-    x = point[:, None] + ASIDE * size[:, None] * np.cos(np.outer(np.arange(1.0, point.size + 1.0), np.arange(3.0)))
+    x = point[:, None] + TRIED_ASIDE * size[:, None] * np.cos(
+        np.outer(np.arange(1.0, point.size + 1.0), np.arange(3.0))
+    )
     single = np.asarray(function(x[:, 0].copy(), p, *beside))
     if single.shape != (len(x),) or single.dtype.kind not in "fiu":
         raise complain(ValueError, "f", f"{len(x)} real numbers, as x has", single)

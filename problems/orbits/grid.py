@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 
-LEVEL = 0.05
+MESH_FLOOR = 0.05
 """Of the mean density of a mesh, added everywhere: no interval is longer than twenty on the average, so that an orbit
 that comes to move where it stood still is seen. Measured on van der Pol's, mu = 10, 40 intervals: the period's error is
 1e-7 with it, 1e-6 with twice and 3e-6 with four times as much."""
 
 
-BETWEEN = 8
+BETWEEN_NODES = 8
 """Times between neighbouring nodes at which extreme values are looked for: a parabola through three of them is off by
 the fourth power of their distance."""
 
@@ -105,7 +105,7 @@ class Grid:
     def extremes(self, X: Array) -> tuple[Array, Array]:
         """The least and the largest value of each component over the period."""
         edges = np.append(self.nodes, 1.0)
-        t = (edges[:-1, None] + np.diff(edges)[:, None] * np.arange(BETWEEN) / BETWEEN).ravel()
+        t = (edges[:-1, None] + np.diff(edges)[:, None] * np.arange(BETWEEN_NODES) / BETWEEN_NODES).ravel()
         X = self.at(X, t)
         found = []
         for sign in (-1.0, 1.0):
@@ -149,7 +149,7 @@ class Grid:
         what grows along it have nearly one direction, and multipliers cannot be told there.
         """
         density = self.highest(X) ** (1.0 / (self.degree + 1))
-        density = density + LEVEL * float(density @ self.widths) if density.any() else np.ones_like(density)
+        density = density + MESH_FLOOR * float(density @ self.widths) if density.any() else np.ones_like(density)
         grown = np.append(0.0, np.cumsum(density * self.widths))
         mesh = np.interp(np.linspace(0.0, grown[-1], intervals + 1), grown, self.mesh)
         widths = np.diff(mesh)

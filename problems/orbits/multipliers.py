@@ -10,20 +10,20 @@ from scipy.linalg import eig
 
 from continuation.arrays import Array
 
-SAME_ANGLE = 1e-4
+FOLD_ANGLE = 1e-4
 """A pair with less than this for its argument belongs to a fold of cycles, not to a torus: there two multipliers are 1,
 and round-off makes a pair of them whose argument is its root."""
 
-UNSTABLE = 1e-6
+OUTSIDE_CIRCLE = 1e-6
 """A multiplier counts as unstable where its modulus is above 1 by more: at the folds of a family, where it is 1, it is
 known to the root of round-off, as the one that is always there is."""
 
 
-INFINITE = 1e-300
+LEAST_DENOMINATOR = 1e-300
 """The denominator of a multiplier that is beyond all numbers."""
 
 
-TELLING = 0.5
+TRIVIAL_FOUND = 0.5
 """Multipliers of which the first, that is 1, is off by more are not known."""
 
 
@@ -43,7 +43,7 @@ class Multipliers:
     def values(self) -> Array:
         """All of them, that of the phase, which is 1, first; shape (n,), complex."""
         alpha, beta = self._pencil[0]
-        found = alpha / np.where(np.abs(beta) < INFINITE, INFINITE, beta)
+        found = alpha / np.where(np.abs(beta) < LEAST_DENOMINATOR, LEAST_DENOMINATOR, beta)
         first = int(np.argmin(np.abs(found - 1.0)))
         rest = np.delete(found, first)
         return np.append(found[first], rest[np.argsort(-np.abs(rest))])
@@ -51,7 +51,7 @@ class Multipliers:
     @property
     def unstable(self) -> int:
         """How many lie outside of the unit circle."""
-        return int((np.abs(self.values[1:]) > 1.0 + UNSTABLE).sum())
+        return int((np.abs(self.values[1:]) > 1.0 + OUTSIDE_CIRCLE).sum())
 
     @property
     def doubling(self) -> float:
@@ -60,7 +60,7 @@ class Multipliers:
         The first, 1, is left out, since orbits that are nearly homoclinic have another that is larger than the inverse
         of round-off, beside which it is lost.
         """
-        if abs(self.values[0] - 1.0) > TELLING:
+        if abs(self.values[0] - 1.0) > TRIVIAL_FOUND:
             return 1.0
         rest = self.values[1:]
         return float(np.prod((rest + 1.0) / np.hypot(1.0, np.abs(rest))).real)
@@ -68,9 +68,9 @@ class Multipliers:
     @property
     def torus(self) -> float:
         """Of the pair nearest to the unit circle how far outside it lies; -1 where there is no pair."""
-        if abs(self.values[0] - 1.0) > TELLING:
+        if abs(self.values[0] - 1.0) > TRIVIAL_FOUND:
             return -1.0
-        pairs = self.values[(self.values.imag > 0.0) & (np.angle(self.values) > SAME_ANGLE)]
+        pairs = self.values[(self.values.imag > 0.0) & (np.angle(self.values) > FOLD_ANGLE)]
         if not pairs.size:
             return -1.0
         outside = np.log(np.abs(pairs))

@@ -10,7 +10,7 @@ from continuation.arrays import Array
 from continuation.contraction import HALVING, Contraction, Iteration
 from continuation.metric import norm
 
-NEWTON, CONVERGED, NEARLY = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
+ORBIT_NEWTON, ORBIT_FOUND, ORBIT_NEAR = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
 """From a guess, whose first increments may grow; the last increment in the metric of the orbit, and the one below which
 increments that no longer halve are round-off."""
 
@@ -20,7 +20,7 @@ def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
 
     Raises `ArithmeticError` if the method comes to none.
     """
-    found = Iteration(u, NEWTON)
+    found = Iteration(u, ORBIT_NEWTON)
 
     def increment() -> Array:
         y, lam = found.x[:-1], float(found.x[-1])
@@ -28,7 +28,7 @@ def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
         return step
 
     def done(size: float) -> bool:
-        return size <= CONVERGED or (size <= NEARLY and found.ratio >= HALVING)
+        return size <= ORBIT_FOUND or (size <= ORBIT_NEAR and found.ratio >= HALVING)
 
     with np.errstate(all="ignore"):
         if not found.run(increment, lambda step: norm(weights, step), done):

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import Factory, evolve, field, fields_dict, frozen
 
-from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, integer, real_vector
+from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, real_vector
 from continuation.arrays import Array
 from continuation.curves.arguments import as_point
 from continuation.evaluation.derivatives import sizes
@@ -18,14 +18,14 @@ from continuation.events import Event
 from continuation.metric import Weighted
 from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
 from problems.options import quiet
-from problems.orbits.arguments import as_mesh, as_table, beside_of, check_times, spread
+from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, beside_of, check_times, spread
 from problems.orbits.blocks import Bordered
-from problems.orbits.equations import TRANSVERSAL, Equations, Watch
+from problems.orbits.equations import PHASE_COSINE, Equations, Watch
 from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
 from problems.orbits.multipliers import Multipliers
 from problems.orbits.newton import newton
-from problems.orbits.starts import ADAPTED, circle_at, one_period
+from problems.orbits.starts import MESHES, circle_at, one_period
 
 
 @frozen(eq=False, slots=False)
@@ -75,7 +75,7 @@ class PeriodicOrbit:
     period: float = field(validator=POSITIVE_FINITE)
     parameter: float = field(validator=FINITE)
     mesh: Array = field(default=20, converter=as_mesh, repr=False)
-    degree: int = field(default=4, validator=integer(2))
+    degree: int = field(default=4, validator=DEGREES)
     jacobian_of_f: Callable[..., Any] | None = field(default=None, alias="jacobian")
     second: Any = None
     smallest: float = field(default=1e-3, validator=POSITIVE_FINITE)
@@ -131,8 +131,8 @@ class PeriodicOrbit:
         ValueError, ArithmeticError
             If it is no Hopf point, or Newton's method does not reach the orbit.
         """
-        x, p = as_point(point)
-        grid = Grid(as_mesh(intervals), degree)
+        x, p = as_point(point, "point")
+        grid = Asked(intervals, degree, radius).grid
         field = field_of(f, beside.get("jacobian"), beside_of(beside), x, sizes(x), p)
         circle = circle_at(field, x, p, grid)
         states, mesh = x + radius * circle.motion, grid.mesh
@@ -168,9 +168,9 @@ class PeriodicOrbit:
         times, states = real_vector("t", t), as_table(x)
         check_times(times, states)
         field = field_of(f, beside.get("jacobian"), beside_of(beside), states[-1], spread(states), parameter)
-        cut, period, grid = one_period(field, times, states, parameter, Grid(as_mesh(intervals), degree))
+        cut, period, grid = one_period(field, times, states, parameter, Asked(intervals, degree).grid)
         found = cls(f, cut, period, parameter, grid.mesh, degree, **beside)._corrected()
-        for _ in range(ADAPTED):
+        for _ in range(MESHES):
             found = cls.from_orbit(found)
         return found
 
@@ -186,7 +186,7 @@ class PeriodicOrbit:
         components : int
             n.
         """
-        y, p = as_point(point)
+        y, p = as_point(point, "point")
         N, left = divmod(y.size, components * degree + 1)
         if left or N < 2:
             raise ValueError(f"point: expected N ({components} x {degree} + 1) unknowns, found {y.size}")
@@ -311,7 +311,7 @@ class PeriodicOrbit:
             Watch(self, "doubling", "period doubling"),
             Watch(self, "torus", "torus"),
             Watch(self, "amplitude", "Hopf point", self.smallest, 1, -1),
-            Watch(self, "phase_cosine", "phase condition fails", TRANSVERSAL, 1),
+            Watch(self, "phase_cosine", "phase condition fails", PHASE_COSINE, 1),
         )
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:

@@ -11,7 +11,7 @@ from continuation.curves.arguments import as_point
 from continuation.plot.drawing import COLOURS, Axes, axes_or_new, tidy
 from problems.orbits.orbit import PeriodicOrbit
 
-SMOOTH = 500
+DRAWN_TIMES = 500
 """Points of a drawn orbit: beside a screen's 2000 pixels its corners are not seen."""
 
 
@@ -47,11 +47,11 @@ def plot_orbits(
         Without matplotlib.
     """
     axes = axes_or_new(axes)
-    t = np.linspace(0.0, 1.0, SMOOTH)
+    t = np.linspace(0.0, 1.0, DRAWN_TIMES)
     for k, point in enumerate([orbit.start()] if points is None else points):
         y, p = as_point(point)
         X = orbit.at(y, t)
-        across = t * float(y[orbit.period_index]) if over == "t" else X[:, over]
+        across = t * float(y[orbit.period_index]) if isinstance(over, str) else X[:, over]
         axes.plot(across, X[:, of], color=COLOURS[k % len(COLOURS)], label=f"{orbit.parameter_name} = {p:.5g}")
     axes.set_xlabel("t" if over == "t" else f"$x_{over}$")
     axes.set_ylabel(f"$x_{of}$")

@@ -13,22 +13,22 @@ from continuation.evaluation.derivatives import sizes
 from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 
-NEAR_AXIS = 1e-2
+HOPF_PAIR = 1e-2
 """The real part of a Hopf point's pair of eigenvalues, beside its modulus: that of a point known to a few digits."""
 
-STILL = 1e-2
+LEAST_MOTION = 1e-2
 """Of its own size a component counts as moving so far at least: one that does not take part in the oscillation at first
 is not measured by round-off."""
 
-RETURNS = 1e-3
+ONE_RETURN = 1e-3
 """A return within this, in standard deviations, of where the simulation ends is one period: of those that miss by less
 the last one is taken, since a simulation that has settled comes back to round-off after any number of periods."""
 
-MISSED = 0.3
+NO_RETURN = 0.3
 """A best return that misses by more is no period: the simulation has not settled."""
 
 
-ADAPTED = 4
+MESHES = 4
 """Meshes of a simulation: from the way that it goes to equal errors, after which nothing changes (van der Pol's)."""
 
 
@@ -53,13 +53,13 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> Circle:
     values, vectors = np.linalg.eig(matrix)
     off = np.where(values.imag > 0.0, np.abs(values.real) / np.maximum(np.abs(values), np.finfo(float).tiny), np.inf)
     k = int(np.argmin(off))
-    if not off[k] <= NEAR_AXIS:
+    if not off[k] <= HOPF_PAIR:
         found = f"{values[k]:.3g}" if np.isfinite(off[k]) else "none that is not real"
         raise ValueError(f"point: expected a pair of eigenvalues of f_x on the imaginary axis, found {found}")
     q, size = vectors[:, k], sizes(x)
     q = q / np.abs(q / size).max()
     motion = (q * np.exp(2j * np.pi * grid.nodes)[:, None]).real
-    return Circle(motion, float(2.0 * np.pi / values[k].imag), np.maximum(np.abs(q), STILL * size))
+    return Circle(motion, float(2.0 * np.pi / values[k].imag), np.maximum(np.abs(q), LEAST_MOTION * size))
 
 
 def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:
@@ -79,9 +79,9 @@ def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[
     rising = np.flatnonzero((g[:-2] < 0.0) & (g[1:-1] >= 0.0))
     times = np.array([brentq(ahead, t[k], t[k + 1]) for k in rising])
     missed = np.linalg.norm((spline(times) - end) / spread, axis=1) if times.size else np.array([np.inf])
-    if not missed.min() <= MISSED:
+    if not missed.min() <= NO_RETURN:
         raise complain(ValueError, "x", "a simulation that ends on a periodic orbit, twice round", x)
-    begin = float(times[np.flatnonzero(missed <= 2.0 * missed.min() + RETURNS)[-1]])
+    begin = float(times[np.flatnonzero(missed <= 2.0 * missed.min() + ONE_RETURN)[-1]])
     T = float(t[-1]) - begin
     fine = np.linspace(0.0, 1.0, 50 * grid.intervals + 1)
     states = spline(begin + T * fine)
