@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from continuation.path import LocatedEvent, Path, Step
     from continuation.path.interrupted import Interrupted
     from continuation.predictors import Predictor
+    from continuation.renewal import Followed, follow
     from continuation.stability import HopfPoint, Stability
     from continuation.status import Kind, Status
     from continuation.step.guard import Guard
@@ -70,6 +71,7 @@ _HOMES = {
     "path": "LocatedEvent Path Step",
     "predictors": "Predictor",
     "step.presets": "CONSERVATIVE DEFAULT FAST SERIES Preset",
+    "renewal": "Followed follow",
     "stability": "HopfPoint Stability",
     "status": "Kind Status",
     "step.options": "Options",
@@ -100,6 +102,7 @@ __all__ = [
     "EvaluationError",
     "Event",
     "Family",
+    "Followed",
     "Guard",
     "Homotopy",
     "HopfPoint",
@@ -131,6 +134,7 @@ __all__ = [
     "check_jacobian",
     "cite",
     "diagram",
+    "follow",
     "from_casadi",
     "from_functions",
     "from_jax",

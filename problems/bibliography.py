@@ -31,6 +31,16 @@ CHOW_MALLET_PARET_YORKE = """@article{ChowMalletParetYorke1978,
   year = {1978},
 }"""
 
+DE_BOOR_SWARTZ = """@article{deBoorSwartz1973,
+  author = {de Boor, Carl and Swartz, Blair},
+  title = {Collocation at {G}aussian Points},
+  journal = {SIAM Journal on Numerical Analysis},
+  volume = {10},
+  number = {4},
+  pages = {582--606},
+  year = {1973},
+}"""
+
 FREUDENSTEIN_ROTH = """@article{FreudensteinRoth1963,
   author = {Freudenstein, Ferdinand and Roth, Bernard},
   title = {Numerical Solution of Systems of Nonlinear Equations},
@@ -95,4 +105,14 @@ WATSON = """@article{Watson1979,
   number = {4},
   pages = {297--311},
   year = {1979},
+}"""
+
+WRIGHT = """@article{Wright1992,
+  author = {Wright, Stephen J.},
+  title = {Stable Parallel Algorithms for Two-Point Boundary Value Problems},
+  journal = {SIAM Journal on Scientific and Statistical Computing},
+  volume = {13},
+  number = {3},
+  pages = {742--764},
+  year = {1992},
 }"""

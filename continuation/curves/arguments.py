@@ -30,15 +30,15 @@ def as_event(value: Any) -> Any:
     return Kind(kind)
 
 
-def as_point(at: Any) -> tuple[Array, float]:
-    """The pair (y, lam), of numbers."""
+def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
+    """The pair (y, lam), of numbers; `name` is that of the argument."""
     if hasattr(at, "u"):
         at = (at.u[:-1], float(at.u[-1]))
     if not isinstance(at, tuple | list) or len(at) != 2 or np.ndim(at[1]):
-        raise complain(TypeError, "at", "a located event, a step, or a pair (y, lam)", at)
-    y, lam = np.atleast_1d(real_vector("at", at[0])), float(real_vector("at", at[1]))
+        raise complain(TypeError, name, "a located event, a step, or a pair (y, lam)", at)
+    y, lam = np.atleast_1d(real_vector(name, at[0])), float(real_vector(name, at[1]))
     if y.ndim != 1 or not (np.isfinite(y).all() and np.isfinite(lam)):
-        raise complain(ValueError, "at", "finite numbers", at)
+        raise complain(ValueError, name, "finite numbers", at)
     return y, lam
 
 

@@ -120,8 +120,12 @@ def following(first: Sequence[Step], second: Sequence[Step], events: Sequence[Lo
     a, b = first[-1], second[0]
     if a.u.shape != b.u.shape or not np.abs(a.u - b.u).max() <= MEET * max(extent, np.finfo(float).tiny):
         raise ValueError(f"other: expected a path that begins at lam = {a.lam:.6g}, found one from lam = {b.lam:.6g}")
-    count, length = len(first) - 1, a.arclength
+    return shifted(evolve(a, index=len(first) - 1), second, events)
+
+
+def shifted(a: Step, second: Sequence[Step], events: Sequence[LocatedEvent]) -> Pieces:
+    """The steps of a path behind its start, and its events, counted on from a step at that start."""
     return (
-        [evolve(s, index=s.index + count, arclength=s.arclength + length) for s in list(second)[1:]],
-        [evolve(event, step=event.step + count, arclength=event.arclength + length) for event in events],
+        [evolve(s, index=s.index + a.index, arclength=a.arclength + s.arclength) for s in list(second)[1:]],
+        [evolve(event, step=event.step + a.index, arclength=a.arclength + event.arclength) for event in events],
     )

@@ -107,7 +107,8 @@ class Drawing:
         s, u = [], []
         for before, after in pairwise(steps):
             assert after.segment is not None
-            points = np.array([before.u, *map(after.segment.at, inner), after.u])
+            # The segment's own beginning: the step before may be in other unknowns (`continuation.renewal`).
+            points = np.array([after.segment.at(0.0), *map(after.segment.at, inner), after.u])
             weights = np.ones(points.shape[1]) if after.weights is None else after.weights
             chords = np.sqrt(np.diff(points, axis=0) ** 2 @ weights)
             behind = np.append(0.0, np.cumsum(chords[:-1])) / max(chords.sum(), np.finfo(float).tiny)

@@ -38,18 +38,22 @@ def stretches(s: Array, edges: Array, first: bool) -> list[Stretch]:
 def by_stability(path: Drawn, s: Array) -> list[Stretch] | None:
     """Where the path is stable, by what was stored with its points; None where nothing was.
 
-    Between two points that differ it changes at the first of the events between them that can be the reason, else half
-    way. The arclengths s are those of the line to draw.
+    Between two points that differ it changes at the first of the events between them that can be the reason, else at
+    the first of any other kind, as a period doubling of cycles is, else half way. The arclengths s are those of the
+    line to draw.
     """
     if not path.steps or UNSTABLE not in path.steps[0].observed:
         return None
     knots = path.arclength
     stable = np.array([step.observed[UNSTABLE] == 0.0 for step in path.steps])
-    reasons = np.array([event.arclength for event in path.events if event.kind in CHANGES])
+    reasons, others = (
+        np.array([event.arclength for event in path.events if (event.kind in CHANGES) is able])
+        for able in (True, False)
+    )
     edges = []
     for k in np.flatnonzero(stable[1:] != stable[:-1]):
-        between = reasons[(reasons >= knots[k]) & (reasons <= knots[k + 1])]
-        edges.append(between[0] if between.size else 0.5 * (knots[k] + knots[k + 1]))
+        inside = (known[(known >= knots[k]) & (known <= knots[k + 1])] for known in (reasons, others))
+        edges.append(next((found[0] for found in inside if found.size), 0.5 * (knots[k] + knots[k + 1])))
     return stretches(s, np.array(edges), bool(stable[0]))
 
 

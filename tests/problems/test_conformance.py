@@ -13,8 +13,8 @@ from problems.nonlinear import brown, fixed_point, newton
 
 SMALL = {
     "aircraft": {}, "bratu-1d": {"n": 8}, "bratu-2d": {"m": 4}, "brown-fixed-point": {"n": 4}, "circle": {}, "cusp": {},
-    "exponential-cosine": {"n": 3}, "freudenstein-roth": {}, "kkt": {}, "kmm": {}, "pitchfork": {}, "wang": {},
-    "xu": {}, "yu": {}, "zhao": {},
+    "exponential-cosine": {"n": 3}, "freudenstein-roth": {}, "kkt": {}, "kmm": {},
+    "periodic-orbit": {"intervals": 6, "radius": 0.3}, "pitchfork": {}, "wang": {}, "xu": {}, "yu": {}, "zhao": {},
 }  # fmt: skip
 """All that is registered, at a size at which its matrices may be dense."""
 

@@ -19,9 +19,9 @@ from continuation.archive import ArchiveError, Limits, describe, trace_many
 from continuation.controllers import Bounds
 from continuation.linear import Banded
 from continuation.testing import check_homotopy
-from problems import bifurcation, lcp, nonlinear
+from problems import bifurcation, lcp, nonlinear, orbits
 
-from .kinds import KINDS
+from .kinds import KINDS, NAN
 
 
 class Call(NamedTuple):
@@ -265,6 +265,28 @@ def others() -> Iterator[Call]:
     yield Call(c.kink_rays, kinked, {"homotopy": "homotopy with pieces", "u": "vector"})
 
 
+def cycles() -> Iterator[Call]:
+    """Periodic orbits."""
+    f, t = orbits.models.brusselator, np.linspace(0.0, 20.0, 80)
+    circle = np.stack([np.cos(t), np.sin(t)], axis=1)
+    mesh = ("a", None, 0, 1, 2.5, [0.0, 1.0], [0.0, 0.7, 0.3, 1.0])
+    fine = {"intervals": ("a", None, 0, 1, 2.5, [1.0]), "degree": "degree"}
+    yield Call(
+        orbits.PeriodicOrbit, {"f": f, "states": circle, "period": 6.0, "parameter": 2.0},
+        {"f": "function", "period": "positive, finite", "parameter": "finite", "degree": "degree", "mesh": mesh,
+         "states": ("a", None, np.ones(3), np.full((80, 2), NAN), np.ones((79, 2))), "jacobian": "function or None",
+         "smallest": "positive, finite", "scale": ("a", [1.0], [1.0, 0.0], [1.0, NAN])},
+    )  # fmt: skip
+    hopf = {"f": f, "point": (np.array([1.0, 2.0]), 2.0)}
+    points = (None, 3, "a", (np.ones(2), 0.5))
+    kinds = {"f": "function", "point": points, "radius": "positive, finite", **fine}
+    yield Call(orbits.PeriodicOrbit.from_hopf, hopf, kinds)
+    yield Call(orbits.from_model, {}, {"model": ("a", None, 3), "radius": "positive, finite", **fine})
+    right = {"homotopy": orbits.from_model(intervals=4), "budget": c.Budget(steps=1)}
+    run = {**OPTIONS, "tolerance": "tolerance", "budget": "budget", "archive": "name of a new file"}
+    yield Call(c.follow, right, {"homotopy": (None, 3, "a", [], bifurcation.Cusp()), "every": "count", **run})
+
+
 REFUSALS = (TypeError, ValueError, LookupError, ArchiveError)
 
 
@@ -288,7 +310,7 @@ def verdict(call: Call, argument: str, value: Any) -> str:
 def calls() -> list[Call]:
     """All of the table."""
     w = world()
-    return [*parts(), *engine(w), *solver(w), *others()]
+    return [*parts(), *engine(w), *solver(w), *others(), *cycles()]
 
 
 def cases() -> Iterator[tuple[Call, str, Any]]:

@@ -6,7 +6,7 @@ import pytest
 
 import continuation
 from continuation import controllers, correctors, predictors
-from problems import bifurcation, lcp, nonlinear
+from problems import bifurcation, lcp, nonlinear, orbits
 
 from . import hostile, run
 from .points import POINTS
@@ -30,12 +30,15 @@ RESULTS = {
     "Proof", "Sensitivity", "Settings", "Solution", "Solutions", "Start", "Status", "Step", "StepMeasures",
     "Answers", "Diagram", "Correction", "ComplementaritySolution", "FixedPointHomotopy", "NewtonHomotopy",
     "BrownAlmostLinear", "Differentiable", "InteriorHomotopy", "TwoVectorHomotopy", "Euclidean", "Circle", "Hermite",
-    "Secant", "Tangent",
+    "Secant", "Tangent", "Followed", "plot_orbits",
 }  # fmt: skip
 """What is made by the package and handed over, made by a function that is in the table, or takes no argument."""
 
 
-@pytest.mark.parametrize("module", [continuation, controllers, correctors, predictors, lcp, nonlinear, bifurcation])
+MODULES = (continuation, controllers, correctors, predictors, lcp, nonlinear, bifurcation, orbits)
+
+
+@pytest.mark.parametrize("module", MODULES)
 def test_everything_public_is_in_the_table(module):
     tried = {hostile.name_of(call) for call in hostile.calls()} | {"Tracer"}
     known = {name for name in module.__all__ if name not in RESULTS and callable(getattr(module, name))}

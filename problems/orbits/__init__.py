@@ -1,0 +1,7 @@
+"""Periodic orbits: a homotopy; `problems.orbits.models` has vector fields with known ones."""
+
+from problems.orbits.models import from_model
+from problems.orbits.orbit import PeriodicOrbit
+from problems.orbits.pictures import plot_orbits
+
+__all__ = ["PeriodicOrbit", "from_model", "plot_orbits"]

@@ -1,0 +1,75 @@
+"""The equations of periodic orbits near a given one, and what is watched along a path of them."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from attrs import field, frozen
+
+from continuation.arrays import Array
+from continuation.status import Kind
+from problems.orbits.field import Field
+from problems.orbits.grid import Grid
+from problems.orbits.here import Here
+
+PHASE_COSINE = 0.1
+"""The cosine between the orbit's velocity and that of the reference, in the mean over a period, below which the phase
+condition no longer tells orbits apart that differ in phase: a digit is lost to it there."""
+
+ORBITS_KEPT = 4
+"""Points that are kept: a step's residual, factorisation, events and what is observed there ask for the same one."""
+
+
+@frozen(eq=False, slots=False)
+class Equations:
+    """Collocation on a grid, with a given orbit in the phase condition: `states`, of shape (N m, n)."""
+
+    flow: Field
+    grid: Grid
+    scale: Array
+    states: Array
+    _recent: dict[bytes, Here] = field(factory=dict, init=False, repr=False)
+
+    @cached_property
+    def _reference(self) -> Array:
+        return self.grid.slopes(self.states) / self.scale**2
+
+    def unknowns(self, y: Array) -> tuple[Grid, Array, float]:
+        """What unknowns say, of this grid or another one of as many nodes: their grid, X of shape (N m, n), and T."""
+        size = self.states.size
+        mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
+        grid = self.grid if np.array_equal(mesh, self.grid.mesh) else Grid(mesh, self.grid.degree)
+        return grid, y[:size].reshape(self.states.shape), float(y[size])
+
+    def here(self, y: Array, lam: float) -> Here:
+        """The equations at a point."""
+        key = np.append(y, lam).tobytes()
+        if key not in self._recent:
+            y, size = np.array(y, dtype=float), self.states.size
+            X, T, times = y[:size].reshape(self.states.shape), float(y[size]), y[size + 1 :]
+            self._recent[key] = Here(self.flow, self.grid, self.scale, self._reference, X, T, times, float(lam))
+            if len(self._recent) > ORBITS_KEPT:
+                del self._recent[next(iter(self._recent))]
+        return self._recent[key]
+
+
+@frozen
+class Watch:
+    """An event: where a quantity of an orbit takes a value.
+
+    `orbit`: A PeriodicOrbit. `quantity`: An attribute of `Here`.
+    """
+
+    orbit: Any
+    quantity: str
+    name: str
+    value: float = 0.0
+    terminal: int = 0
+    direction: int = 0
+    kind: Kind = field(default=Kind.EVENT, init=False)
+
+    def monitor(self, u: Array, v: Array) -> float:
+        """The quantity less the value."""
+        return float(getattr(self.orbit.equations.here(u[:-1], float(u[-1])), self.quantity)) - self.value

@@ -1,0 +1,114 @@
+"""The right-hand side of x' = f(x, p), at many points at once, with its derivatives."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import evolve, field, frozen
+
+from continuation.arguments.checks import complain
+from continuation.arrays import Array
+from continuation.citation.bibliography import SQUIRE_TRAPP
+from continuation.evaluation.derivatives import AGREEMENT, sizes
+
+COMPLEX_STEP = 1e-200
+"""The complex step: its square is below everything (Squire and Trapp 1998)."""
+
+CENTRAL_STEP = 6e-6
+"""Of central differences, beside the size of a component: the third root of round-off."""
+
+
+@frozen(eq=False)
+class Field:
+    """f of all columns, and how it is differentiated.
+
+    `function`: Of (x, p), x of shape (n,) or (n, k). `columns`: Whether it takes many columns. `complexes`: Whether it
+    is right on complex numbers. `own`: Its derivative (f_x, f_p) if there is one. `beside`: What is handed to both
+    behind p.
+    """
+
+    function: Callable[..., Any]
+    columns: bool
+    complexes: bool
+    own: Callable[..., Any] | None = None
+    beside: tuple[Any, ...] = ()
+    references: tuple[str, ...] = field(init=False)
+
+    @references.default
+    def _references(self) -> tuple[str, ...]:
+        return (SQUIRE_TRAPP,) if self.complexes and self.own is None else ()
+
+    def __call__(self, x: Array, p: Any) -> Array:
+        """f, shape (n, k)."""
+        if self.columns:
+            found: Array = np.asarray(self.function(x, p, *self.beside))
+            return found
+        return np.stack([np.asarray(self.function(one, p, *self.beside)) for one in x.T], axis=1)
+
+    def derivatives(self, x: Array, p: float) -> tuple[Array, Array]:
+        """(f_x, f_p) at the columns of x, shapes (k, n, n) and (k, n)."""
+        n, k = x.shape
+        if self.own is not None:
+            ways = [self.own(x, p, *self.beside)] if self.columns else [self.own(one, p, *self.beside) for one in x.T]
+            by_x, by_p = (np.stack([np.asarray(way[j]) for way in ways], axis=-1) for j in (0, 1))
+            by_x, by_p = by_x.reshape(n, n, -1), by_p.reshape(n, -1)
+            return np.moveaxis(np.broadcast_to(by_x, (n, n, k)), 2, 0), np.broadcast_to(by_p, (n, k)).T
+        copies = np.repeat(x[:, :, None], n, axis=2)
+        h = CENTRAL_STEP * sizes(np.abs(x).max(axis=1))
+        steps = np.eye(n)[:, None, :] * (COMPLEX_STEP * 1j if self.complexes else h)
+        whole = (copies + steps).reshape(n, -1)
+        if self.complexes:
+            by_x = self(whole, p).imag / COMPLEX_STEP
+            by_p = self(x, complex(p, COMPLEX_STEP)).imag / COMPLEX_STEP
+        else:
+            by_x = (self(whole, p) - self((copies - steps).reshape(n, -1), p)) / np.tile(2.0 * h, k)
+            step = CENTRAL_STEP * float(sizes(np.array([p]))[0])
+            by_p = (self(x, p + step) - self(x, p - step)) / (2.0 * step)
+        return np.moveaxis(by_x.reshape(n, k, n), 1, 0), by_p.T
+
+
+TRIED_ASIDE = 0.1
+"""How far from a point, in its components' sizes, f is tried: at an equilibrium what is not linear is not seen."""
+
+
+def field_of(function: Any, jacobian: Any, beside: tuple[Any, ...], point: Array, size: Array, p: float) -> Field:
+    """How to call a function, and how to differentiate it: tried about a point, shape (n,).
+
+    Raises `TypeError`, `ValueError` if it is no function, or gives something else than n numbers.
+    """
+    for name, given in (("f", function), ("jacobian", jacobian)):
+        if not callable(given) and (name == "f" or given is not None):
+            raise complain(TypeError, name, "a function of (x, p)", given)
+    x = point[:, None] + TRIED_ASIDE * size[:, None] * np.cos(
+        np.outer(np.arange(1.0, point.size + 1.0), np.arange(3.0))
+    )
+    single = np.asarray(function(x[:, 0].copy(), p, *beside))
+    if single.shape != (len(x),) or single.dtype.kind not in "fiu":
+        raise complain(ValueError, "f", f"{len(x)} real numbers, as x has", single)
+    alone = Field(function, False, False, jacobian, beside)
+    plain = evolve(alone, columns=_agrees(lambda: evolve(alone, columns=True)(x.copy(), p), alone(x, p)))
+    if jacobian is not None:
+        return plain
+    steps = evolve(plain, complexes=True)
+
+    def whole(f: Field) -> Array:
+        by_x, by_p = f.derivatives(x, p)
+        return np.concatenate([by_x, by_p[:, :, None]], axis=2)
+
+    return steps if _agrees(lambda: whole(steps), whole(plain)) else plain
+
+
+def _agrees(make: Callable[[], Array], known: Array) -> bool:
+    """Whether an array can be made, without complaints, and is another one but for errors of differences."""
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("error", np.exceptions.ComplexWarning)
+            found = make()
+    except (TypeError, ArithmeticError, ValueError, AttributeError, IndexError, np.exceptions.ComplexWarning):
+        return False
+    if found.shape != known.shape:
+        return False
+    return bool((np.abs(found - known) <= AGREEMENT * float(np.abs(known).max(initial=0.0))).all())

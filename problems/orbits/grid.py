@@ -1,0 +1,160 @@
+"""Piecewise polynomials of one period: values at nodes, derivatives at Gauss points, and a mesh that suits an orbit."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from attrs import field, frozen
+from numpy.polynomial.legendre import leggauss
+from numpy.typing import NDArray
+
+from continuation.arrays import Array
+
+MESH_FLOOR = 0.05
+"""Of the mean density of a mesh, added everywhere: no interval is longer than twenty on the average, so that an orbit
+that comes to move where it stood still is seen. Measured on van der Pol's, mu = 10, 40 intervals: the period's error is
+1e-7 with it, 1e-6 with twice and 3e-6 with four times as much."""
+
+
+BETWEEN_NODES = 8
+"""Times between neighbouring nodes at which extreme values are looked for: a parabola through three of them is off by
+the fourth power of their distance."""
+
+
+@frozen(eq=False, slots=False)
+class Grid:
+    """A mesh of [0, 1], and polynomials of a degree m on its intervals, continuous and periodic.
+
+    A function of it is an array of shape (N m, ...): its values at m nodes of each interval, the left end first; they
+    crowd towards the ends, as zeros of Chebyshev polynomials do. `mesh`, of shape (N + 1,): from 0 to 1.
+    """
+
+    mesh: Array
+    degree: int
+    widths: Array = field(init=False)
+
+    @widths.default
+    def _widths(self) -> Array:
+        return np.diff(self.mesh)
+
+    @property
+    def intervals(self) -> int:
+        """N."""
+        return self.widths.size
+
+    @cached_property
+    def inner(self) -> Array:
+        """The nodes of [0, 1], m + 1 of them."""
+        return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(self.degree + 1) / self.degree))
+
+    @cached_property
+    def gauss(self) -> tuple[Array, Array]:
+        """The m Gauss points of [0, 1], and their weights."""
+        points, weights = leggauss(self.degree)
+        return np.asarray(0.5 * points + 0.5), np.asarray(0.5 * weights)
+
+    @cached_property
+    def coefficients(self) -> Array:
+        """From values at the nodes to coefficients of powers."""
+        return np.asarray(np.linalg.inv(np.vander(self.inner, increasing=True)))
+
+    @cached_property
+    def value(self) -> Array:
+        """From values at the nodes of an interval to those at its Gauss points."""
+        return self._powers(self.gauss[0]) @ self.coefficients
+
+    @cached_property
+    def slope(self) -> Array:
+        """From values at the nodes to derivatives at the Gauss points, for an interval of length one."""
+        powers = np.zeros((self.degree, self.degree + 1))
+        powers[:, 1:] = self._powers(self.gauss[0])[:, :-1] * np.arange(1, self.degree + 1)
+        return powers @ self.coefficients
+
+    @cached_property
+    def index(self) -> NDArray[np.intp]:
+        """Which nodes an interval has, shape (N, m + 1): the last of the last one is the first."""
+        found = np.arange(self.intervals)[:, None] * self.degree + np.arange(self.degree + 1)
+        return found % (self.intervals * self.degree)
+
+    @cached_property
+    def nodes(self) -> Array:
+        """All nodes, shape (N m,)."""
+        return (self.mesh[:-1, None] + self.widths[:, None] * self.inner[:-1]).ravel()
+
+    @cached_property
+    def quadrature(self) -> Array:
+        """Weights of the Gauss points, shape (N, m)."""
+        return self.widths[:, None] * self.gauss[1]
+
+    def values(self, X: Array) -> Array:
+        """At the Gauss points, shape (N, m, n)."""
+        return np.asarray(self.value @ X[self.index])
+
+    def slopes(self, X: Array) -> Array:
+        """Derivatives there."""
+        return np.asarray(self.slope @ X[self.index] / self.widths[:, None, None])
+
+    def at(self, X: Array, t: Array) -> Array:
+        """The function at times of [0, 1], shape (len(t), n)."""
+        t = np.asarray(t) % 1.0
+        i = np.clip(np.searchsorted(self.mesh, t, side="right") - 1, 0, self.intervals - 1)
+        powers = self._powers((t - self.mesh[i]) / self.widths[i]) @ self.coefficients
+        return np.asarray(np.einsum("tk,tkn->tn", powers, X[self.index[i]]))
+
+    def extremes(self, X: Array) -> tuple[Array, Array]:
+        """The least and the largest value of each component over the period."""
+        edges = np.append(self.nodes, 1.0)
+        t = (edges[:-1, None] + np.diff(edges)[:, None] * np.arange(BETWEEN_NODES) / BETWEEN_NODES).ravel()
+        X = self.at(X, t)
+        found = []
+        for sign in (-1.0, 1.0):
+            k = np.argmax(sign * X, axis=0)
+            three = [np.take_along_axis(X, (k + j)[None] % len(t), axis=0)[0] for j in (-1, 0, 1)]
+            times = [t[(k + j) % len(t)] + (k + j) // len(t) for j in (-1, 0, 1)]
+            left, right = ((three[1] - three[j]) / (times[1] - times[j]) for j in (0, 2))
+            bend = (right - left) / (times[2] - times[0])
+            middle = left + bend * (times[1] - times[0])
+            found.append(three[1] - np.where(bend != 0.0, middle**2 / np.where(bend != 0.0, 4.0 * bend, 1.0), 0.0))
+        return found[0], found[1]
+
+    def _powers(self, t: Array) -> Array:
+        return np.vander(t, self.degree + 1, increasing=True)
+
+    def highest(self, X: Array) -> Array:
+        """The size of derivative m + 1, shape (N,): from the jumps of the m-th at the two ends of an interval.
+
+        `X` of shape (N m, n), in units in which its components are alike. (de Boor, in: Conference on the Numerical
+        Solution of Differential Equations, 1973; as in AUTO.)
+        """
+        top = np.einsum("k,ikn->in", self.coefficients[-1], X[self.index]) / self.widths[:, None] ** self.degree
+        between = 0.5 * (self.widths + np.roll(self.widths, 1))
+        jumps = np.linalg.norm(top - np.roll(top, 1, axis=0), axis=1) / between
+        return np.asarray(0.5 * (jumps + np.roll(jumps, -1)))
+
+    def error(self, X: Array) -> float:
+        """A bound on the error of interpolation: the largest term of degree m + 1 over an interval, in X's units.
+
+        The collocation's own error is of that size between the mesh points, and far smaller at them.
+        """
+        nodal = np.polynomial.polynomial.polyfromroots(self.inner)
+        t = np.linspace(0.0, 1.0, 101)
+        largest = np.abs(np.polynomial.polynomial.polyval(t, nodal)).max()
+        return float((self.highest(X) * self.widths ** (self.degree + 1)).max() * largest)
+
+    def suited(self, X: Array, intervals: int, degree: int) -> tuple[Grid, Array]:
+        """A grid on which the error is the same in all intervals, about, and where its nodes are on this one.
+
+        It begins where the function is fastest: near an equilibrium, where a homoclinic orbit rests, its velocity and
+        what grows along it have nearly one direction, and multipliers cannot be told there.
+        """
+        density = self.highest(X) ** (1.0 / (self.degree + 1))
+        density = density + MESH_FLOOR * float(density @ self.widths) if density.any() else np.ones_like(density)
+        grown = np.append(0.0, np.cumsum(density * self.widths))
+        mesh = np.interp(np.linspace(0.0, grown[-1], intervals + 1), grown, self.mesh)
+        widths = np.diff(mesh)
+        k = int(np.argmax(np.linalg.norm(np.diff(self.at(X, mesh), axis=0), axis=1) / widths))
+        turned = np.append(0.0, np.cumsum(np.roll(widths, -k)))
+        turned[-1] = 1.0
+        new = Grid(turned, degree)
+        return new, new.nodes + mesh[k]

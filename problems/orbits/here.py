@@ -1,0 +1,179 @@
+"""An orbit's equations at one point (X, T, p): the residual, its derivative applied, as a matrix, and condensed."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import frozen
+
+from continuation.arrays import Array
+from problems.orbits.blocks import Bordered, Condensed
+from problems.orbits.field import Field
+from problems.orbits.grid import Grid
+from problems.orbits.multipliers import Multipliers
+
+
+@frozen(eq=False, slots=False)
+class Here:
+    """All that is known there, each worked out once.
+
+    `X` of shape (N m, n). `times`, of shape (N - 1,): The mesh, as unknowns that the equations pin to that of the grid:
+    a point of a path then says all that is to be known of its orbit. `reference`, of shape (N, m, n): The derivative of
+    the orbit in the phase condition, divided by the square of `scale`.
+    """
+
+    field: Field
+    grid: Grid
+    scale: Array
+    reference: Array
+    X: Array
+    T: float
+    times: Array
+    p: float
+
+    @cached_property
+    def _values(self) -> Array:
+        return self.grid.values(self.X)
+
+    @cached_property
+    def _columns(self) -> Array:
+        """The same as columns, shape (n, N m)."""
+        return np.ascontiguousarray(self._values.reshape(-1, self.scale.size).T)
+
+    @cached_property
+    def flow(self) -> Array:
+        """F at the Gauss points, shape (N, m, n)."""
+        return np.asarray(self.field(self._columns, self.p), dtype=float).T.reshape(self._values.shape)
+
+    @cached_property
+    def _derivatives(self) -> tuple[Array, Array]:
+        """(f_x, f_p) there, shapes (N, m, n, n) and (N, m, n)."""
+        by_x, by_p = self.field.derivatives(self._columns, self.p)
+        shape = self._values.shape
+        return by_x.reshape(*shape, shape[-1]), by_p.reshape(shape)
+
+    def residual(self) -> Array:
+        """X' - T f at the Gauss points, the phase condition, and how far the mesh is off."""
+        equations = self.grid.slopes(self.X) - self.T * self.flow
+        return np.concatenate([equations.ravel(), [self._phase(self._values)], self.times - self.grid.mesh[1:-1]])
+
+    def _phase(self, values: Array) -> float:
+        return float(np.einsum("ig,ign,ign->", self.grid.quadrature, values, self.reference))
+
+    def applied(self, v: Array) -> Array:
+        """The derivative applied to a direction (dX, dT, dmesh, dp)."""
+        (by_x, by_p), size = self._derivatives, self.X.size
+        dX, dT = v[:size].reshape(self.X.shape), v[size]
+        values = self.grid.values(dX)
+        moved = np.einsum("igab,igb->iga", by_x, values) + v[-1] * by_p
+        equations = self.grid.slopes(dX) - self.T * moved - dT * self.flow
+        return np.concatenate([equations.ravel(), [self._phase(values)], v[size + 1 : -1]])
+
+    @cached_property
+    def _blocks(self) -> Array:
+        """The derivative by the nodes of each interval, shape (N, m, n, m + 1, n), times the interval's length."""
+        grid, n = self.grid, self.scale.size
+        by_x = self.T * grid.widths[:, None, None, None] * self._derivatives[0]
+        found = -grid.value[None, :, None, :, None] * by_x[:, :, :, None, :]
+        found[:, :, np.arange(n), :, np.arange(n)] += grid.slope
+        return found
+
+    @cached_property
+    def _phase_row(self) -> Array:
+        """The derivative of the phase condition by X, shape (N m n,)."""
+        row = np.zeros_like(self.X)
+        each = np.einsum("ig,ign,gk->ikn", self.grid.quadrature, self.reference, self.grid.value)
+        np.add.at(row, self.grid.index, each)
+        return row.ravel()
+
+    def matrices(self) -> tuple[sp.csc_array, Array]:
+        """The derivative by the unknowns, sparse, and by p."""
+        grid, n = self.grid, self.scale.size
+        blocks = self._blocks / grid.widths[:, None, None, None, None]
+        size = self.X.size
+        rows = np.broadcast_to(np.arange(size).reshape(*self._values.shape, 1, 1), blocks.shape)
+        columns = np.broadcast_to((grid.index[:, :, None] * n + np.arange(n))[:, None, None], blocks.shape)
+        whole = size + 1 + self.times.size
+        each, pinned = np.arange(size), np.arange(size + 1, whole)
+        entries = np.concatenate([blocks.ravel(), -self.flow.ravel(), self._phase_row, np.ones(pinned.size)])
+        i = np.concatenate([rows.ravel(), each, np.full(size, size), pinned])
+        j = np.concatenate([columns.ravel(), np.full(size, size), each, pinned])
+        by_p = np.zeros(whole)
+        by_p[:size] = -self.T * self._derivatives[1].ravel()
+        return sp.csc_array((entries, (i, j)), shape=(whole, whole)), by_p
+
+    @cached_property
+    def _condensed(self) -> tuple[Condensed, Array, Array]:
+        """The blocks in units, what the equations are divided by, and the units of (T, p)."""
+        N, m, n = self._values.shape
+        blocks = self._blocks * (self.scale / self.scale[:, None])[:, None, :]
+        equations = self.scale / self.grid.widths[:, None, None] + np.zeros_like(self.flow)
+        g = np.stack([-self.flow / equations, -self.T * self._derivatives[1] / equations], axis=-1)
+        largest = np.abs(g).max(axis=(0, 1, 2))
+        units = np.where(largest > 0.0, 1.0 / np.where(largest > 0.0, largest, 1.0), 1.0)
+        g = (g * units).reshape(N, m * n, 2)
+        return Condensed.of(blocks.reshape(N, m * n, -1), g), equations.ravel(), units
+
+    def bordered(self, border: Array) -> Bordered:
+        """The derivative with a border, factored."""
+        condensed, equations, units = self._condensed
+        scale = np.concatenate([np.tile(self.scale, len(self.X)), units])
+        size = self.X.size + 1
+        rows = np.stack([np.append(self._phase_row, [0.0, 0.0]), np.append(border[:size], border[-1])]) * scale
+        sizes = np.abs(rows).max(axis=1)
+        sizes = np.where(sizes > 0.0, sizes, 1.0)
+        system = Bordered(condensed, rows / sizes[:, None], sizes, scale, equations, border[size:-1])
+        assert system.small
+        return system
+
+    @cached_property
+    def multipliers(self) -> Multipliers:
+        """The Floquet multipliers."""
+        A, B, _ = self._condensed[0].last
+        return Multipliers(A, B)
+
+    def mode(self, mu: float) -> Array:
+        """How the linearised equation moves the orbit along the multiplier nearest to a number, shape (N m, n)."""
+        x = self.multipliers.vector(mu)
+        blocks = self._condensed[0]
+        ends = np.stack([x, mu * x])[:, :, None]
+        return blocks.backward(ends, np.zeros((blocks.k, 1)))[:, :, 0] * self.scale
+
+    @property
+    def amplitude(self) -> float:
+        """The mean deviation from the mean, in units of the scale."""
+        X, weights = self.X / self.scale, np.zeros(len(self.X))
+        np.add.at(weights, self.grid.index, self.grid.quadrature @ self.grid.value)
+        return float(np.sqrt(np.abs(weights @ (X - weights @ X) ** 2).mean()))
+
+    @property
+    def phase_cosine(self) -> float:
+        """The cosine between the velocity and that of the orbit in the phase condition, in the mean over the period."""
+        root = np.sqrt(self.grid.quadrature)[:, :, None]
+        own, reference = root * self.flow / self.scale, root * self.reference * self.scale
+        return float((own * reference).sum() / (np.linalg.norm(own) * np.linalg.norm(reference)))
+
+    @property
+    def doubling(self) -> float:
+        """As of the multipliers."""
+        return self.multipliers.doubling
+
+    @property
+    def torus(self) -> float:
+        """As of the multipliers."""
+        return self.multipliers.torus
+
+    def observed(self) -> dict[str, float]:
+        """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""
+        (low, high), values = self.grid.extremes(self.X), self.multipliers.values
+        found = {"period": self.T}
+        for k in range(self.scale.size):
+            found |= {f"min {k}": float(low[k]), f"max {k}": float(high[k])}
+        return found | {
+            "unstable": float(self.multipliers.unstable),
+            "multiplier": float(np.abs(values[1:]).max(initial=0.0)),
+            "trivial": float(np.abs(values[0] - 1.0)),
+            "error": self.grid.error(self.X / self.scale),
+        }

@@ -1,0 +1,36 @@
+"""Newton's method for an orbit that is known about."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.contraction import HALVING, Contraction, Iteration
+from continuation.metric import norm
+
+ORBIT_NEWTON, ORBIT_FOUND, ORBIT_NEAR = Contraction(iterations=30, ratio=np.inf), 1e-13, 1e-7
+"""From a guess, whose first increments may grow; the last increment in the metric of the orbit, and the one below which
+increments that no longer halve are round-off."""
+
+
+def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
+    """The point (y, p) of an orbit near u, with the border's product as it is there.
+
+    Raises `ArithmeticError` if the method comes to none.
+    """
+    found = Iteration(u, ORBIT_NEWTON)
+
+    def increment() -> Array:
+        y, lam = found.x[:-1], float(found.x[-1])
+        step: Array = homotopy.bordered(y, lam, border).solve(-homotopy.residual(y, lam), 0.0)
+        return step
+
+    def done(size: float) -> bool:
+        return size <= ORBIT_FOUND or (size <= ORBIT_NEAR and found.ratio >= HALVING)
+
+    with np.errstate(all="ignore"):
+        if not found.run(increment, lambda step: norm(weights, step), done):
+            raise ArithmeticError(f"Newton's method does not reach a periodic orbit near p = {u[-1]:.6g}")
+    return found.x

@@ -1,0 +1,349 @@
+"""Periodic orbits of x' = f(x, p) as a homotopy: orthogonal collocation, with the period for an unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+import scipy.sparse as sp
+from attrs import Factory, evolve, field, fields_dict, frozen
+
+from continuation.arguments.checks import FINITE, POSITIVE_FINITE, complain, real_vector
+from continuation.arrays import Array
+from continuation.curves.arguments import as_point
+from continuation.evaluation.derivatives import sizes
+from continuation.events import Event
+from continuation.metric import Weighted
+from problems.bibliography import DE_BOOR_SWARTZ, WRIGHT
+from problems.options import quiet
+from problems.orbits.arguments import DEGREES, Asked, as_mesh, as_table, beside_of, check_times, spread
+from problems.orbits.blocks import Bordered
+from problems.orbits.equations import PHASE_COSINE, Equations, Watch
+from problems.orbits.field import field_of
+from problems.orbits.grid import Grid
+from problems.orbits.multipliers import Multipliers
+from problems.orbits.newton import newton
+from problems.orbits.starts import MESHES, circle_at, one_period
+
+
+@frozen(eq=False, slots=False)
+class PeriodicOrbit:
+    """Periodic orbits of x' = f(x, p): X' = T f(X, p), X(0) = X(1), in time scaled to [0, 1], and a phase condition.
+
+    X is a continuous piecewise polynomial of degree m on N intervals that satisfies the equation at the m Gauss points
+    of each. Its error is of order m + 1 in their lengths, of order 2 m at the mesh points and in the period. The
+    unknowns are X at the N m nodes, one after another, T, and the N - 1 inner points of the mesh, which equations of
+    their own keep where they are: a point of a path, in a file too, says what orbit it is. The path's parameter is p.
+    The phase condition is int <X, X_ref'> = 0, with X_ref the orbit that is given.
+
+    Make one by `from_hopf`, `from_solution`, `from_orbit` or `doubled`.
+
+    Parameters
+    ----------
+    f : callable
+        ``f(x, p)``, n numbers, or ``f(x, p, second)``. One that takes x of shape (n, k), as formulas do that begin with
+        ``u, v = x``, is called once for all nodes.
+    states : array_like, shape (N m, n)
+        An orbit, about.
+    period : float
+    parameter : float
+        Where it is one.
+    mesh : int or array_like, shape (N + 1,)
+        Number of intervals, or where they begin and end, from 0 to 1.
+    degree : int
+    jacobian : callable, optional
+        ``jacobian(x, p)``, the pair (f_x, f_p), of shapes (n, n) and (n,), or (n, n, k) and (n, k). Without it
+        derivatives come from complex steps, else from differences.
+    second : float, optional
+        A second parameter, handed to f and `jacobian` behind p; curves of folds and period doublings go along it.
+    smallest : float
+        An orbit whose amplitude falls below this, in units of `scale`, has shrunk to a Hopf point: the path ends.
+    scale : array_like, shape (n,), optional
+        How large the components are, about: by default their standard deviations over the given orbit.
+    heading : array_like, shape (N m, n), optional
+        How X changes where a branch leads that begins here; by default orbits become larger that way.
+
+    References
+    ----------
+    de Boor and Swartz, Collocation at Gaussian points, SIAM J. Numer. Anal. 10, 1973.
+    """
+
+    f: Callable[..., Any]
+    states: Array = field(converter=as_table, repr=False)
+    period: float = field(validator=POSITIVE_FINITE)
+    parameter: float = field(validator=FINITE)
+    mesh: Array = field(default=20, converter=as_mesh, repr=False)
+    degree: int = field(default=4, validator=DEGREES)
+    jacobian_of_f: Callable[..., Any] | None = field(default=None, alias="jacobian")
+    second: Any = None
+    smallest: float = field(default=1e-3, validator=POSITIVE_FINITE)
+    scale: Array = field(
+        default=Factory(lambda self: spread(self.states), takes_self=True), converter=np.asarray, repr=False
+    )
+    heading: Array | None = field(default=None, repr=False)
+    target: ClassVar[None] = None
+    renewed_at: ClassVar[tuple[str, ...]] = ("phase condition fails",)
+    parameter_name: ClassVar[str] = "p"
+    problem_class: ClassVar[str] = "periodic orbits"
+
+    def __attrs_post_init__(self) -> None:
+        wanted = (self.mesh.size - 1) * self.degree
+        if len(self.states) != wanted:
+            raise ValueError(f"states: expected {wanted} rows, one a node, found {len(self.states)}")
+        if self.scale.shape != self.states.shape[1:] or not (self.scale > 0.0).all():
+            raise complain(ValueError, "scale", f"{self.states.shape[1]} positive numbers", self.scale)
+        assert self.equations
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is worked out again when it is needed is left out."""
+        return {name: getattr(self, name) for name in fields_dict(PeriodicOrbit)}
+
+    @cached_property
+    def equations(self) -> Equations:
+        """The same as equations for other unknowns."""
+        beside = () if self.second is None else (self.second,)
+        f = field_of(self.f, self.jacobian_of_f, beside, self.states[0], self.scale, self.parameter)
+        return Equations(f, Grid(self.mesh, self.degree), self.scale, self.states)
+
+    @classmethod
+    def from_hopf(
+        cls, f: Any, point: Any, *, radius: float = 1e-2, intervals: int = 20, degree: int = 4, **beside: Any
+    ) -> PeriodicOrbit:
+        """The small orbit that leaves a Hopf point; its path also leads back to it, so trace from `leaving`.
+
+        Parameters
+        ----------
+        f : callable
+            As for the class.
+        point : LocatedEvent or (x, p)
+            The Hopf point, as `continuation.Stability` locates it on a path of equilibria.
+        radius : float
+            Of the orbit, beside the size of x (1 where that is 0).
+        intervals, degree : int
+            Of the collocation.
+        **beside
+            `jacobian` and `second`, as for the class.
+
+        Raises
+        ------
+        ValueError, ArithmeticError
+            If it is no Hopf point, or Newton's method does not reach the orbit.
+        """
+        x, p = as_point(point, "point")
+        grid = Asked(intervals, degree, radius).grid
+        field = field_of(f, beside.get("jacobian"), beside_of(beside), x, sizes(x), p)
+        circle = circle_at(field, x, p, grid)
+        states, mesh = x + radius * circle.motion, grid.mesh
+        given = cls(
+            f, states, circle.period, p, mesh, degree, smallest=radius / 4.0, scale=circle.scale, heading=circle.motion,
+            **beside,
+        )  # fmt: skip
+        return given._corrected(circle.motion)
+
+    @classmethod
+    def from_solution(
+        cls, f: Any, t: Any, x: Any, parameter: float, *, intervals: int = 20, degree: int = 4, **beside: Any
+    ) -> PeriodicOrbit:
+        """The orbit on which a simulation ends: its last period is cut out where it comes back to its end.
+
+        Parameters
+        ----------
+        f : callable
+            As for the class.
+        t : array_like, shape (k,)
+        x : array_like, shape (k, n)
+            The simulation, a row for each time; settled on the orbit, and two periods long at least.
+        parameter : float
+        intervals, degree : int
+        **beside
+            `jacobian` and `second`, as for the class.
+
+        Raises
+        ------
+        ValueError, ArithmeticError
+            If it does not come back, or Newton's method does not reach an orbit.
+        """
+        times, states = real_vector("t", t), as_table(x)
+        check_times(times, states)
+        field = field_of(f, beside.get("jacobian"), beside_of(beside), states[-1], spread(states), parameter)
+        cut, period, grid = one_period(field, times, states, parameter, Asked(intervals, degree).grid)
+        found = cls(f, cut, period, parameter, grid.mesh, degree, **beside)._corrected()
+        for _ in range(MESHES):
+            found = cls.from_orbit(found)
+        return found
+
+    @classmethod
+    def from_point(cls, f: Any, point: Any, components: int, *, degree: int = 4, **beside: Any) -> PeriodicOrbit:
+        """The orbit that a point of a path says, as of one that was read from a file.
+
+        Parameters
+        ----------
+        f, degree, **beside
+            As for the class.
+        point : LocatedEvent, Step or (y, p)
+        components : int
+            n.
+        """
+        y, p = as_point(point, "point")
+        N, left = divmod(y.size, components * degree + 1)
+        if left or N < 2:
+            raise ValueError(f"point: expected N ({components} x {degree} + 1) unknowns, found {y.size}")
+        size = N * degree * components
+        mesh = np.concatenate([[0.0], y[size + 1 :], [1.0]])
+        return cls(f, y[:size].reshape(-1, components), y[size], p, mesh, degree, **beside)
+
+    @classmethod
+    def from_orbit(
+        cls, orbit: PeriodicOrbit, at: Any = None, *, intervals: int | None = None, degree: int | None = None
+    ) -> PeriodicOrbit:
+        """An orbit on a mesh that suits it: the error is the same in all intervals, about.
+
+        Parameters
+        ----------
+        orbit : PeriodicOrbit
+        at : LocatedEvent, Step or (y, p), optional
+            A point of its path, by default its start. The phase condition is that of this orbit from now on.
+        intervals, degree : int, optional
+            Others than before.
+        """
+        return orbit._remeshed(at, intervals, degree)[0]._corrected()
+
+    def _remeshed(self, at: Any, intervals: int | None, degree: int | None) -> tuple[PeriodicOrbit, Array]:
+        """The orbit, and where its nodes were in the old time."""
+        y, lam = self.start() if at is None else as_point(at)
+        old, X, T = self.equations.unknowns(y)
+        new, times = old.suited(X / self.scale, intervals or old.intervals, degree or self.degree)
+        given = evolve(self, states=old.at(X, times), mesh=new.mesh, degree=new.degree, heading=None)
+        return evolve(given, period=T, parameter=lam), times
+
+    def doubled(self, at: Any = None, radius: float = 1e-2) -> PeriodicOrbit:
+        """The orbit of twice the period that leaves a period doubling; trace from `leaving`.
+
+        Parameters
+        ----------
+        at : LocatedEvent, Step or (y, p), optional
+            The period doubling, by default the start.
+        radius : float
+            How far from it, in units of `scale`; 0 for the doubling itself on twice the mesh, at which a
+            `continuation.Curve` of branch points begins.
+        """
+        y, lam = self.start() if at is None else as_point(at)
+        grid, X, T = self.equations.unknowns(y)
+        mode = evolve(self, mesh=grid.mesh, states=X).equations.here(y, lam).mode(-1.0)
+        mode = mode / np.sqrt(np.mean((mode / self.scale) ** 2))
+        twice, way = np.tile(X, (2, 1)), np.concatenate([mode, -mode])
+        mesh = np.append(0.5 * grid.mesh[:-1], 0.5 + 0.5 * grid.mesh)
+        given = evolve(self, states=twice, period=2.0 * T, parameter=lam, mesh=mesh, heading=way)
+        return given._corrected(way, radius) if radius else given
+
+    def _corrected(self, heading: Array | None = None, ahead: float = 0.0) -> PeriodicOrbit:
+        """The orbit by Newton's method, at its parameter, or across a heading at a distance from here."""
+        u = np.append(*self.start())
+        weights, border = self.metric.weights(u, u, None), np.append(np.zeros(u.size - 1), 1.0)
+        if heading is not None:
+            way = heading if heading.shape == u.shape else self._direction(heading)
+            u, border = u + ahead * way, weights * way
+        u = newton(self, u, weights, border)
+        _, X, T = self.equations.unknowns(u[:-1])
+        return evolve(self, states=X, period=T, parameter=float(u[-1]))
+
+    def start(self) -> tuple[Array, float]:
+        """The given orbit and its period, and the parameter."""
+        return np.concatenate([self.states.ravel(), [self.period], self.mesh[1:-1]]), self.parameter
+
+    @property
+    def period_index(self) -> int:
+        """Where T is among the unknowns: for ``TargetValue(50.0, component=orbit.period_index)``."""
+        return self.states.size
+
+    @quiet
+    def residual(self, y: Array, lam: float) -> Array:
+        """X' - T f(X, p) at the Gauss points, and the phase condition; shape (N m n + N,)."""
+        if not isinstance(y, np.ndarray) or y.dtype == object:
+            raise TypeError("the residual of periodic orbits runs on arrays of floats alone")
+        return self.equations.here(y, lam).residual()
+
+    @quiet
+    def differential(self, y: Array, lam: float, v: Array) -> Array:
+        """The derivative applied to a direction."""
+        return self.equations.here(y, lam).applied(v)
+
+    @quiet
+    def jacobian(self, y: Array, lam: float) -> tuple[sp.csc_array, Array]:
+        """The derivative by (X, T), sparse, and by p."""
+        return self.equations.here(y, lam).matrices()
+
+    @quiet
+    def bordered(self, y: Array, lam: float, border: Array) -> Bordered:
+        """The derivative with a border, factored."""
+        return self.equations.here(y, lam).bordered(border)
+
+    def multipliers(self, y: Array, lam: float) -> Multipliers:
+        """The Floquet multipliers of an orbit: of unknowns y, at a parameter.
+
+        Parameters
+        ----------
+        y, lam : ndarray and float
+        """
+        return self.equations.here(y, lam).multipliers
+
+    def at(self, y: Array, t: Any) -> Array:
+        """The orbit at times of [0, 1], shape (len(t), n).
+
+        Parameters
+        ----------
+        y, t : array_like
+            The unknowns, and times in periods.
+        """
+        grid, X, _ = self.equations.unknowns(y)
+        return grid.at(X, np.asarray(t, dtype=float))
+
+    def observe(self, y: Array, lam: float) -> dict[str, float]:
+        """The period, extreme values, how many multipliers are unstable, and how accurate all of it is."""
+        return self.equations.here(y, lam).observed()
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """Period doublings and tori; where orbits shrink to a Hopf point, and where the phase condition fails."""
+        return (
+            Watch(self, "doubling", "period doubling"),
+            Watch(self, "torus", "torus"),
+            Watch(self, "amplitude", "Hopf point", self.smallest, 1, -1),
+            Watch(self, "phase_cosine", "phase condition fails", PHASE_COSINE, 1),
+        )
+
+    def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:
+        """An orbit of the path on a mesh that suits it, in its own phase condition; see `continuation.renewal`."""
+        old, size = self.equations.unknowns(u[:-1])[0], self.states.size
+        given, times = self._remeshed((u[:-1], float(u[-1])), None, None)
+        way = old.at(v[:size].reshape(self.states.shape), times)
+        tangent = np.concatenate([way.ravel(), v[size : size + 1], np.zeros(self.mesh.size - 2), v[-1:]])
+        new = given._corrected(tangent)
+        return new, np.append(*new.start()), tangent
+
+    @cached_property
+    def metric(self) -> Weighted:
+        """The mean square of X in units of `scale`, T beside its size, p by how far it moves X by that in a period."""
+        X = np.tile(self.scale, len(self.states)) * np.sqrt(self.states.size)
+        size = np.concatenate([X, [self.period], np.ones(self.mesh.size - 2)])
+        moved = self.equations.flow.derivatives(self.states.T, self.parameter)[1] / self.scale
+        reach = self.period * float(np.sqrt(np.mean(moved**2)))
+        return Weighted(size**-2.0, reach**2 if reach > 0.0 else 1.0)
+
+    @property
+    def leaving(self) -> tuple[Array, Array]:
+        """The start and a direction, for ``trace(orbit, start=orbit.leaving)``: that of `heading`, else of growth."""
+        y, lam = self.start()
+        away = self.states - self.states.mean(axis=0) if self.heading is None else self.heading
+        return np.append(y, lam), self._direction(away)
+
+    def _direction(self, motion: Array) -> Array:
+        """A change of X alone, as one of (y, p)."""
+        return np.append(motion, np.zeros(self.mesh.size))
+
+    @property
+    def references(self) -> tuple[str, ...]:
+        """Of collocation, of its linear algebra, and of derivatives where f has none."""
+        return (DE_BOOR_SWARTZ, WRIGHT, *self.equations.flow.references)

@@ -1,0 +1,92 @@
+"""Where orbits come from: the circles round a Hopf point, and one period of a simulation."""
+
+from __future__ import annotations
+
+import numpy as np
+from attrs import frozen
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import brentq
+
+from continuation.arguments.checks import complain
+from continuation.arrays import Array
+from continuation.evaluation.derivatives import sizes
+from problems.orbits.field import Field
+from problems.orbits.grid import Grid
+
+HOPF_PAIR = 1e-2
+"""The real part of a Hopf point's pair of eigenvalues, beside its modulus: that of a point known to a few digits."""
+
+LEAST_MOTION = 1e-2
+"""Of its own size a component counts as moving so far at least: one that does not take part in the oscillation at first
+is not measured by round-off."""
+
+ONE_RETURN = 1e-3
+"""A return within this, in standard deviations, of where the simulation ends is one period: of those that miss by less
+the last one is taken, since a simulation that has settled comes back to round-off after any number of periods."""
+
+NO_RETURN = 0.3
+"""A best return that misses by more is no period: the simulation has not settled."""
+
+
+MESHES = 4
+"""Meshes of a simulation: from the way that it goes to equal errors, after which nothing changes (van der Pol's)."""
+
+
+@frozen(eq=False)
+class Circle:
+    """The orbits about a Hopf point to first order: x + radius Re (q exp(2 pi i t)), with q in units of `scale`.
+
+    `motion`, of shape (N m, n): Re q exp(2 pi i t) at the nodes.
+    """
+
+    motion: Array
+    period: float
+    scale: Array
+
+
+def circle_at(field: Field, x: Array, p: float, grid: Grid) -> Circle:
+    """The circle at a Hopf point.
+
+    Raises `ValueError` if no pair of eigenvalues is near the imaginary axis.
+    """
+    matrix = field.derivatives(x[:, None], p)[0][0]
+    values, vectors = np.linalg.eig(matrix)
+    off = np.where(values.imag > 0.0, np.abs(values.real) / np.maximum(np.abs(values), np.finfo(float).tiny), np.inf)
+    k = int(np.argmin(off))
+    if not off[k] <= HOPF_PAIR:
+        found = f"{values[k]:.3g}" if np.isfinite(off[k]) else "none that is not real"
+        raise ValueError(f"point: expected a pair of eigenvalues of f_x on the imaginary axis, found {found}")
+    q, size = vectors[:, k], sizes(x)
+    q = q / np.abs(q / size).max()
+    motion = (q * np.exp(2j * np.pi * grid.nodes)[:, None]).real
+    return Circle(motion, float(2.0 * np.pi / values[k].imag), np.maximum(np.abs(q), LEAST_MOTION * size))
+
+
+def one_period(field: Field, t: Array, x: Array, p: float, grid: Grid) -> tuple[Array, float, Grid]:
+    """The last period of a simulation: its states at the nodes of a grid, its period, and the grid.
+
+    `t` of shape (k,), rising. `x` of shape (k, n). Half of the mesh is spent on time, half on the way.
+    """
+    spline = CubicHermiteSpline(t, x, field(x.T, p).T)
+    end, spread = x[-1], x.std(axis=0)
+    spread = np.where(spread > 0.0, spread, 1.0)
+    normal = field(x[-1:].T, p)[:, 0] / spread**2
+
+    def ahead(time: float) -> float:
+        return float((spline(time) - end) @ normal)
+
+    g = (x - end) @ normal
+    rising = np.flatnonzero((g[:-2] < 0.0) & (g[1:-1] >= 0.0))
+    times = np.array([brentq(ahead, t[k], t[k + 1]) for k in rising])
+    missed = np.linalg.norm((spline(times) - end) / spread, axis=1) if times.size else np.array([np.inf])
+    if not missed.min() <= NO_RETURN:
+        raise complain(ValueError, "x", "a simulation that ends on a periodic orbit, twice round", x)
+    begin = float(times[np.flatnonzero(missed <= 2.0 * missed.min() + ONE_RETURN)[-1]])
+    T = float(t[-1]) - begin
+    fine = np.linspace(0.0, 1.0, 50 * grid.intervals + 1)
+    states = spline(begin + T * fine)
+    way = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(states / spread, axis=0), axis=1)))
+    mesh = np.interp(np.linspace(0.0, 1.0, grid.intervals + 1), 0.5 * (fine + way / way[-1]), fine)
+    mesh[0], mesh[-1] = 0.0, 1.0
+    made = Grid(mesh, grid.degree)
+    return spline(begin + T * made.nodes) - made.nodes[:, None] * (states[-1] - states[0]), T, made

@@ -1,0 +1,82 @@
+"""Orbits that are known: in closed form, or by DOP853 at 1e-13 and Newton's method on the return."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import continuation
+from continuation import TargetValue
+from problems.orbits import PeriodicOrbit
+from problems.orbits.models import brusselator, normal_form, roessler, van_der_pol
+
+from .util import bent, by_hand, of_sizes, one_by_one, simulated
+
+
+@pytest.mark.parametrize(
+    ("f", "jacobian", "accuracy"),
+    [(normal_form, None, 1e-12), (normal_form, by_hand, 1e-12), (bent, None, 1e-10), (one_by_one, None, 1e-12),
+     (of_sizes, None, 1e-9)],
+)  # fmt: skip
+def test_the_normal_form_from_its_hopf_point_over_the_fold(f, jacobian, accuracy):
+    intervals = 40 if f is bent else 20
+    orbit = PeriodicOrbit.from_hopf(f, ([0.0, 0.0], 0.0), intervals=intervals, jacobian=jacobian)
+    path = continuation.trace(orbit, start=orbit.leaving, events=[TargetValue(0.2)])
+    fold, end = path.events
+    assert fold.name == "turning point"
+    assert fold.lam == pytest.approx(-0.25, abs=accuracy)
+    assert fold.observed["period"] == pytest.approx(2.0 * np.pi, rel=1e-8)
+    assert fold.observed["trivial"] < 1e-6
+    r2 = 0.5 * (1.0 + np.sqrt(1.8))
+    assert end.observed["max 0"] == pytest.approx(np.sqrt(r2), rel=1e-6)
+    assert end.observed["multiplier"] == pytest.approx(np.exp(2.0 * np.pi * (0.2 + 3.0 * r2 - 5.0 * r2**2)), rel=1e-6)
+    assert [step.observed["unstable"] for step in path.steps] == sorted(
+        (step.observed["unstable"] for step in path.steps), reverse=True
+    )
+
+
+@pytest.mark.parametrize(
+    ("f", "p", "x0", "period", "multiplier", "accuracy"),
+    [(van_der_pol, 1.0, [2.0, 0.0], 6.663286859323131, 8.596951e-4, 1e-8),
+     (van_der_pol, 10.0, [2.0, 0.0], 19.078369566939067, 0.0, 1e-4),
+     (brusselator, 3.0, [1.0, 2.9], 7.156919921179888, 2.5163758e-4, 1e-8)],
+)  # fmt: skip
+def test_a_simulation_settles_on(f, p, x0, period, multiplier, accuracy):
+    orbit = PeriodicOrbit.from_solution(f, *simulated(f, p, x0), p, intervals=40)
+    assert orbit.period == pytest.approx(period, rel=1e-8)
+    found = orbit.multipliers(*orbit.start()).values
+    assert abs(found[0] - 1.0) <= accuracy
+    assert_allclose(found[1:], multiplier, atol=2e-7 * multiplier + 1e-14)
+
+
+def test_the_first_period_doubling_of_roessler():
+    orbit = PeriodicOrbit.from_solution(roessler, *simulated(roessler, 2.7, [1.0, 1.0, 0.1], 500.0), 2.7, intervals=40)
+    path = continuation.trace(orbit, direction=1, events=[TargetValue(3.0)])
+    doubling = path.events[0]
+    assert doubling.name == "period doubling"
+    assert doubling.lam == pytest.approx(2.832445027862, abs=1e-8)
+    assert doubling.observed["period"] == pytest.approx(5.769820016507, abs=1e-8)
+    assert doubling.observed["trivial"] <= 1e-8
+    assert [step.observed["unstable"] for step in path.steps] == [0.0] * (len(path) - 1) + [1.0]
+    twice = orbit.doubled(doubling)
+    assert twice.period == pytest.approx(2.0 * 5.7698, abs=1e-3)
+    branch = continuation.trace(twice, start=twice.leaving, events=[TargetValue(3.0)])
+    assert branch.success
+    assert branch.steps[-1].observed["unstable"] == 0.0
+
+
+@pytest.mark.parametrize(("degree", "order"), [(2, 4), (3, 6), (4, 8)])
+def test_the_period_converges_twice_as_fast_as_the_degree(degree, order):
+    times, states = simulated(van_der_pol, 1.0, [2.0, 0.0])
+    errors = []
+    for intervals in (12, 24):
+        orbit = PeriodicOrbit.from_solution(van_der_pol, times, states, 1.0, intervals=intervals, degree=degree)
+        errors.append(abs(orbit.period - 6.663286859323131))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=1.5)
+
+
+def test_the_bound_holds_between_the_mesh_points():
+    orbit = PeriodicOrbit.from_hopf(normal_form, ([0.0, 0.0], 0.0), intervals=8, radius=0.3)
+    radii = np.linalg.norm(orbit.at(orbit.start()[0], np.linspace(0.0, 1.0, 500)), axis=1)
+    r2 = 0.5 * (1.0 - np.sqrt(1.0 + 4.0 * orbit.parameter))
+    error = np.abs(radii - np.sqrt(r2)).max()
+    assert 0.0 < error <= orbit.observe(*orbit.start())["error"]

@@ -1,0 +1,71 @@
+"""What leaves an orbit's branch, and what lies on it: doublings, tori, Hopf points; curves in a second parameter."""
+
+import numpy as np
+import pytest
+
+import continuation
+from continuation import Budget, Curve, Family, Kind, TargetValue
+from problems.orbits import PeriodicOrbit
+from problems.orbits.models import brusselator, normal_form, roessler
+
+from .util import simulated, two_circles
+
+
+def test_a_branch_leads_from_the_hopf_point_of_a_path_of_equilibria():
+    equilibria = continuation.from_functions(brusselator, start=([1.0, 1.5], 1.5), target=2.5)
+    path = continuation.trace(equilibria, observers=[continuation.Stability()])
+    (hopf,) = (event for event in path.events if event.kind == Kind.HOPF)
+    orbit = PeriodicOrbit.from_hopf(brusselator, hopf, radius=1e-3)
+    assert orbit.period == pytest.approx(2.0 * np.pi, abs=1e-6)
+    assert orbit.parameter > 2.0
+    back = continuation.trace(orbit, start=(np.append(*orbit.start()), -orbit.leaving[1]))
+    assert back.events[-1].name == "Hopf point"
+    assert back.events[-1].lam == pytest.approx(2.0, abs=1e-6)
+
+
+def test_a_torus_where_a_pair_crosses_the_unit_circle():
+    t = 2.0 * np.pi * np.arange(80) / 80
+    states = np.stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t], axis=1)
+    orbit = PeriodicOrbit(two_circles, states, 2.0 * np.pi, -0.1, 20, 4, scale=np.ones(4))
+    path = continuation.trace(orbit, direction=1, events=[TargetValue(0.1)])
+    torus, _ = path.events
+    assert torus.name == "torus"
+    assert torus.lam == pytest.approx(0.0, abs=1e-9)
+    values = orbit.multipliers(torus.y, torus.lam).values[1:3]
+    assert np.angle(values) == pytest.approx(2.0 * np.pi * 0.3 * np.array([1.0, -1.0]), abs=1e-6)
+    assert [path.steps[k].observed["unstable"] for k in (0, -1)] == [0.0, 2.0]
+
+
+def test_the_curve_of_folds_of_cycles():
+    """p = -second^2 / 4."""
+    orbit = PeriodicOrbit.from_hopf(normal_form, ([0.0, 0.0], 0.0), intervals=10, second=1.0)
+    fold = continuation.trace(orbit, start=orbit.leaving, events=[continuation.TurningPoint(terminal=1)]).events[-1]
+    curve = continuation.trace(Curve(Family(orbit, "second"), fold), target=0.5)
+    assert curve.success
+    for step in curve.steps:
+        assert step.u[-2] == pytest.approx(-0.25 * step.lam**2, abs=1e-11)
+
+
+def test_the_curve_of_period_doublings():
+    def at(a):
+        found = simulated(lambda z, c: roessler(z, c, a), 1.8, [1.0, 1.0, 0.1], 300.0)
+        orbit = PeriodicOrbit.from_solution(roessler, *found, 1.8, second=a)
+        path = continuation.trace(orbit, direction=1, events=[TargetValue(3.0)])
+        return orbit, next(event for event in path.events if event.name == "period doubling")
+
+    orbit, doubling = at(0.2)
+    twice = orbit.doubled(doubling, radius=0.0)
+    curve = Curve(Family(twice, "second"), Kind.BRANCH_POINT, at=twice.start())
+    path = continuation.trace(curve, target=0.25, budget=Budget(steps=30))
+    assert path.success
+    assert path.steps[-1].u[-2] == pytest.approx(at(0.25)[1].lam, abs=1e-5)
+
+
+def test_pictures_tell_the_stable_part():
+    pytest.importorskip("matplotlib")
+    from continuation.plot import plot_bifurcation
+
+    orbit = PeriodicOrbit.from_hopf(normal_form, ([0.0, 0.0], 0.0), intervals=10)
+    path = continuation.trace(orbit, start=orbit.leaving, events=[TargetValue(0.2)])
+    axes = plot_bifurcation(path, value="max 0")
+    assert {line.get_linestyle() for line in axes.lines if len(line.get_xdata()) > 1} == {"-", "--"}
