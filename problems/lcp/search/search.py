@@ -78,6 +78,7 @@ class Search:
     exhaustion: Exhaustion | None = None
     compiled: bool = False
     looked: bool | None = None
+    shown: bool = False
     began: float = field(factory=time.perf_counter)
     _kept: int = field(default=0, init=False)
 
@@ -168,8 +169,11 @@ class Search:
         return found
 
     def follow(self, homotopy: LCPHomotopy, **options: Any) -> bool:
-        """Trace one path to its end; whether that is a solution."""
-        given = {**options, **self.options}
+        """Trace one path to its end; whether that is a solution.
+
+        Its arcs are examined where the path is asked for; with the finish its end is certified, whatever led there.
+        """
+        given = {"examine": self.finish is None or self.shown, **options, **self.options}
         self.add(follow(homotopy, self.finish, self._left(), observers=self._observers(), **given))
         return self.solved
 

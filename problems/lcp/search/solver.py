@@ -220,6 +220,7 @@ def solve(
         scaled=scaled,
         postponed=postponed,
         looked=looked,
+        shown=path,
     )
     asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
     case = Case(search, start, asked, restarts, seed, executor, near)
