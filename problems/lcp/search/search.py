@@ -119,6 +119,8 @@ class Search:
             self.scaled = own.after(self.scaled)
             self.ends.clear()
             self.looked = None
+            if self.finish is not None:
+                self.finish.nearest = None
             self._change(own.problem)
 
     def make_dense(self) -> None:
@@ -154,9 +156,11 @@ class Search:
         if self._finished(lambda finish: finish.augmented(below, most)):
             return True
         nearest = None if self.finish is None else self.finish.nearest
-        if nearest is not None:
-            self.accept(nearest)
         return nearest is not None and to_precision(self.problem, nearest)
+
+    def take(self, x: Array) -> bool:
+        """Whether a point is itself a solution."""
+        return self._finished(lambda finish: finish.take(x))
 
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.finish is None:
@@ -281,13 +285,15 @@ class Search:
         )
 
     def best(self) -> Candidate | None:
-        """The solution, else one to working precision, the best stationary point, the end of least residual."""
-        if len(self.ends) < 2:
-            return self.ends[0] if self.ends else None
+        """The solution, else one to working precision, the best stationary point, the point of least residual."""
+        nearest = None if self.finish is None else self.finish.nearest
+        ends = self.ends if nearest is None else [*self.ends, Candidate(nearest, -1, False)]
+        if len(ends) < 2:
+            return ends[0] if ends else None
 
         def rank(end: Candidate) -> tuple[bool, bool, bool, float]:
             certificate = end.certificate
             rounded = to_precision(self.problem, certificate)
             return not self.confirmed(certificate), not rounded, not end.stationary, certificate.residual
 
-        return min(self.ends, key=rank)
+        return min(ends, key=rank)
