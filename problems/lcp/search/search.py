@@ -25,7 +25,7 @@ from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import LCPHomotopy
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
-from problems.lcp.proof.verdict import confirmed, stationary, to_precision
+from problems.lcp.proof.verdict import NEARLY, confirmed, stationary, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.restarts import FAR_STARTS, Band, Restart, light, trace_light
@@ -285,15 +285,15 @@ class Search:
         )
 
     def best(self) -> Candidate | None:
-        """The solution, else one to working precision, the best stationary point, the point of least residual."""
+        """The solution, else one to working precision, one nearly, a stationary point, the point of least residual."""
         nearest = None if self.finish is None else self.finish.nearest
         ends = self.ends if nearest is None else [*self.ends, Candidate(nearest, -1, False)]
         if len(ends) < 2:
             return ends[0] if ends else None
 
-        def rank(end: Candidate) -> tuple[bool, bool, bool, float]:
-            certificate = end.certificate
-            rounded = to_precision(self.problem, certificate)
-            return not self.confirmed(certificate), not rounded, not end.stationary, certificate.residual
+        def rank(end: Candidate) -> tuple[bool, bool, bool, bool, float]:
+            found = end.certificate
+            rounded, nearly = to_precision(self.problem, found), found.solves(NEARLY)
+            return not self.confirmed(found), not rounded, not nearly, not end.stationary, found.residual
 
         return min(ends, key=rank)
