@@ -75,8 +75,8 @@ class Dense:
     """Powers of two, (1, N + 1), by which the rows were multiplied; None for ones."""
     columns: Array | None
     """The same for the columns."""
-    whole: Array | None = None
-    """The scaled matrix, where solutions are to be corrected."""
+    whole: tuple[Array, Array] | None = None
+    """The scaled matrix, and the magnitudes of its entries, where solutions are to be corrected."""
 
     @property
     def sign(self) -> int:
@@ -99,17 +99,17 @@ class Dense:
         if self.whole is None:
             dgetrs(factor.lu, factor.pivots, z, 0, IN_PLACE)
         else:
-            z = self._corrected(self.whole, z)
+            z = self._corrected(*self.whole, z)
         if self.columns is not None:
             z = dtbmv(0, self.columns, z, 1, 0, 0, 0, 0, IN_PLACE)
         if not isfinite(dasum(z)):
             raise SingularError("The bordered solution is not finite: overflow, or a bad right-hand side.")
         return z
 
-    def _corrected(self, whole: Array, right: Array) -> Array:
+    def _corrected(self, whole: Array, sizes: Array, right: Array) -> Array:
         """The scaled solution; iterative refinement makes each row hold (Skeel, Math. Comp. 35, 1980)."""
         z = found = self.factor.solve(right)
-        sizes, before = np.abs(whole), np.inf
+        before = np.inf
         with np.errstate(all="ignore"):
             for _ in range(CORRECTIONS):
                 gap, terms = right - whole @ z, sizes @ np.abs(z) + np.abs(right)
@@ -147,7 +147,8 @@ def factor_dense(matrix: Array, column: Array, row: Array) -> Dense:
     else:
         columns = None
     sizes = None if scale is None and columns is None else np.abs(whole)
-    kept = None if sizes is None or sizes.min(where=sizes > 0.0, initial=1.0) >= HIDDEN else whole.copy()
+    hidden = sizes is not None and sizes.min(where=sizes > 0.0, initial=1.0) < HIDDEN
+    kept = (whole.copy(), sizes) if sizes is not None and hidden else None
     lu, pivots, info = dgetrf(whole, IN_PLACE)
     if info > 0:
         raise SingularError(f"The bordered matrix of order {n + 1} is singular: pivot {info - 1} is zero.")

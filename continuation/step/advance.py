@@ -127,10 +127,9 @@ class Advance:
             prediction = settings.predictor.prepare(self.solver.evaluator, point, state.history)
         except EvaluationError as error:
             return Stopped(predictor_failed(error))
-        if settings.examine:
-            limit, state = self._limit_ahead(point, prediction, state)
-            if limit is not None:
-                return Stopped(singular_end(limit), limit.u)
+        limit, state = self._limit_ahead(point, prediction, state)
+        if limit is not None:
+            return Stopped(singular_end(limit), limit.u)
         h, memory = min(state.h, prediction.reach), state.controller
         if self.extent is not None:
             h = min(h, self.extent.longest)

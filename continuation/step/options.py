@@ -53,9 +53,8 @@ class PartOptions(TypedDict, total=False):
     check_jacobian : bool, default False
         Compare the Jacobian with the residual at the start; a wrong one is a ValueError that says where.
     examine : bool, default True
-        Watch for turning points and branch points, and look for a singular end by the endgame. Without it the path is
-        only followed, at two thirds of the cost: a step over a branch point is refused, and an end must be regular, or
-        be found by the homotopy's own `finish`. For searches that trace many paths for their ends.
+        Watch for turning points and branch points. Without it the path is only followed, at two thirds of the cost: a
+        step over a branch point is refused. For searches that trace paths for their ends.
     """
 
     preset: Preset

@@ -44,7 +44,7 @@ class Settings:
     target : float or None
     direction : int
     examine : bool
-        Whether turning points, branch points and singular ends are looked for.
+        Whether turning points and branch points are looked for.
     """
 
     predictor: Predictor

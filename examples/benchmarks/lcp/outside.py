@@ -1,10 +1,11 @@
 """Families that the solver was not tuned on: what outsiders' problems cost, in processor seconds a problem.
 
     python examples/benchmarks/lcp/outside.py [FAMILY ...] [--seed S] [--limit S] [--before CHECKOUT] [--write PAGE]
-        [--homotopy NAME]
+        [--homotopy NAME] [--each K]
 
 Prints how many are decided, the median and the largest time, of another checkout too, and puts the table into a file in
-place of the one there. The steps of a stack are solved by `lcp.Solver` where there is one.
+place of the one there. The steps of a stack are solved by `lcp.Solver` where there is one. `--each`: Stacks, arches and
+piles of each size, in place of those of `bodies.EACH`.
 """
 
 import argparse
@@ -20,9 +21,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import bodies
 import numpy as np
 import scipy.sparse as sp
-from bodies import arches, piles, stacks
 from scipy.optimize import linprog
 
 from continuation.arrays import Array
@@ -213,9 +214,9 @@ FAMILIES = {
     "small integers, n = 1 to 8": small,
     "grids, n = 12 to 900": grids,
     "steps of a stack, n = 200": stack,
-    "stacks, n = 40 to 480": stacks,
-    "arches, n = 48 to 496": arches,
-    "piles, n = 44 to 520": piles,
+    "stacks, n = 40 to 480": bodies.stacks,
+    "arches, n = 48 to 496": bodies.arches,
+    "piles, n = 44 to 520": bodies.piles,
     "nonmonotone, sparse, n = 200": nonmonotone_sparse,
     "nonmonotone, dense, n = 200": nonmonotone_dense,
 }
@@ -254,9 +255,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=2026)
     parser.add_argument("--limit", type=float, default=10.0)
     parser.add_argument("--homotopy", default="auto")
+    parser.add_argument("--each", type=int)
     parser.add_argument("--before")
     parser.add_argument("--write")
     arguments = parser.parse_args()
+    bodies.EACH = (arguments.each,) * 3 if arguments.each else bodies.EACH
     here = str(Path(__file__).parents[3])
     lines = ["| family | before | now | ratio of medians |", "|---|---|---|---|"]
     for title, family in list(FAMILIES.items()):

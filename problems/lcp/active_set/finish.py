@@ -76,7 +76,7 @@ class Finish:
     certificate : Certificate or None
         Of the last solution found.
     nearest : Certificate or None
-        Of the point of least normwise residual that the augmented Lagrangian led to.
+        Of the point of least normwise residual that was judged and is no solution.
     stopped : State or None
         Where an iteration over regular faces alone would go on.
     """
@@ -212,7 +212,20 @@ class Finish:
             x = face.refined(x)
         if not np.isfinite(x).all():
             return False
-        found = with_zeros(self.problem, certify(self.problem, self.problem.clipped(x)), self.tolerance)
+        return self._kept(with_zeros(self.problem, certify(self.problem, self.problem.clipped(x)), self.tolerance))
+
+    def take(self, x: Array) -> Array | None:
+        """The point itself, where it is a solution; else it may be the nearest.
+
+        Parameters
+        ----------
+        x : Array of shape (n,)
+        """
+        found = certified(self.problem, self.problem.clipped(x)) if np.isfinite(x).all() else None
+        return found.x if found is not None and self._kept(found) else None
+
+    def _kept(self, found: Certificate) -> bool:
+        """Whether it is that of a solution; the point is kept else too where none was nearer to one."""
         if confirmed(self.problem, found, self.tolerance):
             self.certificate = found
             return True
@@ -253,8 +266,7 @@ class Finish:
                 zeros = self.problem.settled(best.x, best.w)
             if (zeros != best.x).any():
                 best = certified(self.problem, zeros)
-        if confirmed(self.problem, best, self.tolerance):
-            self.certificate = best
+        if self._kept(best):
             return best.x, best.w, True
         return x, self.problem.w(x), False
 

@@ -50,7 +50,7 @@ class Policy:
     regular : bool
         Whether it ends before the first face whose equations are singular, after those that are allowed.
     singular : int
-        How many of these are.
+        So many faces with singular equations are allowed then, and are no steps, whose points may lie anywhere on them.
     """
 
     steps: int
@@ -140,13 +140,13 @@ def iterate(
     centre = None if shift is None else x
     changes: list[int] = []
     singular = 0
-    for _ in range(policy.steps + 1):
+    while len(changes) - min(singular, policy.singular) <= policy.steps:
         if tried is not None and not tried.add(state, x):
             return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
         regular = policy.regular and singular >= policy.singular
-        face = faces.face(state, shift or 0.0, centre, regular)
+        face = faces.face(state, shift or 0.0, centre, regular, x)
         singular += face is None or not face.exact
         if regular and singular > policy.singular:
             if tried is not None:

@@ -171,17 +171,20 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     """How far each row is off, but for those that entries of x that no float holds can make up for.
 
-    So it is at the far end of a solution that falls off by powers, away from the one q_i that is not 0. An x_j at its
-    bound counts only where w_j is not pressed against it: another one is exactly there.
+    So it is at the far end of a solution that falls off by powers, away from the one q_i that is not 0: where a row has
+    a term of a normal float, q_i or of an x_j, it is off by that. An x_j at its bound counts only where w_j is not
+    pressed against it: another one is exactly there.
     """
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
     if not asked.any():
         return off
     inward = np.where(x == problem.upper, -terms.w, terms.w)
     away = ((x != problem.lower) & (x != problem.upper)) | (inward <= ROUND_OFF * terms.size)
-    reach = abs(problem.A) @ ((np.abs(x) < SMALLEST_NORMAL) & away).astype(float)
+    sizes, subnormal = abs(problem.A), np.abs(x) < SMALLEST_NORMAL
+    asked &= (problem.q == 0.0) & (sizes @ (~subnormal).astype(float) == 0.0)
+    reach = sizes @ (subnormal & away).astype(float)
     most = np.ldexp(np.minimum(reach, np.finfo(float).max), -1074 - terms.exponents)
-    made_up = (np.abs(terms.w) <= most) & (x >= problem.lower) & (x <= problem.upper)
+    made_up = asked & (np.abs(terms.w) <= most) & (x >= problem.lower) & (x <= problem.upper)
     return np.where(made_up, 0.0, off)
 
 

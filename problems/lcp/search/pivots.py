@@ -240,7 +240,10 @@ def _reached(search: Search, path: AlmostComplementary, ended: Ended) -> bool:
     search.compiled = path.compiled
     # A first active set that was looked at, and not tried since, is counted here.
     looked = not search.counts.factorizations and search.looked is not None
-    if ended is not Ended.REACHED or not search.settle(active_state(path.active), AT_END):
+    if ended is not Ended.REACHED:
+        return False
+    # Where rounding has made the last basis singular its own point may do.
+    if not search.settle(active_state(path.active), AT_END) and not search.take(path.values()):
         return False
     search.counts.factorizations += looked
     return True

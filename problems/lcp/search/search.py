@@ -25,7 +25,7 @@ from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import LCPHomotopy
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas
-from problems.lcp.proof.verdict import confirmed, stationary, to_precision
+from problems.lcp.proof.verdict import NEARLY, confirmed, stationary, to_precision
 from problems.lcp.reference.enumeration import Exhaustion
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.restarts import FAR_STARTS, Band, Restart, light, trace_light
@@ -78,6 +78,7 @@ class Search:
     exhaustion: Exhaustion | None = None
     compiled: bool = False
     looked: bool | None = None
+    shown: bool = False
     began: float = field(factory=time.perf_counter)
     _kept: int = field(default=0, init=False)
 
@@ -118,6 +119,8 @@ class Search:
             self.scaled = own.after(self.scaled)
             self.ends.clear()
             self.looked = None
+            if self.finish is not None:
+                self.finish.nearest = None
             self._change(own.problem)
 
     def make_dense(self) -> None:
@@ -153,9 +156,11 @@ class Search:
         if self._finished(lambda finish: finish.augmented(below, most)):
             return True
         nearest = None if self.finish is None else self.finish.nearest
-        if nearest is not None:
-            self.accept(nearest)
         return nearest is not None and to_precision(self.problem, nearest)
+
+    def take(self, x: Array) -> bool:
+        """Whether a point is itself a solution."""
+        return self._finished(lambda finish: finish.take(x))
 
     def _finished(self, method: Callable[[Finish], Array | None]) -> bool:
         if self.finish is None:
@@ -168,8 +173,11 @@ class Search:
         return found
 
     def follow(self, homotopy: LCPHomotopy, **options: Any) -> bool:
-        """Trace one path to its end; whether that is a solution."""
-        given = {**options, **self.options}
+        """Trace one path to its end; whether that is a solution.
+
+        Its arcs are examined where the path is asked for; with the finish its end is certified, whatever led there.
+        """
+        given = {"examine": self.finish is None or self.shown, **options, **self.options}
         self.add(follow(homotopy, self.finish, self._left(), observers=self._observers(), **given))
         return self.solved
 
@@ -277,13 +285,15 @@ class Search:
         )
 
     def best(self) -> Candidate | None:
-        """The solution, else one to working precision, the best stationary point, the end of least residual."""
-        if len(self.ends) < 2:
-            return self.ends[0] if self.ends else None
+        """The solution, else one to working precision, one nearly, a stationary point, the point of least residual."""
+        nearest = None if self.finish is None else self.finish.nearest
+        ends = self.ends if nearest is None else [*self.ends, Candidate(nearest, -1, False)]
+        if len(ends) < 2:
+            return ends[0] if ends else None
 
-        def rank(end: Candidate) -> tuple[bool, bool, bool, float]:
-            certificate = end.certificate
-            rounded = to_precision(self.problem, certificate)
-            return not self.confirmed(certificate), not rounded, not end.stationary, certificate.residual
+        def rank(end: Candidate) -> tuple[bool, bool, bool, bool, float]:
+            found = end.certificate
+            rounded, nearly = to_precision(self.problem, found), found.solves(NEARLY)
+            return not self.confirmed(found), not rounded, not nearly, not end.stationary, found.residual
 
-        return min(self.ends, key=rank)
+        return min(ends, key=rank)

@@ -222,6 +222,7 @@ def solve(
         scaled=scaled,
         postponed=postponed,
         looked=looked,
+        shown=path,
     )
     asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
     case = Case(search, start, asked, restarts, seed, executor, near)
@@ -322,6 +323,8 @@ def _account(case: Case, settled: Attempt | None) -> str:
     parts.append(tried if case.tried else "No restarts were tried.")
     if search.exhausted:
         parts.append(f"The budget is used up: {search.exhausted}.")
+    if (best := search.best()) is not None:
+        parts.append(f"The relative residual of the best point is {best.certificate.relative_residual:.1e}.")
     return " ".join([*parts, factored]).rstrip()
 
 

@@ -177,10 +177,20 @@ def test_rows_beyond_the_range_of_floats_are_as_exact_as_others(seed, sparse):
 
 
 def test_solutions_that_no_float_holds_are_not_claimed():
-    for A, q in (([[1e-300]], [-1e300]), ([[1e300]], [-1e-300])):
+    # Where x = 1e-400 would solve, x = 0 leaves w = q < 0.
+    for A, q in (
+        ([[1e-300]], [-1e300]),
+        ([[1e300]], [-1e-300]),
+        ([[8.5e255]], [-3.9e-112]),
+        ([[2.0, 3.0], [1e-300, 0.0]], [-5e-324, 1e160]),
+        ([[1.0, 0.0], [0.0, 1e250]], [-1.0, -1e-110]),
+        ([[1e200, 1e-100], [0.0, 1.0]], [-1e-200, 1.0]),
+        ([[0.0, 1e-20, -4.9e-324], [1e-20, 2.2e-308, -1e20], [-1e300, 0.0, 3.0]], [-3.0, 5e-324, 0.0]),
+    ):
         solution = lcp.solve(lcp.LCP(A, q))
         assert solution.outcome is Outcome.NOT_FOUND
-        assert "no float holds it" in solution.message
+        assert "no float holds it" in solution.message or "misses the tolerance" in solution.message
+        assert solution.relative_residual >= 1.0
 
 
 def test_entries_too_far_apart_for_floats_are_decided_exactly_or_judged_as_given():

@@ -63,6 +63,21 @@ def test_a_singular_face_gives_its_point_nearest_to_the_given_one(symmetric):
         np.testing.assert_allclose(x, [0.8, 0.2], atol=1e-6)
 
 
+def test_a_singular_face_without_symmetry_is_solved_in_one_correction_relative_to_where_it_is():
+    # Zero is a defective eigenvalue: shifted equations answer the second correction with 1e8 of a null vector.
+    rng = np.random.default_rng(4)
+    A = rng.standard_normal((6, 3)) @ rng.standard_normal((3, 6))
+    A[:, 0], A[0], near = 0.0, 0.0, 10.0 ** rng.uniform(-6, 1, 6)
+    A[0, 1] = 1.0
+    q = -A @ (near * (1.0 + 0.1 * rng.standard_normal(6)))
+    for units in (np.ones(6), 10.0 ** rng.uniform(-8, 8, 6)):
+        face = faces(A / units, q).face(state_of(np.ones(6, dtype=bool)), near=units * near)
+        x, w = face.point(units * near)
+        relative = np.linalg.lstsq(A * near, -q - A @ near)[0]
+        assert np.abs(w).max() < 1e-14
+        np.testing.assert_allclose(x, units * near * (1.0 + relative), rtol=1e-9)
+
+
 def test_an_inconsistent_face_is_never_certified():
     finish = Finish(faces([[1.0, 1.0], [1.0, 1.0]], [-1.0, -2.0]), 1e-10)
     assert finish.settle(state_of(np.array([True, True])), Policy(0)) is None

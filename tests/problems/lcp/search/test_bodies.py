@@ -1,7 +1,11 @@
 """Time steps of many bodies in contact: two of each family and size of the benchmark, by work that no clock counts."""
 
+import itertools
+
+import numpy as np
 import pytest
 
+from continuation import Budget
 from problems import lcp
 
 from ....util import benchmark
@@ -17,3 +21,24 @@ def test_bodies_in_contact_are_solved_without_a_path(family, monkeypatch):
         assert found.relative_residual < 1e-11
         assert not found.paths
         assert found.counts.factorizations < 60
+
+
+@pytest.mark.parametrize(("family", "most"), [("stacks", 60), ("arches", 120)])
+def test_the_kkt_path_alone_solves_bodies_in_contact(family, most, monkeypatch):
+    bodies = benchmark("lcp/bodies.py")
+    monkeypatch.setattr(bodies, "EACH", (2, 2, 2))
+    for A, q in itertools.islice(getattr(bodies, family)(46), 4):
+        found = lcp.solve(lcp.LCP(A, q), "kkt")
+        assert found.solved
+        assert found.counts.factorizations < most
+
+
+def test_the_nearest_point_is_returned_and_said_where_none_passes():
+    # The end of the pure path is as near as a float can be to what is asked for in vain.
+    r = np.random.default_rng(1)
+    M, S = r.standard_normal((2, 20, 20))
+    problem = lcp.LCP(M @ M.T / 20 + np.eye(20) + 0.3 * (S - S.T), r.standard_normal(20))
+    found = lcp.solve(problem, "kkt", tolerance=1e-25, budget=Budget(steps=30))
+    assert found.outcome is lcp.Outcome.NOT_FOUND
+    assert found.relative_residual < 1e-14
+    assert f"The relative residual of the best point is {found.relative_residual:.1e}." in found.message
