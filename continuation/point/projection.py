@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from attrs import frozen
+from attrs import define
 
 from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
@@ -60,9 +60,11 @@ SMALL_INCREMENT, WITHIN_TOLERANCE = 1e-4, 1.0
 for; where three factorisations do not give it, the tolerance itself is enough."""
 
 
-@frozen(eq=False)
+@define(eq=False)
 class PathSolver:
     """What puts points on the path of one homotopy to one tolerance; made once for a trace.
+
+    The start raises the tolerance where noise in H does not allow it (`continuation.step.start`).
 
     Attributes
     ----------

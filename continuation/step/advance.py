@@ -171,7 +171,7 @@ class Advance:
             self.solver.evaluator.counts.rejected += 1
             if failed.reason is Rejection.SINGULAR:
                 h *= SINGULAR_STRETCH
-            verdict = budget_spent(self.spent(), rejected) or no_step_left(h, controller.bounds.minimum, rejected)
+            verdict = budget_spent(self.spent(), state, rejected) or no_step_left(h, controller.bounds.minimum, rejected)
             if verdict is not None:
                 return Stopped(verdict)
 
@@ -214,7 +214,9 @@ class Advance:
         """Make the arrival the current point: metric, history, divergence, and the step's record."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
-        monitor, infinity = divergence(state.divergence_monitor, arrival.u, state.origin, state.origin_weights)
+        monitor, infinity = divergence(
+            state.divergence_monitor, arrival.u, arrival.tangent, state.origin, state.origin_weights
+        )
         moved = arrival.with_weights(self._weights(arrival, state))
         if self.extent is not None:
             # The same step in the new metric: the path has become longer, not the step.

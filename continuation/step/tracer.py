@@ -216,7 +216,7 @@ class Tracer:
             self._handed = len(self.path.steps)
             yield self.path.steps[-1]
         while self.path.status is Status.TRACING:
-            verdict = budget_spent(self._spent())
+            verdict = budget_spent(self._spent(), self.state)
             if verdict is not None:
                 self._end(verdict)
                 return

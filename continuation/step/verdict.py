@@ -9,6 +9,7 @@ from __future__ import annotations
 from attrs import frozen
 
 from continuation.ends.closed_curve import same_ray
+from continuation.ends.divergence import beyond_horizon, words
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import ArcEnd, EndsAt
 from continuation.evaluation.evaluator import EvaluationError
@@ -18,6 +19,7 @@ from continuation.predictors import Knot
 from continuation.rejection import Rejected, Rejection
 from continuation.status import Status
 from continuation.step.start import SingularStartError, StartError
+from continuation.step.state import State
 
 
 @frozen(eq=False)
@@ -67,9 +69,17 @@ def start_on_target(lam: float, target: float | None) -> Verdict | None:
     return Verdict(Status.REACHED_TARGET, "The start lies on it.") if lam == target else None
 
 
-def budget_spent(limit: str, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
-    """A limit of the budget is reached, `limit` says which; asked before a step and between attempts."""
-    return Verdict(Status.BUDGET_EXHAUSTED, f"Reached: {limit}.", rejected=rejected) if limit else None
+def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
+    """A limit of the budget is reached, `limit` says which; asked before a step and between attempts.
+
+    What asymptote is in sight is said, but it has not been followed far enough to be an end.
+    """
+    limit = limit or ("" if state is None else beyond_horizon(state.here.u))
+    if not limit:
+        return None
+    seen = "" if state is None else words(state.divergence_monitor)
+    seen = f" In sight, and not followed to its end: {seen[0].lower()}{seen[1:]}" if seen else ""
+    return Verdict(Status.BUDGET_EXHAUSTED, f"Reached: {limit}.{seen}", rejected=rejected)
 
 
 def predictor_failed(error: EvaluationError) -> Verdict:
