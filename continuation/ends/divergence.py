@@ -14,7 +14,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from continuation.arrays import Array, largest
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import norm
+from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
 DECADE = 10.0
@@ -24,15 +26,15 @@ MET = 0.1
 """What a prediction may be off, beside the way of the parameter that it predicts: a tenth of a decade."""
 
 MET_OVER = 1e-2
-"""The model counts after the parameter has come nearer to the limit by this factor while all predictions were met."""
+"""A model is tried further after the parameter has come nearer to the limit by this factor while all predictions were
+met."""
 
 ARRIVED, LAST_PLACES = 1e-11, 8.0
-"""It is at its limit when that is so near, beside all its way or in units of its last place: imperfect pitchforks turn
-off at the power 2/3 of the imperfection, so those above 1e-16 do not come so near."""
+"""It is tried until the parameter is so near to its limit, beside all its way or in units of its last place: imperfect
+pitchforks turn off at the power 2/3 of the imperfection, so those above 1e-16 do not come so near."""
 
-GROWN = 1e20
-"""Where the unknowns have come so many times as far as at the first turn a model that was met counts, too: a pole of
-order 4 would need 1e44. A pitchfork's come as far as the power -2/3 of its imperfection."""
+NEWTON_STEPS = 5
+"""From a prediction that is off by a tenth of what is left four steps are quadratic to all digits."""
 
 LARGER = 2.0
 """On a pole the largest unknown, in plain numbers, is so many times as large as at the start: what grows from 1e-20 to
@@ -56,7 +58,9 @@ PRINTED_DIGITS = 9
 Monitor = tuple[float, ...]
 
 
-def divergence(monitor: Monitor, u: Array, tangent: Array, origin: Knot, weights: Array) -> tuple[Monitor, str]:
+def divergence(
+    monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator
+) -> tuple[Monitor, str]:
     """Follow the slope of the path by decades; the monitor afterwards, and which infinity it is in words, if any.
 
     Parameters
@@ -64,16 +68,15 @@ def divergence(monitor: Monitor, u: Array, tangent: Array, origin: Knot, weights
     monitor : tuple of float
         (the parameter's way so far; the distance to the limit where predictions began to be met, 0 if none was;
         parameter and slope at the last marks, three at most); empty at the start.
-    u, tangent : ndarray, shape (N + 1,)
+    point : Linearization
     origin : Knot
-        The start.
-    weights : ndarray, shape (N + 1,)
-        The metric there.
+        The start: slopes are measured in how far each unknown has come from it.
+    evaluator : Evaluator
     """
-    lam, moves = float(u[-1]), float(tangent[-1])
+    lam, moves = point.lam, float(point.tangent[-1])
     way, began, *marks = monitor or (0.0, 0.0)
     way = max(way, abs(lam - float(origin.u[-1])))
-    slope = norm(weights[:-1], tangent[:-1]) / abs(moves) if moves else math.inf
+    slope = largest(point.tangent[:-1]) / abs(moves) if moves else math.inf
     if marks and (slope < marks[-1] or (len(marks) > 2 and (lam - marks[-2]) * (marks[-2] - marks[-4]) < 0.0)):
         # Slower again, or back: what was seen is behind.
         return (way, 0.0), ""
@@ -86,15 +89,37 @@ def divergence(monitor: Monitor, u: Array, tangent: Array, origin: Knot, weights
         met = abs(lam - marks[-2] - ahead) <= MET * abs(ahead) + LAST_PLACES * float(np.spacing(abs(lam)))
         began = (began or abs(limit - marks[-2])) if met else 0.0
     marks = [*marks, lam, slope][-6:]
-    known = (way, began, *marks)
-    model = _fitted(marks) or model
-    if not (met and model):
+    known, model = (way, began, *marks), _fitted(marks) or model
+    if not met or model is None or abs(model[0] - lam) > MET_OVER * began:
         return known, ""
-    left = abs(model[0] - lam)
-    arrived = left <= ARRIVED * way + LAST_PLACES * float(np.spacing(abs(lam)))
-    far = norm(weights, u - origin.u) >= GROWN
-    bounded = model[1] > LOGARITHM and largest(u[:-1]) < LARGER * largest(origin.u[:-1])
-    return known, words(known) if left <= MET_OVER * began and (arrived or far) and not bounded else ""
+    bounded = model[1] > LOGARITHM and largest(point.y) < LARGER * largest(origin.u[:-1])
+    return known, words(known) if not bounded and _met_further(evaluator, point, *model, way) else ""
+
+
+def _met_further(evaluator: Evaluator, point: Linearization, limit: float, order: float, way: float) -> bool:
+    """Whether the path is where the model says decade by decade, until the parameter is at its limit.
+
+    Newton's method along the path's hyperplane from each prediction must come to a point whose parameter is no more
+    than a tenth of what is left away; its slope predicts the next.
+    """
+    enough = ARRIVED * way + LAST_PLACES * float(np.spacing(abs(limit)))
+    power, at = order - 1.0, point
+    try:
+        while (left := limit - at.lam) and abs(left) > enough:
+            nearer = left / DECADE
+            # The integral of a slope that goes like the power -(p + 1) of what is left.
+            grown = math.log(DECADE) if abs(power) < ABOUT else (DECADE**power - 1.0) / power
+            u = at.u + at.tangent / at.tangent[-1] * (left * grown)
+            u[-1] = limit - nearer
+            for _ in range(NEWTON_STEPS):
+                step = linearize(evaluator, u, at.weights, at.border).solve(-evaluator.residual(u), 0.0, at.border)
+                u = u + step
+            if not abs(u[-1] - limit + nearer) <= MET * abs(nearer) or abs(step[-1]) > MET * abs(nearer):
+                return False
+            at = linearize(evaluator, u, at.weights, at.border)
+    except (EvaluationError, ZeroDivisionError, OverflowError):
+        return False
+    return True
 
 
 def beyond_horizon(u: Array) -> str:

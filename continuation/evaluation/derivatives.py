@@ -125,15 +125,17 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
 
     `u`, `w` of shape (N + 1,): w is a way on which the function may change. `here`, of shape (N,): residual(u).
     """
-    least, near = np.full(here.size, np.inf), float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))
+    least, steady = np.full(here.size, np.inf), np.zeros(here.size, dtype=bool)
+    near = float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))
     for k in range(NOISE_TRIES):
         h = max(NOISE_REACH * NOISE_FINER**k, DISTINCT_ULPS * near)
         samples = np.stack([here, *(residual(u + j * h * w) for j in range(1, NOISE_SAMPLES))])
         # A fourth difference of noise of variance 1 has the variance 70.
         found = np.abs(np.diff(samples, 4, axis=0)).max(axis=0) / np.sqrt(70.0)
-        steady = (least <= NOISE_STEADY * found).all()
-        least = np.minimum(least, found)
-        if steady:
+        now = least <= NOISE_STEADY * found
+        least = np.where(steady, least, np.minimum(least, found))
+        steady |= now
+        if steady.all():
             break
     return least
 

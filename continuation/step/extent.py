@@ -112,7 +112,7 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    noise = evaluator.measure_noise(u, length * v, residual)
+    noise = evaluator.measure_noise(u, (whole if np.isfinite(whole) else length) * v, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
     # Across the path: first with that component held which is known best beside its motion.
     best = int(np.argmin(np.abs(samples).max(axis=0) / np.where(moving, size, TINY)))

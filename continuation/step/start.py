@@ -9,7 +9,7 @@ import numpy as np
 from attrs import evolve
 
 from continuation.arguments.checks import real_vector
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, generic_vector, median
 from continuation.correctors import BorderedNewton
 from continuation.correctors.base import holds
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
@@ -34,7 +34,7 @@ CORRECTING = BorderedNewton(max_iterations=20)
 STEEP = 1e-8
 """The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
 
-CLEAR_OF_NOISE = 10.0
+CLEAR_OF_NOISE = 2.0
 """The tolerance, in what noise makes of a correction, of which two samples were seen: one that is smaller is not met."""
 
 COARSEST = 0.1
@@ -108,15 +108,15 @@ def measured(
 ) -> tuple[Linearization, Array]:
     """The start in the metric of the trace, and how far each component goes before the path turns.
 
-    The solver's tolerance is raised to what noise leaves of the component that is known best; each of the others is
-    measured by no less than what its own noise is seen with.
+    The solver's tolerance is raised to what noise leaves of the usual component, and a component that has more noise
+    is measured by what that noise is seen with.
     """
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
     homotopy = solver.evaluator.homotopy
     sizes = homotopy.extents if offers(homotopy, SupportsExtents) else None
     extent, blur = initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes)
-    least = CLEAR_OF_NOISE * float((blur / extent).min())
+    least = CLEAR_OF_NOISE * median(blur / extent)
     if least > solver.tolerance.relative:
         solver.tolerance = evolve(solver.tolerance, relative=min(least, COARSEST))
     extent = np.maximum(extent, CLEAR_OF_NOISE * blur / solver.tolerance.relative)
