@@ -1,9 +1,9 @@
 """Whether a path runs off to infinity while the parameter stops: a model of its asymptote, predicted further and met.
 
-On a pole y ~ (limit - lam)^-p, and on a logarithm, p = 0, the slope G = |dy/dlam| grows like (limit - lam)^-(p + 1). Three
-points give p and the limit; the model counts where it says where the parameter is at the next ones, until that is the
-limit itself to nearly all digits. Fast growth alone says nothing: a pitchfork with an imperfection of 1e-14 looks like a
-pole until the parameter is as near as 1e-9 of its way.
+On a pole y ~ (limit - lam)^-p, and on a logarithm, p = 0, slopes dy/dlam grow like (limit - lam)^-(p + 1). Three points
+give p and the limit; the model counts where it says where the parameter is at the next ones, until that is the
+limit itself to nearly all digits. Fast growth alone says nothing: a pitchfork with an imperfection of 1e-14 looks like
+a pole until the parameter is as near as 1e-9 of its way.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from scipy.optimize import brentq
 
 from continuation.arrays import Array, largest
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
-from continuation.metric import norm
 from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
@@ -44,7 +43,7 @@ HORIZON = 1e100
 """No path is followed to larger numbers: norms are made of their squares, which overflow."""
 
 ORDERS = 0.9, 13.0
-"""Between these p + 1 is sought: a fold, and a cusp, have 1/2 and less, and no pole of a model has an order above 12."""
+"""Between these p + 1 is sought: at folds and cusps it is 1/2 or less, and no pole of a model has an order above 12."""
 
 LOGARITHM = 13.0 / 12.0
 """p + 1 of a pole of order 1/12; what is nearer to 1 is a logarithm, or an exponential decay."""
@@ -58,9 +57,7 @@ PRINTED_DIGITS = 9
 Monitor = tuple[float, ...]
 
 
-def divergence(
-    monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator
-) -> tuple[Monitor, str]:
+def divergence(monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator) -> tuple[Monitor, str]:
     """Follow the slope of the path by decades; the monitor afterwards, and which infinity it is in words, if any.
 
     Parameters
@@ -157,7 +154,7 @@ def _fitted(marks: list[float]) -> tuple[float, float] | None:
     def missed(order: float) -> float:
         # Distances to the limit, that of the first being 1.
         left, last = (a / b) ** (1.0 / order), (a / c) ** (1.0 / order)
-        return (left - last) / (1.0 - left) - ratio
+        return float((left - last) / (1.0 - left) - ratio)
 
     if not missed(ORDERS[0]) < 0.0 < missed(ORDERS[1]):
         return None

@@ -76,13 +76,15 @@ DIFFERENCE_STEPS = 6e-6 * 100.0 ** np.arange(2, -5, -1)
 is how far the function sees it, and others, since zero may lie anywhere and units may be any."""
 
 
-def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[Array, float]:
+def difference_along(
+    residual: Callable[..., Any], u: Array, w: Array, rows: Array | float = 0.0
+) -> tuple[Array, float]:
     """The central difference of a residual along w, and its step.
 
     Of several steps that one is taken at which the difference changes least from this to the next, in the mean over
-    the equations, each beside its own size.
+    the equations, each beside its own size, or that of its `rows`: one that does not change along w knows no step.
 
-    `u`, `w` of shape (N + 1,).
+    `u`, `w` of shape (N + 1,); `rows` of shape (N,), the sizes of differences in other directions.
     """
 
     def at(h: float) -> Array:
@@ -99,7 +101,7 @@ def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[
         found = [at(float(h)) for h in DIFFERENCE_STEPS]
         changes = []
         for one, other in pairwise(found):
-            size = np.abs(one) + np.abs(other)
+            size = np.maximum(np.abs(one) + np.abs(other), rows)
             change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
             changes.append(float(np.where(np.isfinite(change), change, 1.0).mean()))
     best = int(np.argmin(changes)) + 1
@@ -109,7 +111,7 @@ def difference_along(residual: Callable[..., Any], u: Array, w: Array) -> tuple[
 NOISE_SAMPLES = 7
 """Samples on a line: three fourth differences, of which a smooth function leaves the fourth power of their distance."""
 
-NOISE_REACH, NOISE_FINER, NOISE_TRIES = 1e-5, 1e-3, 4
+NOISE_REACH, NOISE_FINER, NOISE_TRIES = 1e-5, 1e-3, 3
 """The samples' distance, in lengths in which a path may turn, and by what it is divided until the differences no longer
 shrink with it: a thousandth makes a smooth fourth difference 1e12 times as small."""
 
@@ -155,10 +157,11 @@ def sizes(u: Array) -> Array:
 def by_differences(residual: Callable[..., Any], u0: Array) -> Callable[[Array, float], tuple[Array, Array]]:
     """Derivatives by central differences, about eight to ten digits, with steps found at `u0`, shape (N + 1,)."""
     steps = np.empty_like(u0)
+    rows = np.nan_to_num(np.abs(difference_along(residual, u0, sizes(u0) * generic_vector(u0.size))[0]))
     for i, size in enumerate(sizes(u0)):
         w = np.zeros_like(u0)
         w[i] = size
-        steps[i] = difference_along(residual, u0, w)[1]
+        steps[i] = difference_along(residual, u0, w, rows)[1]
 
     def function(y: Array, lam: float) -> tuple[Array, Array]:
         u = np.append(y, lam)

@@ -33,8 +33,9 @@ DERIVATIVES_KEPT = 4
 LOOK = 64.0
 """By so many a point is moved to see it: the change of an equation is then more than a few of its own last places."""
 
-NOT_OF_POINT = 10.0
-"""Noise of so many times what the last places of u make of an equation has another source, and goes with the path."""
+NOT_OF_POINT = 3.0
+"""Noise of so many times what the last places of u make of an equation has another source, and goes with the path: what
+`Evaluator.look` sees of that source is POINT_ULPS / LOOK of it."""
 
 
 class EvaluationError(ArithmeticError):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from attrs import define
+from attrs import define, evolve, field
 
 from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
@@ -83,6 +83,14 @@ class PathSolver:
     max_step: MaxStep | None = None
     straight: MaxStep | None = None
     room: MaxStep | None = None
+    noted: str = field(default="", init=False)
+    """What is said of noise at the end of a path."""
+
+    def noisy(self, least: float) -> None:
+        """Raise the tolerance to the `least` that noise in H allows."""
+        if least > self.tolerance.relative:
+            self.noted = f" The residual is noisy: the tolerance was raised to {least:.0e}."
+            self.tolerance = evolve(self.tolerance, relative=least)
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
         """Bring a guess onto the path, to round-off, along the hyperplane orthogonal to `border`.

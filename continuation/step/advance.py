@@ -171,7 +171,8 @@ class Advance:
             self.solver.evaluator.counts.rejected += 1
             if failed.reason is Rejection.SINGULAR:
                 h *= SINGULAR_STRETCH
-            verdict = budget_spent(self.spent(), state, rejected) or no_step_left(h, controller.bounds.minimum, rejected)
+            verdict = budget_spent(self.spent(), state, rejected)
+            verdict = verdict or no_step_left(h, controller.bounds.minimum, rejected)
             if verdict is not None:
                 return Stopped(verdict)
 
@@ -256,6 +257,8 @@ class Advance:
             index=step.index,
             signs=state.signs,
             near=accepted.near,
+            noise=state.noise,
+            tolerance=state.tolerance,
         )
         event = accepted.events[-1].name if accepted.events else ""
         verdict = arc_ended(ending, infinity, event)

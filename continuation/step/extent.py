@@ -62,6 +62,7 @@ TINY = 1e-300
 OTHER_UNITS = 1e4
 """The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
 
+
 def initial_extent(
     evaluator: Evaluator,
     point: Linearization,
@@ -71,8 +72,7 @@ def initial_extent(
     room: float = np.inf,
     sizes: Array | None = None,
 ) -> tuple[Array, Array]:
-    """How far each component goes while the path turns by about TURN, or to the target if that is nearer; what of it is
-    round-off.
+    """How far each component goes while the path turns by about TURN, or to a nearer target; and its noise.
 
     Parameters
     ----------
@@ -216,7 +216,8 @@ def _across(v: Array, z: Array) -> Array:
 
 
 def _largest(samples: list[Array]) -> Array:
-    return np.abs(samples).max(axis=0)
+    found: Array = np.abs(samples).max(axis=0)
+    return found
 
 
 def _nonlinearity(

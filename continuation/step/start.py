@@ -35,7 +35,7 @@ STEEP = 1e-8
 """The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
 
 CLEAR_OF_NOISE = 2.0
-"""The tolerance, in what noise makes of a correction, of which two samples were seen: one that is smaller is not met."""
+"""The tolerance, in what noise makes of a correction, of which two samples are seen: one below that is not met."""
 
 COARSEST = 0.1
 """The tolerance where noise leaves no digit: a start that is known to less is found to be none by what comes next."""
@@ -116,9 +116,7 @@ def measured(
     homotopy = solver.evaluator.homotopy
     sizes = homotopy.extents if offers(homotopy, SupportsExtents) else None
     extent, blur = initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes)
-    least = CLEAR_OF_NOISE * median(blur / extent)
-    if least > solver.tolerance.relative:
-        solver.tolerance = evolve(solver.tolerance, relative=min(least, COARSEST))
+    solver.noisy(min(CLEAR_OF_NOISE * median(blur / extent), COARSEST))
     extent = np.maximum(extent, CLEAR_OF_NOISE * blur / solver.tolerance.relative)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent

@@ -27,13 +27,14 @@ class Verdict:
     """How a path ended.
 
     `particulars`: What is said of this path beyond the status' sentence. `limit`: Where the end is singular.
-    `rejected`: The failed attempts at the last point.
+    `rejected`: The failed attempts at the last point. `error`: A bound of what the end is off, where it is regular.
     """
 
     status: Status
     particulars: str = ""
     limit: SingularLimit | None = None
     rejected: tuple[Rejected, ...] = ()
+    error: float | None = None
 
     def __str__(self) -> str:
         return f"{self.status} {self.particulars}" if self.particulars else str(self.status)
@@ -121,7 +122,7 @@ def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
     if end.limit is not None:
         return singular_end(end.limit)
     if end.at is EndsAt.TARGET:
-        return Verdict(Status.REACHED_TARGET)
+        return Verdict(Status.REACHED_TARGET, error=end.error)
     if end.at is EndsAt.EVENT:
         return Verdict(Status.STOPPED_AT_EVENT, f"It is: {event}.")
     if end.at is EndsAt.START:
