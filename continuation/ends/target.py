@@ -10,7 +10,6 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array, dot, generic_vector, largest
-from continuation.correctors.base import FAR_FROM_ROUND_OFF
 from continuation.ends.closed_curve import passes_start
 from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
 from continuation.ends.landing import SINGULAR_SHARE, crossing
@@ -18,7 +17,7 @@ from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import Linearization, linearize
-from continuation.point.projection import EPS, PathSolver
+from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction, SupportsSegment
 from continuation.rejection import Rejected
 from continuation.status import Kind
@@ -37,6 +36,9 @@ FOLD = 0.4, 0.8
 
 CONDITIONED = 0.1
 """An end that round-off may move by so much of the path is none: an asymptote satisfies any equation, in the end."""
+
+ENOUGH = 30.0
+"""A bound of so many tolerances is no reason to look for a limit: components are measured by what their noise allows."""
 
 VANISHING_SHARE = 1e-18
 """Share of the parameter in the tangent that the square of round-off may leave of none."""
@@ -180,15 +182,16 @@ class Target:
     def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
         """The end of the arc at a parameter value, a bound of its error, and the limit if it is singular.
 
-        Newton's method at the value brings the point to round-off; how far it may be moved there without leaving
+        Newton's method at the value brings a point near a fold to round-off; how far it may be moved there without leaving
         round-off is the bound. An end that is not known to the tolerance by that may be a limit that is: a fold, or
         what the endgame finds. Raises `EvaluationError` where neither is known beside the path.
         """
         evaluator, weights = self.solver.evaluator, end.weights
-        u = self._at_value(end, value)
+        vanishing = share(weights, end.tangent)
+        u = self._at_value(end, value) if vanishing <= SINGULAR_SHARE else np.append(end.y, value)
         off = off_by(evaluator, end, u)
-        known, enough = norm(weights, off), self.solver.tolerance.relative
-        if known <= enough and share(weights, end.tangent) > VANISHING_SHARE:
+        known, enough = norm(weights, off), ENOUGH * self.solver.tolerance.relative
+        if known <= enough and vanishing > VANISHING_SHARE:
             return u, largest(off), None
         limit = self._fold(arc, end, value)
         if limit is None or limit.length > RELATIVE_FLOOR:

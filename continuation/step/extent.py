@@ -112,7 +112,10 @@ def initial_extent(
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
-    noise = evaluator.measure_noise(u, (whole if np.isfinite(whole) else length) * v, residual)
+    # So far that one of them changes by its own size: the nearer, the safer, where nothing is known of the path.
+    changed = np.abs(u[moving]) / size[moving]
+    nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
+    noise = evaluator.measure_noise(u, (nearest if np.isfinite(nearest) else length) * v, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
     # Across the path: first with that component held which is known best beside its motion.
     best = int(np.argmin(np.abs(samples).max(axis=0) / np.where(moving, size, TINY)))

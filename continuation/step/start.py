@@ -108,15 +108,16 @@ def measured(
 ) -> tuple[Linearization, Array]:
     """The start in the metric of the trace, and how far each component goes before the path turns.
 
-    The solver's tolerance is raised to what noise leaves of the usual component, and a component that has more noise
-    is measured by what that noise is seen with.
+    Where H has noise beside the round-off of the point, the solver's tolerance is raised to what that leaves of the
+    usual component. A component that has more is measured by no less than what its own noise is seen with.
     """
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
     homotopy = solver.evaluator.homotopy
     sizes = homotopy.extents if offers(homotopy, SupportsExtents) else None
     extent, blur = initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes)
-    solver.noisy(min(CLEAR_OF_NOISE * median(blur / extent), COARSEST))
+    if solver.evaluator.noise is not None:
+        solver.noisy(min(CLEAR_OF_NOISE * median(blur / extent), COARSEST))
     extent = np.maximum(extent, CLEAR_OF_NOISE * blur / solver.tolerance.relative)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent
