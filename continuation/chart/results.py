@@ -186,7 +186,7 @@ class Results:
 
 
 _OWN = [each.name for each in fields(Row) if each.name not in ("errors", "counts")]
-_COUNTS = list(fields_dict(Counts))
+_COUNTS = list(Counts().as_dict())
 _HEAD = [each.name for each in fields(Results) if each.name != "rows"]
 
 
@@ -249,5 +249,5 @@ def read(file: str | PathLike[str]) -> Results:
 def _row(cells: dict[str, str], errors: Mapping[str, str]) -> Row:
     kinds: dict[str, Callable[[str], Any]] = {"int": int, "float": float, "str": str, "bool": "True".__eq__}
     own = {name: kinds[str(fields_dict(Row)[name].type)](cells[name]) for name in _OWN}
-    counts = Counts(**{name: int(cells[name]) for name in _COUNTS})
+    counts = Counts(*(int(cells[name]) for name in _COUNTS))
     return Row(**own, counts=counts, errors={name: float(cells[PREFIX + name]) for name in errors})

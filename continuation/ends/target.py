@@ -9,15 +9,14 @@ from enum import Enum
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import dot, largest
-from continuation.correctors.base import far_from_round_off
+from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.ends.closed_curve import passes_start
 from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
-from continuation.ends.landing import SINGULAR_SHARE, crossing, regular
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.ends.landing import SINGULAR_SHARE, crossing
+from continuation.evaluation.evaluator import EvaluationError, Evaluator
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
-from continuation.point.linearization import Linearization
+from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction, SupportsSegment
 from continuation.rejection import Rejected
@@ -35,9 +34,21 @@ FOLD = 0.4, 0.8
 """Where lam - value ~ sigma^w, the ratio of lam's way to the tangent's is 1/w: between these it is a simple fold."""
 
 
-END_KNOWN_TO = 1e-5
-"""An end known to less than this, in the metric of the path, is none: an exponential decay looks like a fold, too. The
-cube root of round-off is what is left of an end where three sheets meet."""
+CONDITIONED = 0.1
+"""An end that round-off may move by so much of the path is none: an asymptote satisfies any equation, in the end."""
+
+ENOUGH = 30.0
+"""A bound of so many tolerances is no reason to look for a limit: noise tells what a component is measured by."""
+
+VANISHING_SHARE = 1e-18
+"""Share of the parameter in the tangent that the square of round-off may leave of none."""
+
+POLISHED = 4
+"""Increments of Newton's method at the target: what was located there is within the reach of quadratic convergence."""
+
+WIDER, PROBES, ENDLESS = 4.0, 40, 1e150
+"""A way along which the equations hold to round-off is found to this factor, in so many residuals at most; what is not
+found to end by then is taken to be so long."""
 
 
 class EndsAt(Enum):
@@ -56,7 +67,7 @@ class ArcEnd:
     """An accepted arc, cut where the path ends on it if it does.
 
     `kind`: Of the arc's last point, one of `Kind`. `whole`: Whether the arc's last point is the one at which the
-    attempt arrived. `limit`: Set where the end is singular.
+    attempt arrived. `limit`: Set where the end is singular. `error`: A bound of what the target's components are off.
     """
 
     arc: Arc
@@ -64,6 +75,7 @@ class ArcEnd:
     kind: int = Kind.REGULAR
     whole: bool = True
     limit: SingularLimit | None = None
+    error: float | None = None
 
 
 @frozen(eq=False)
@@ -112,7 +124,10 @@ class Target:
         arc = Arc(point, beyond.point, point.border, prediction.segment(far, beyond.point.u))
         try:
             end = crossing(self.solver, arc, self.target)
-            return None if end is None else self._limit(arc, end, self.target)
+            if end is None:
+                return None
+            u, error, limit = self._limit(arc, end, self.target)
+            return limit or SingularLimit(u, error, 1, 0.0)
         except EvaluationError:
             return None
 
@@ -133,58 +148,147 @@ class Target:
         """The limit at the target by the endgame."""
         assert self.target is not None
         try:
-            return Endgame(self.solver, self.target).limit(point)
+            return self._placed(Endgame(self.solver, self.target).limit(point), point)
         except EvaluationError:
             return None
 
     # -- after a step -----------------------------------------------------------------------------------------
 
-    def ending_of_arc(self, arc: Arc, state: State) -> ArcEnd:
-        """Where the path ends on an accepted arc: at the target, at its own start, or beyond the start's parameter."""
+    def ending_of_arc(self, arc: Arc, state: State, landed: bool = False) -> ArcEnd:
+        """Where the path ends on an accepted arc: at the target, at its own start, or beyond the start's parameter.
+
+        `landed`: Whether the arc was made to end on the target.
+        """
         ends = []
         if self.target is not None:
             ends.append((self.target, Kind.TARGET, EndsAt.TARGET))
             if self.may_turn_back:
                 ends.append((float(state.origin.u[-1]), Kind.REGULAR, EndsAt.START_PARAMETER))
         for value, kind, at in ends:
-            point = crossing(self.solver, arc, value)
-            if point is not None:
-                limit = self._limit(arc, point, value) if at is EndsAt.TARGET else None
-                u = np.append(point.u[:-1], value) if limit is None else limit.u
-                if limit is None and at is EndsAt.TARGET and far_from_round_off(self.solver.evaluator, u):
-                    raise EvaluationError("the equations do not hold where the path would take the target's value")
-                return ArcEnd(cut(arc, evolve(point, u=u)), at, kind, False, limit)
+            point = arc.b if landed else crossing(self.solver, arc, value)
+            if point is None:
+                continue
+            if at is EndsAt.START_PARAMETER:
+                end = evolve(point, u=np.append(point.y, value))
+                return ArcEnd(cut(arc, end), at, kind, False)
+            u, error, limit = self._limit(arc, point, value)
+            whole = landed and np.array_equal(u, point.u)
+            return ArcEnd(arc if whole else cut(arc, evolve(point, u=u)), at, kind, whole, limit, error)
         origin = state.origin
         if passes_start(self.solver, origin, arc):
             return ArcEnd(cut(arc, evolve(arc.b, u=origin.u, tangent=origin.tangent)), EndsAt.START, whole=False)
         return ArcEnd(arc)
 
-    def _limit(self, arc: Arc, end: Linearization, value: float) -> SingularLimit | None:
-        """The end of the arc where it is singular; None where it is regular, or a fold about which no more can be said.
+    def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
+        """The end of the arc at a parameter value, a bound of its error, and the limit if it is singular.
 
-        In a simple fold the end is known to round-off. Where the parameter stands still to a higher order it is known
-        to a root of round-off only, and the endgame says more. Which it is, is seen from the beginning of the arc.
+        Newton's method at the value brings a point near a fold to round-off; how far it may be moved there without
+        leaving round-off is the bound. An end that is not known to the tolerance by that may be a limit that is: a fold, or
+        what the endgame finds. Raises `EvaluationError` where neither is known beside the path.
         """
-        endgame = Endgame(self.solver, value)
+        evaluator, weights = self.solver.evaluator, end.weights
+        vanishing = share(weights, end.tangent)
+        u = self._at_value(end, value) if vanishing <= SINGULAR_SHARE else np.append(end.y, value)
+        off = off_by(evaluator, end, u)
+        known, enough = norm(weights, off), ENOUGH * self.solver.tolerance.relative
+        if known <= enough and vanishing > VANISHING_SHARE:
+            return u, largest(off), None
+        limit = self._fold(arc, end, value)
+        if limit is None or limit.length > RELATIVE_FLOOR:
+            other = Endgame(self.solver, value).limit(arc.a)
+            limit = min((one for one in (limit, other) if one is not None), key=lambda one: one.length, default=None)
+        limit = self._placed(limit, arc.a)
+        if limit is not None and limit.length <= max(known, enough):
+            return limit.u, limit.error, limit
+        if not known <= CONDITIONED:
+            raise EvaluationError("round-off may move the end by as much as the path, and no limit was found there")
+        return u, largest(off), None
+
+    def _at_value(self, end: Linearization, value: float) -> Array:
+        """The point at the value, with Newton's increments there for as long as they reduce the residual."""
+        evaluator = self.solver.evaluator
+        unit = np.zeros_like(end.u)
+        unit[-1] = 1.0
+        u = np.append(end.y, value)
+        r = evaluator.residual(u)
+        try:
+            for _ in range(POLISHED):
+                there = linearize(evaluator, u, end.weights, end.border)
+                nearer = u + there.solve(-r, 0.0, unit)
+                nearer[-1] = value
+                left = evaluator.residual(nearer)
+                if not largest(left) < largest(r):
+                    break
+                u, r = nearer, left
+        except EvaluationError:
+            pass
+        return u
+
+    def _fold(self, arc: Arc, end: Linearization, value: float) -> SingularLimit | None:
+        """The end as a simple fold: y ~ y* + c sqrt(lam - value), with c as at the beginning of the arc."""
         if share(end.weights, end.tangent) > SINGULAR_SHARE:
-            if regular(self.solver, end, arc.a):
-                return None
-            limit = endgame.limit(arc.a)
-            if limit is None:
-                raise EvaluationError("the end is singular, and its limit was not found")
-            return limit
+            return None
         sigma = dot(arc.border, end.u - arc.a.u)
         gap, expected = abs(arc.a.lam - value), abs(sigma * arc.a.tangent[-1])
-        fold = None
-        if (arc.a.lam - value) * (arc.b.lam - value) >= 0.0 and FOLD[0] * expected < gap < FOLD[1] * expected:
-            # y ~ y* + c sqrt(lam - value), with c as at the beginning of the arc.
-            left, way = (abs(end.lam - value) / gap) ** 0.5, np.append(arc.a.y - end.y, 0.0)
-            u = np.append(end.u[:-1], value)
-            fold = SingularLimit(u, left * largest(way), 2, left * norm(end.weights, way))
-            if fold.length <= RELATIVE_FLOOR:
-                return fold
-        limit = endgame.limit(arc.a)
-        found = fold if limit is None or (fold is not None and fold.length <= limit.length) else limit
-        if found is not None and found.length > END_KNOWN_TO:
-            raise EvaluationError("the parameter stands still near the target, and no limit was found there")
-        return found
+        if (arc.a.lam - value) * (arc.b.lam - value) < 0.0 or not FOLD[0] * expected < gap < FOLD[1] * expected:
+            return None
+        left, way = (abs(end.lam - value) / gap) ** 0.5, np.append(arc.a.y - end.y, 0.0)
+        return SingularLimit(np.append(end.y, value), left * largest(way), 2, left * norm(end.weights, way))
+
+    def _placed(self, limit: SingularLimit | None, point: Linearization) -> SingularLimit | None:
+        """A limit with what it errs by because the singular point may lie beside the target, as far as H can tell.
+
+        `point`: On the path before it. There y has come by c |lam - target|^(1/w).
+        """
+        if limit is None or limit.winding_number == 1:
+            return limit
+        evaluator, target = self.solver.evaluator, float(limit.u[-1])
+        r = evaluator.residual(limit.u)
+        beside = abs(float(point.solve(np.abs(r) + evaluator.round_off(limit.u, r))[-1])) + float(
+            np.spacing(abs(target))
+        )
+        left, way = (beside / abs(point.lam - target)) ** (1.0 / limit.winding_number), point.u - limit.u
+        way[-1] = 0.0
+        error, length = limit.error + left * largest(way), limit.length + left * norm(point.weights, way)
+        return evolve(limit, error=error, length=length)
+
+
+def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
+    """How far each component of an end may be off at its parameter: how far H stays round-off of its own terms.
+
+    Along what the factorisation of `near` makes of that round-off in two samples of its signs, and along the tangent:
+    as far as H, evaluated there, is no more than twice what it may be. That holds near folds and where more ranks are
+    lost, too; more than any path where nothing ends it.
+    """
+    r = evaluator.residual(u)
+    allowed = np.abs(r) + evaluator.round_off(u, r)
+    v = near.tangent.copy()
+    v[-1] = 0.0
+    ways = [v]
+    if near.tangent[-1] != 0.0:
+        for signs in (np.sign(generic_vector(r.size)), 1.0):
+            z = near.solve(signs * allowed)
+            ways.append(z - z[-1] / near.tangent[-1] * near.tangent)
+            ways[-1][-1] = 0.0
+
+    def holds(at: Array) -> bool:
+        try:
+            return bool((np.abs(evaluator.residual(at)) <= 2.0 * allowed).all())
+        except EvaluationError:
+            return False
+
+    off = np.spacing(np.abs(u))
+    off[-1] = 0.0
+    for way in ways:
+        if not way.any():
+            continue
+        for side in (way, -way):
+            reach, seen = 1.0, holds(u + side)
+            for _ in range(PROBES):
+                reach *= WIDER if seen else 1.0 / WIDER
+                if holds(u + reach * side) is not seen:
+                    break
+            else:
+                reach = ENDLESS if seen else 0.0
+            off = np.maximum(off, (reach if seen else WIDER * reach) * np.abs(side))
+    return off

@@ -18,6 +18,7 @@ from continuation.arguments.checks import instance_with, real_vector
 from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import check_derivative, from_residual, given_pattern
+from continuation.evaluation.noise import noise_along
 from continuation.evaluation.pattern import Pattern, generic
 from continuation.evaluation.pieces import WholeMap
 from continuation.evaluation.products import given
@@ -41,6 +42,10 @@ DERIVATIVES_KEPT = 4
 
 LOOK = 64.0
 """By so many a point is moved to see it: the change of an equation is then more than a few of its own last places."""
+
+NOT_OF_POINT = 3.0
+"""Noise of so many times what the last places of u make of an equation has another source, and goes with the path: what
+`Evaluator.look` sees of that source is POINT_ULPS / LOOK of it."""
 
 
 class EvaluationError(ArithmeticError):
@@ -123,7 +128,8 @@ class Evaluator:
     """Counted access to one homotopy.
 
     `counts`: Where evaluations are added up. `methods`: BibTeX of what served where the homotopy gave no derivative of
-    its own. `keeping`: Whether the last derivatives are kept, for `matrix`. Raises `TypeError` if `start` or `residual`
+    its own. `keeping`: Whether the last derivatives are kept, for `matrix`. `noise`: What each equation is uncertain by
+    beside the round-off of u, shape (N,), where that was measured. Raises `TypeError` if `start` or `residual`
     is missing. Raises `ValueError` if the start is empty, not a vector, or not finite, or if the residual's shape
     disagrees with it.
     """
@@ -135,6 +141,7 @@ class Evaluator:
         self.counts = counts
         self.methods: set[str] = set()
         self.keeping = False
+        self.noise: Array | None = None
         self.bind(homotopy)
         if offers(homotopy, SupportsPieces):
             self.bind(WholeMap(homotopy, self.start()))
@@ -237,7 +244,23 @@ class Evaluator:
         change = self.residual(u + np.spacing(np.abs(u)) * _moves(u.size)[::order])
         change -= residual
         dscal(POINT_ULPS / LOOK, change)
-        return np.abs(change, out=change)
+        np.abs(change, out=change)
+        return change if self.noise is None else np.maximum(change, self.noise)
+
+    def measure_noise(self, u: Array, w: Array, residual: Array) -> Array:
+        """The round-off of each equation at u, or its noise if that is more, which is kept as `noise`; shape (N,).
+
+        `w`, of shape (N + 1,): A way ahead on which H may change. `residual` is H(u).
+        """
+        terms = self.round_off(u, residual)
+        try:
+            noise = noise_along(self.residual, u, w, residual)
+        except EvaluationError:
+            return terms
+        self.noise = np.where(noise > NOT_OF_POINT * terms, noise, 0.0)
+        if not self.noise.any():
+            self.noise = None
+        return np.maximum(terms, noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from attrs import frozen
+from attrs import define, evolve, field
 
 from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
@@ -60,9 +60,11 @@ SMALL_INCREMENT, WITHIN_TOLERANCE = 1e-4, 1.0
 for; where three factorisations do not give it, the tolerance itself is enough."""
 
 
-@frozen(eq=False)
+@define(eq=False)
 class PathSolver:
     """What puts points on the path of one homotopy to one tolerance; made once for a trace.
+
+    The start raises the tolerance where noise in H does not allow it (`continuation.step.start`).
 
     Attributes
     ----------
@@ -81,6 +83,14 @@ class PathSolver:
     max_step: MaxStep | None = None
     straight: MaxStep | None = None
     room: MaxStep | None = None
+    noted: str = field(default="", init=False)
+    """What is said of noise at the end of a path."""
+
+    def noisy(self, least: float) -> None:
+        """Raise the tolerance to the `least` that noise in H allows."""
+        if least > self.tolerance.relative:
+            self.noted = f" The residual is noisy: the tolerance was raised to {least:.0e}."
+            self.tolerance = evolve(self.tolerance, relative=least)
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
         """Bring a guess onto the path, to round-off, along the hyperplane orthogonal to `border`.

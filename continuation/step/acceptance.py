@@ -104,7 +104,7 @@ class Examiner:
             if looked_at is None:
                 return _rejected(attempt, Rejection.MIDPOINT)
             arc = looked_at
-            ending = ArcEnd(arc, EndsAt.TARGET, Kind.TARGET) if landed else self.target.ending_of_arc(arc, state)
+            ending = self.target.ending_of_arc(arc, state, landed)
             index, flipped = self.branch_index, arrival.orientation not in (0, orientation)
             if ending.limit is not None:
                 # A singular end by itself makes H' lose its rank there.

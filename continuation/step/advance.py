@@ -170,7 +170,8 @@ class Advance:
             self.solver.evaluator.counts.rejected += 1
             if failed.reason is Rejection.SINGULAR:
                 h *= SINGULAR_STRETCH
-            verdict = budget_spent(self.spent(), rejected) or no_step_left(h, controller.bounds.minimum, rejected)
+            verdict = budget_spent(self.spent(), state, rejected)
+            verdict = verdict or no_step_left(h, controller.bounds.minimum, rejected)
             if verdict is not None:
                 return Stopped(verdict)
 
@@ -213,7 +214,7 @@ class Advance:
         """Make the arrival the current point: metric, history, divergence, and the step's record."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
-        monitor, infinity = divergence(state.divergence_monitor, arrival.u, state.origin, state.origin_weights)
+        monitor, infinity = divergence(state.divergence_monitor, arrival, state.origin, self.solver.evaluator)
         moved = arrival.with_weights(self._weights(arrival, state))
         if self.extent is not None:
             # The same step in the new metric: the path has become longer, not the step.
@@ -255,6 +256,8 @@ class Advance:
             index=step.index,
             signs=state.signs,
             near=accepted.near,
+            noise=state.noise,
+            tolerance=state.tolerance,
         )
         event = accepted.events[-1].name if accepted.events else ""
         verdict = arc_ended(ending, infinity, event)

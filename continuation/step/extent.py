@@ -11,13 +11,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from continuation.arrays import Array, dot, generic_vector, median
 from continuation.evaluation.evaluator import POINT_ULPS, EvaluationError, Evaluator
 from continuation.point.linearization import Linearization
-
-Mask = NDArray[np.bool_]
 
 TURN = 0.25
 """The nonlinearity at the extent. Between 0.1 and 0.5 factorisations on twelve problems differ by a tenth."""
@@ -56,15 +53,14 @@ SUSPECT, REPLACED = 1e-8, 0.1
 """Components of the tangent that are smaller than the first, beside the largest, may be round-off; those that
 refinement changes by more than the second are."""
 
-DOUBTED, UNCERTAIN = 1e-6, 100.0
-"""Corrections of components that stand still along the tangent are doubted where they are smaller than the first,
-beside the way; they are told from round-off by so many times what that makes: its signs are one sample of many."""
+UNCERTAIN = 100.0
+"""Corrections up to so many times what round-off makes of them, in two samples of its signs, say nothing."""
+
+TINY = 1e-300
+"""Stands for the motion of a component that stands still."""
 
 OTHER_UNITS = 1e4
 """The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
-
-CORRECTION_NOISE = 1e-6
-"""A first correction shorter than this, relative to the step, is not looked at: its ratio may be round-off."""
 
 
 def initial_extent(
@@ -75,8 +71,8 @@ def initial_extent(
     farthest: float = np.inf,
     room: float = np.inf,
     sizes: Array | None = None,
-) -> Array:
-    """How far each component goes while the path turns by about TURN, or to the target if that is nearer.
+) -> tuple[Array, Array]:
+    """How far each component goes while the path turns by about TURN, or to a nearer target; and its noise.
 
     Parameters
     ----------
@@ -96,8 +92,11 @@ def initial_extent(
 
     Returns
     -------
-    ndarray, shape (N + 1,)
-        Positive. A component that does not move is given the median of the others, in their sizes if these are known.
+    extent : ndarray, shape (N + 1,)
+        Positive. A component that does not move, or by round-off alone, is given the median of the others, in their
+        sizes if these are known.
+    blur : ndarray, shape (N + 1,)
+        What noise in H, and in the last places of u, makes of each component: |H'^-1| times the noise.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -112,12 +111,24 @@ def initial_extent(
     v = _without_round_off(evaluator, point, v)
     size = np.abs(v)
     moving = size > 0.0
-    h = SEARCH_START * min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
+    length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
+    # So far that one of them changes by its own size: the nearer, the safer, where nothing is known of the path.
+    changed = np.abs(u[moving]) / size[moving]
+    nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
+    noise = evaluator.measure_noise(u, (nearest if np.isfinite(nearest) else length) * v, residual)
+    samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
+    # Across the path: first with that component held which is known best beside its motion.
+    best = int(np.argmin(np.abs(samples).max(axis=0) / np.where(moving, size, TINY)))
+    blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
+    v = np.where(length * size > UNCERTAIN * blur, v, 0.0)
+    size, moving = np.abs(v), v != 0.0
+    unseen = UNCERTAIN * np.maximum(_largest([_across(v, z) for z in samples]), blur)
+    h = SEARCH_START * length
     begin, low, high, power = h, 0.0, np.inf, 1.0
     found, off, before = h, np.zeros_like(u), (0.0, 0.0)
     for _ in range(LENGTHS_TRIED):
         try:
-            d, turned = _nonlinearity(evaluator, point, v, moving, h, residual)
+            d, turned = _nonlinearity(evaluator, point, v, h, residual, unseen)
         except Exception:
             # Nobody asked for H there: what it raises beyond its domain is shown by the step that needs that point.
             d, turned = off, np.inf
@@ -149,12 +160,13 @@ def initial_extent(
     if found > room:
         found, off = room, (room / found) ** 2 * off
     extent = np.maximum(found * size, np.abs(off)) / unit
-    still = extent <= standstill * float(extent.max())
+    still = (extent <= standstill * float(extent.max())) | (extent * unit <= UNCERTAIN * blur)
+    still &= ~still.all()
     extent[still] = median(extent[~still])
     extent *= unit
     if still.any() and exactly:
         extent[still] *= _smaller(evaluator, point, np.where(still, extent, 0.0), residual)
-    return extent
+    return extent, blur
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
@@ -199,31 +211,30 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> 
     return np.where(small & replaced, 0.0, v)
 
 
-def _beyond_round_off(evaluator: Evaluator, point: Linearization, there: Array, d: Array, loose: Mask) -> Array:
-    """A correction at a point, with zeros for those `loose` components that are round-off of H."""
-    if not loose.any():
-        return d
-    noise = np.abs(point.solve(evaluator.round_off(there, evaluator.residual(there))))
-    return np.where(loose & (np.abs(d) <= UNCERTAIN * noise), 0.0, d)
+def _across(v: Array, z: Array) -> Array:
+    """A correction without its part along v, in the median over the components that move."""
+    moving = v != 0.0
+    across: Array = z - median(z[moving] / v[moving]) * v
+    return across
+
+
+def _largest(samples: list[Array]) -> Array:
+    found: Array = np.abs(samples).max(axis=0)
+    return found
 
 
 def _nonlinearity(
-    evaluator: Evaluator, point: Linearization, v: Array, moving: Mask, h: float, residual: Array
+    evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array, unseen: Array
 ) -> tuple[Array, float]:
     """The correction at u + h v, without its part along v, and how nonlinear the path is so far."""
+    moving, there = v != 0.0, point.u + h * v
+    unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
     def corrected(at: Array) -> Array:
-        z = point.approximate(residual - evaluator.residual(at))
-        along: Array = z - median(z[moving] / v[moving]) * v
-        return along
+        z = _across(v, point.approximate(residual - evaluator.residual(at)))
+        return np.where(np.abs(z) > unseen, z, 0.0)
 
-    there = point.u + h * v
     d = corrected(there)
-    # A component that stands still along the tangent would be measured by its correction, and one that rounding takes
-    # back would be corrected by as much again.
-    doubted = np.maximum(DOUBTED * h * float(np.abs(v).max()), UNCERTAIN * np.spacing(np.abs(there)))
-    loose = (d != 0.0) & ~moving & (np.abs(d) < doubted)
-    d = _beyond_round_off(evaluator, point, there, d, loose)
     e = corrected(there + d)
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = median(relative)
@@ -233,4 +244,4 @@ def _nonlinearity(
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0
     first, second = (math.sqrt(dot(part, part)) for part in (d / scale, e / scale))
-    return d, max(turned, min(second / first, 1.0)) if first > CORRECTION_NOISE else turned
+    return d, max(turned, min(second / first, 1.0)) if first > 0.0 else turned

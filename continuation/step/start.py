@@ -9,7 +9,7 @@ import numpy as np
 from attrs import evolve
 
 from continuation.arguments.checks import real_vector
-from continuation.arrays import Array, generic_vector
+from continuation.arrays import Array, generic_vector, median
 from continuation.correctors import BorderedNewton
 from continuation.correctors.base import holds
 from continuation.evaluation.evaluator import EvaluationError, Evaluator
@@ -35,8 +35,11 @@ CORRECTING = BorderedNewton(max_iterations=20)
 STEEP = 1e-8
 """The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
 
-RESOLVED_ULPS = 2.0
-"""Units in the last place that a correction at the tolerance is to be: fewer, and round-off keeps it from being met."""
+CLEAR_OF_NOISE = 2.0
+"""The tolerance, in what noise makes of a correction, of which two samples are seen: one below that is not met."""
+
+COARSEST = 0.1
+"""The tolerance where noise leaves no digit: a start that is known to less is found to be none by what comes next."""
 
 PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)
 """From a guess Newton's increments may grow before they shrink: a start that it brings to the path is a start."""
@@ -106,14 +109,17 @@ def measured(
 ) -> tuple[Linearization, Array]:
     """The start in the metric of the trace, and how far each component goes before the path turns.
 
-    What goes less far than the tolerance can see in numbers of its size is measured by that.
+    Where H has noise beside the round-off of the point, the solver's tolerance is raised to what that leaves of the
+    usual component. A component that has more is measured by no less than what its own noise is seen with.
     """
-    seen = RESOLVED_ULPS * np.spacing(np.abs(point.u)) / solver.tolerance.relative
     farthest = np.inf if solver.straight is None else solver.straight(point.u, point.tangent)
     room = np.inf if solver.room is None else solver.room(point.u, point.tangent)
     homotopy = solver.evaluator.homotopy
     sizes = homotopy.extents if offers(homotopy, SupportsExtents) else None
-    extent = np.maximum(initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes), seen)
+    extent, blur = initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes)
+    if solver.evaluator.noise is not None:
+        solver.noisy(min(CLEAR_OF_NOISE * median(blur / extent), COARSEST))
+    extent = np.maximum(extent, CLEAR_OF_NOISE * blur / solver.tolerance.relative)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent
     return point.with_weights(metric.weights(point.u, point.tangent, None)), extent

@@ -33,7 +33,7 @@ class State:
     origin : Knot
         The start, and `origin_weights` the metric there: for recognising a closed curve.
     divergence_monitor : tuple of float
-        For recognising divergence: the norm and the parameter at the last decade, and decades stalled.
+        For recognising divergence: see `continuation.ends.divergence`.
     last_failed_landing : float
         The parameter value at which landing was last tried in vain; inf if never.
     last_failed_endgame : float
@@ -42,6 +42,10 @@ class State:
         Of the step that led here.
     signs : tuple of int
         The piece on which the path goes on, where the homotopy has pieces.
+    noise : tuple of float
+        What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
+    tolerance : float
+        The relative tolerance that noise allows; 0 where it was not raised.
     near : bool
         Whether a branch that crosses was seen on the arc that led here, or ahead of it.
     """
@@ -62,6 +66,8 @@ class State:
     index: int = 0
     signs: tuple[int, ...] = ()
     near: bool = False
+    noise: tuple[float, ...] = ()
+    tolerance: float = 0.0
 
     @property
     def here(self) -> Knot:

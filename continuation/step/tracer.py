@@ -218,7 +218,7 @@ class Tracer:
             self._handed = len(self.path.steps)
             yield self.path.steps[-1]
         while self.path.status is Status.TRACING:
-            verdict = budget_spent(self._spent())
+            verdict = budget_spent(self._spent(), self.state)
             if verdict is not None:
                 self._end(verdict)
                 return
@@ -277,6 +277,8 @@ class Tracer:
             origin=here,
             origin_weights=point.weights,
             signs=signs,
+            noise=() if self._evaluator.noise is None else tuple(self._evaluator.noise.tolist()),
+            tolerance=self._solver.tolerance.relative,
         )
         # The state last: whatever interrupts before it, a resumed trace begins again and lacks nothing.
         self._record(self._recorder.record(point, 0, 0.0, Kind.START), state)
@@ -288,6 +290,8 @@ class Tracer:
     def _restored(self, state: State) -> Linearization:
         """The point of a stored state: its factorisation is made anew from the same numbers, its tangent is kept."""
         at, border = state.anchor
+        self._evaluator.noise = np.array(state.noise) if state.noise else None
+        self._solver.noisy(state.tolerance)
         if self._pieces is not None:
             if len(state.signs) != self._pieces.values(at).size:
                 raise ValueError(f"state: expected the signs of all switches, found {len(state.signs)}")
@@ -297,7 +301,8 @@ class Tracer:
 
     def _end(self, verdict: Verdict) -> None:
         path = self.path
-        path.status, path.message, path.rejected = verdict.status, str(verdict), verdict.rejected
+        path.status, path.message, path.rejected = verdict.status, str(verdict) + self._solver.noted, verdict.rejected
+        path.end_error = verdict.error
         if verdict.limit is not None:
             path.end_error, path.winding_number = verdict.limit.error, verdict.limit.winding_number
         path.seconds, self._clock, path.references = self.seconds, None, self.references

@@ -9,6 +9,7 @@ from __future__ import annotations
 from attrs import frozen
 
 from continuation.ends.closed_curve import same_ray
+from continuation.ends.divergence import beyond_horizon, words
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import ArcEnd, EndsAt
 from continuation.evaluation.evaluator import EvaluationError
@@ -18,6 +19,7 @@ from continuation.predictors import Knot
 from continuation.rejection import Rejected, Rejection
 from continuation.status import Status
 from continuation.step.start import SingularStartError, StartError
+from continuation.step.state import State
 
 
 @frozen(eq=False)
@@ -25,13 +27,14 @@ class Verdict:
     """How a path ended.
 
     `particulars`: What is said of this path beyond the status' sentence. `limit`: Where the end is singular.
-    `rejected`: The failed attempts at the last point.
+    `rejected`: The failed attempts at the last point. `error`: A bound of what the end is off, where it is regular.
     """
 
     status: Status
     particulars: str = ""
     limit: SingularLimit | None = None
     rejected: tuple[Rejected, ...] = ()
+    error: float | None = None
 
     def __str__(self) -> str:
         return f"{self.status} {self.particulars}" if self.particulars else str(self.status)
@@ -71,9 +74,17 @@ def start_on_target(lam: float, target: float | None) -> Verdict | None:
     return Verdict(Status.REACHED_TARGET, "The start lies on it.") if lam == target else None
 
 
-def budget_spent(limit: str, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
-    """A limit of the budget is reached, `limit` says which; asked before a step and between attempts."""
-    return Verdict(Status.BUDGET_EXHAUSTED, f"Reached: {limit}.", rejected=rejected) if limit else None
+def budget_spent(limit: str, state: State | None, rejected: tuple[Rejected, ...] = ()) -> Verdict | None:
+    """A limit of the budget is reached, `limit` says which; asked before a step and between attempts.
+
+    What asymptote is in sight is said, but it has not been followed far enough to be an end.
+    """
+    limit = limit or ("" if state is None else beyond_horizon(state.here.u))
+    if not limit:
+        return None
+    seen = "" if state is None else words(state.divergence_monitor)
+    seen = f" In sight, and not followed to its end: {seen[0].lower()}{seen[1:]}" if seen else ""
+    return Verdict(Status.BUDGET_EXHAUSTED, f"Reached: {limit}.{seen}", rejected=rejected)
 
 
 def predictor_failed(error: EvaluationError) -> Verdict:
@@ -115,7 +126,7 @@ def arc_ended(end: ArcEnd, infinity: str, event: str) -> Verdict | None:
     if end.limit is not None:
         return singular_end(end.limit)
     if end.at is EndsAt.TARGET:
-        return Verdict(Status.REACHED_TARGET)
+        return Verdict(Status.REACHED_TARGET, error=end.error)
     if end.at is EndsAt.EVENT:
         return Verdict(Status.STOPPED_AT_EVENT, f"It is: {event}.")
     if end.at is EndsAt.START:

@@ -9,7 +9,7 @@ from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE_FINITE, complain, integer, real_vector
 from continuation.arrays import Array
-from continuation.evaluation.derivatives import sizes
+from continuation.evaluation.products import sizes
 from problems.orbits.grid import Grid
 
 DEGREES = integer(2, 12)

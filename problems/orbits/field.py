@@ -12,7 +12,8 @@ from attrs import evolve, field, frozen
 from continuation.arguments.checks import complain
 from continuation.arrays import Array
 from continuation.citation.bibliography import SQUIRE_TRAPP
-from continuation.evaluation.derivatives import AGREEMENT, sizes
+from continuation.evaluation.derivatives import AGREEMENT
+from continuation.evaluation.products import sizes
 
 COMPLEX_STEP = 1e-200
 """The complex step: its square is below everything (Squire and Trapp 1998)."""

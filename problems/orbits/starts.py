@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from continuation.arguments.checks import complain
 from continuation.arrays import Array
-from continuation.evaluation.derivatives import sizes
+from continuation.evaluation.products import sizes
 from problems.orbits.field import Field
 from problems.orbits.grid import Grid
 

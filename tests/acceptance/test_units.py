@@ -81,10 +81,13 @@ def test_the_first_scales_do_not_depend_on_where_zero_is(name, offset):
 
 @pytest.mark.parametrize("n", [2, 5, 10])
 def test_the_first_scales_are_found_in_a_few_looks(n):
-    """Two residuals a look; on n = 10, where the nonlinearity grows like a square, 40 looks were not enough."""
+    """Two residuals a look; on n = 10, where the nonlinearity grows like a square, 40 looks were not enough.
+
+    Noise is measured by two residuals for the last places of the point, and by six at each of three distances at most.
+    """
     tracer = Tracer(ExponentialCosine(n))
     next(iter(tracer))
-    assert tracer.counts.residuals <= 2 * 8 + 3
+    assert tracer.counts.residuals <= 2 * 8 + 3 + 2 + 3 * 6
 
 
 @every_preset
@@ -224,8 +227,9 @@ def test_the_upper_branch_of_bratu_never_comes_to_zero(preset, steps):
     upper = trace(Bratu1D(20), events=[TargetValue(1.0)])
     start = (upper.endpoint.u, upper.endpoint.tangent)
     path = trace(Bratu1D(20), preset=preset, start=start, target=0.0, budget=Budget(steps=steps))
-    assert path.status is not Status.REACHED_TARGET
-    assert 0.0 < path.endpoint.lam < 1e-10
+    # The asymptote is named, or followed until the budget ends.
+    assert path.status in (Status.DIVERGED, Status.BUDGET_EXHAUSTED)
+    assert 0.0 < path.endpoint.lam < 1e-9
 
 
 @every_preset
@@ -250,7 +254,8 @@ def test_a_target_just_beyond_a_fold_is_not_reached(preset):
     """lam = 1 - 1e-9 - x^2; the denominators of Pade's approximants are singular on the way."""
     homotopy = from_functions(lambda y, lam: np.stack([y[0] ** 2 + lam - 1.0 + 1e-9]), start=([-1.0], 0.0), target=1.0)
     path = trace(homotopy, preset=preset)
-    assert path.status is Status.DIVERGED
+    assert path.status is Status.BUDGET_EXHAUSTED
+    assert "Reached: numbers of " in path.message
     assert [event.lam for event in path.turning_points] == pytest.approx([1.0 - 1e-9], abs=1e-14)
 
 
