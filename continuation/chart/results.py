@@ -11,7 +11,7 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
-from attrs import asdict, field, fields, fields_dict, frozen
+from attrs import field, fields, fields_dict, frozen
 
 from continuation.counts import Counts
 
@@ -211,7 +211,7 @@ def write(results: Results, file: str | PathLike[str]) -> File:
     table = csv.writer(out, lineterminator="\n")
     table.writerow([*_OWN, *_COUNTS, *(PREFIX + name for name in results.errors)])
     for row in results.rows:
-        counts = asdict(row.counts)
+        counts = row.counts.as_dict()
         # What begins with # would be read as a comment; a message has no use for it.
         own = [value.replace("#", "") if isinstance(value := getattr(row, name), str) else value for name in _OWN]
         table.writerow([*own, *(counts[name] for name in _COUNTS), *(row.errors[name] for name in results.errors)])
