@@ -110,6 +110,8 @@ class Contents:
 
     def damaged(self, error: BaseException) -> ArchiveError:
         """The error for a file that cannot be read."""
+        if self._image is not None and self._image.failure:
+            return ArchiveError(f"{self.file}: could not be read ({self._image.failure})")
         if isinstance(error, LimitError):
             return ArchiveError(f"{self.file}: {short(error)}; say limit=")
         hint = "; `recover` keeps what is sound" if isinstance(error, DamageError) else ""
@@ -119,11 +121,15 @@ class Contents:
         """What `read` returns, or what stands for it where it is to be salvaged and cannot be read."""
         try:
             return read()
-        except FAULTS:
-            if not self._salvage:
-                raise
+        except FAULTS as error:
+            self._pass_over(error)
             self.flaws.append(f"{what} cannot be read")
             return lost
+
+    def _pass_over(self, error: Exception) -> None:
+        """Go on without what cannot be read, if that is the file's fault: a disk that fails may read it soon."""
+        if not self._salvage or (self._image is not None and self._image.failure):
+            raise self.damaged(error) from error
 
     def _flaw(self, text: str) -> None:
         if not self._salvage:
@@ -186,9 +192,8 @@ class Contents:
         try:
             values: Array = view[:count]
             return values
-        except FAULTS:
-            if not self._salvage:
-                raise
+        except FAULTS as error:
+            self._pass_over(error)
         parts, step = [np.empty((0, *found.shape[1:]), kind or found.dtype)], found.chunks[0] if found.chunks else count
         with suppress(*FAULTS):
             parts.extend(view[start : min(start + step, count)] for start in range(0, count, step))
@@ -230,7 +235,8 @@ class Contents:
             for name in self._columns[table]:
                 try:
                     found.update(ledger.damaged(name, self._fetch(table, name, whole), whole))
-                except FAULTS:
+                except FAULTS as error:
+                    self._pass_over(error)
                     found.update(self._one_by_one(table, name, whole))
         return sorted(found)
 
@@ -241,7 +247,8 @@ class Contents:
             block = ledger.covering(slice(start, start + 1))
             try:
                 found += ledger.damaged(name, self._fetch(table, name, block), block)
-            except FAULTS:
+            except FAULTS as error:
+                self._pass_over(error)
                 found.append((block.start, block.stop))
             start = block.stop
         return found

@@ -45,12 +45,14 @@ def _read(file: Image | Sink, size: int) -> bytes:
 class Image:
     """A file opened for reading, as it would be if its writer had closed it.
 
-    `missing` bytes, which the file should have at its end and has not, read as zeros. Raises `ArchiveError` if it is no
+    `missing` bytes, which the file should have at its end and has not, read as zeros. `failure` is what the disk said
+    when it could not be read. Raises `ArchiveError` if it is no
     regular file, may not be read, or is not HDF5 as far as its first bytes tell.
     """
 
     def __init__(self, file: File) -> None:
         self.file, self.at = file, 0
+        self.failure = ""
         self.descriptor = _opened(file)
         try:
             self._begin()
@@ -87,7 +89,12 @@ class Image:
         view = memoryview(buffer).cast("B")
         done = 0
         while done < len(view):
-            count = os.preadv(self.descriptor, [view[done:]], self.at + done)
+            try:
+                count = os.preadv(self.descriptor, [view[done:]], self.at + done)
+            except OSError as error:
+                # Its text: a traceback that is kept would keep a buffer of HDF5's.
+                self.failure = short(error)
+                raise
             if not count:
                 view[done:] = bytes(len(view) - done)
                 break

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -98,10 +99,14 @@ def test_one_line(run, command):
 
 @pytest.mark.parametrize("command", WITH_ARCHIVES)
 def test_a_disk_that_fails(command):
-    for left in (0, 7, 40):
+    before = Path("ok.h5").read_bytes()
+    for left in (0, 7, 40, 100):
         status, said, _ = process(str(left), *WITH_ARCHIVES[command], code=FAILING)
         assert (status, len(said)) == (2, 1), said
         assert "Input/output error" in said[0]
+    # What the disk does not read is not what the file lacks: nothing is taken for damaged.
+    assert Path("ok.h5").read_bytes() == before
+    assert not Path("ok.h5.damaged").exists()
 
 
 def test_a_name_that_is_no_text(folder):
