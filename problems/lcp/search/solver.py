@@ -99,7 +99,8 @@ def solve(
     finish : bool
         Whether active sets are tried, before the path and along it. Without it `path` is the pure homotopy.
     path : bool
-        Trace a path even where "auto" needs none, to look at it.
+        Trace a path even where "auto" needs none, to look at it. Its turning points and branch points are looked for;
+        else only without the finish, as active sets find certified ends.
     restarts : int, optional
         Paths from random starts after the first has failed. Default: 0 for a named homotopy, and as many as the budget
         allows for "auto" (1000 where it has no limit).
