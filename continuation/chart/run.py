@@ -27,9 +27,9 @@ Watch = Callable[[int, int, Row], None]
 def run(study: Study, watch: Watch | None = None) -> Results:
     """Run a study.
 
-    The first run of a kind warms up, is judged and gives the counts, which are the same for all runs; the time (of the
-    processor, BLAS on one thread) is the shortest of the runs after it. What a method raises becomes a row with the
-    failure `exception`.
+    The first run of a kind warms up, is judged and gives the counts, which are the same for all runs; the time, of the
+    processor, is the shortest of the runs after it. BLAS is on one thread unless the environment says how many. What a
+    method raises becomes a row with the failure `exception`.
 
     Parameters
     ----------
