@@ -23,6 +23,7 @@ from problems.orbits.blocks import Bordered
 from problems.orbits.equations import PHASE_COSINE, Equations, Watch
 from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
+from problems.orbits.models import Model
 from problems.orbits.multipliers import Multipliers
 from problems.orbits.newton import newton
 from problems.orbits.starts import MESHES, circle_at, one_period
@@ -70,7 +71,7 @@ class PeriodicOrbit:
     de Boor and Swartz, Collocation at Gaussian points, SIAM J. Numer. Anal. 10, 1973.
     """
 
-    f: Callable[..., Any]
+    f: Model | Callable[..., Any]
     states: Array = field(converter=as_table, repr=False)
     period: float = field(validator=POSITIVE_FINITE)
     parameter: float = field(validator=FINITE)
