@@ -1,6 +1,6 @@
 """Periodic orbits: a homotopy; `problems.orbits.models` has vector fields with known ones."""
 
-from problems.orbits.models import from_model
+from problems.orbits.named import from_model
 from problems.orbits.orbit import PeriodicOrbit
 from problems.orbits.pictures import plot_orbits
 

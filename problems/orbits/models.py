@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from attrs import frozen
 
 from continuation.arrays import Array
-from problems.orbits.orbit import PeriodicOrbit
 
 
 def normal_form(z: Any, p: Any, second: Any = 1.0) -> Array:
@@ -42,27 +43,19 @@ def lorenz(z: Any, r: Any) -> Array:
     return np.stack([10.0 * (y - x), r * x - y - x * w, x * y - 8.0 / 3.0 * w])
 
 
-_AT_HOPF = {
-    "normal-form": (normal_form, [0.0, 0.0], 0.0),
-    "brusselator": (brusselator, [1.0, 2.0], 2.0),
-    "lorenz": (lorenz, [float(np.sqrt(8.0 / 3.0 * 451.0 / 19.0))] * 2 + [451.0 / 19.0], 470.0 / 19.0),
-}
-"""Their Hopf points, in closed form."""
+@frozen
+class Model:
+    """A vector field by its name, so that an archive can say it; called with (x, p)."""
+
+    name: str
+
+    def __call__(self, z: Any, p: Any, *second: Any) -> Array:
+        """The field's value."""
+        field: Array = FIELDS[self.name](z, p, *second)
+        return field
 
 
-def from_model(model: str = "brusselator", intervals: int = 20, degree: int = 4, radius: float = 0.01) -> PeriodicOrbit:
-    """The orbits that leave the Hopf point of a model.
-
-    Parameters
-    ----------
-    model : str
-        normal-form, brusselator or lorenz.
-    intervals, degree : int
-        Of the collocation.
-    radius : float
-        Of the orbit to begin with.
-    """
-    if model not in _AT_HOPF:
-        raise ValueError(f"model: expected one of {', '.join(_AT_HOPF)}, found {model!r}")
-    f, x, p = _AT_HOPF[model]
-    return PeriodicOrbit.from_hopf(f, (np.array(x), p), radius=radius, intervals=intervals, degree=degree)
+FIELDS: dict[str, Callable[..., Any]] = {
+    "normal-form": normal_form, "brusselator": brusselator, "lorenz": lorenz, "van-der-pol": van_der_pol,
+    "roessler": roessler,
+}  # fmt: skip

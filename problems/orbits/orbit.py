@@ -23,6 +23,7 @@ from problems.orbits.blocks import Bordered
 from problems.orbits.equations import PHASE_COSINE, Equations, Watch
 from problems.orbits.field import field_of
 from problems.orbits.grid import Grid
+from problems.orbits.models import Model
 from problems.orbits.multipliers import Multipliers
 from problems.orbits.newton import newton
 from problems.orbits.starts import MESHES, circle_at, one_period
@@ -33,10 +34,10 @@ class PeriodicOrbit:
     """Periodic orbits of x' = f(x, p): X' = T f(X, p), X(0) = X(1), in time scaled to [0, 1], and a phase condition.
 
     X is a continuous piecewise polynomial of degree m on N intervals that satisfies the equation at the m Gauss points
-    of each. Its error is of order m + 1 in their lengths, of order 2 m at the mesh points and in the period. The
-    unknowns are X at the N m nodes, one after another, T, and the N - 1 inner points of the mesh, which equations of
-    their own keep where they are: a point of a path, in a file too, says what orbit it is. The path's parameter is p.
-    The phase condition is int <X, X_ref'> = 0, with X_ref the orbit that is given.
+    of each; its error is of order m + 1 in their lengths, of order 2 m at the mesh points and in the period (de Boor
+    and Swartz, SIAM J. Numer. Anal. 10, 1973). Unknowns are X at the N m nodes, one after another, T, and the N - 1
+    inner points of the mesh, which equations of their own pin: a point of a path, in a file too, says what orbit it is.
+    The path's parameter is p. The phase condition is int <X, X_ref'> = 0, with X_ref the orbit that is given.
 
     Make one by `from_hopf`, `from_solution`, `from_orbit` or `doubled`.
 
@@ -64,13 +65,9 @@ class PeriodicOrbit:
         How large the components are, about: by default their standard deviations over the given orbit.
     heading : array_like, shape (N m, n), optional
         How X changes where a branch leads that begins here; by default orbits become larger that way.
-
-    References
-    ----------
-    de Boor and Swartz, Collocation at Gaussian points, SIAM J. Numer. Anal. 10, 1973.
     """
 
-    f: Callable[..., Any]
+    f: Model | Callable[..., Any]
     states: Array = field(converter=as_table, repr=False)
     period: float = field(validator=POSITIVE_FINITE)
     parameter: float = field(validator=FINITE)
@@ -89,8 +86,7 @@ class PeriodicOrbit:
     problem_class: ClassVar[str] = "periodic orbits"
 
     def __attrs_post_init__(self) -> None:
-        wanted = (self.mesh.size - 1) * self.degree
-        if len(self.states) != wanted:
+        if len(self.states) != (wanted := (self.mesh.size - 1) * self.degree):
             raise ValueError(f"states: expected {wanted} rows, one a node, found {len(self.states)}")
         if self.scale.shape != self.states.shape[1:] or not (self.scale > 0.0).all():
             raise complain(ValueError, "scale", f"{self.states.shape[1]} positive numbers", self.scale)
@@ -204,19 +200,26 @@ class PeriodicOrbit:
         ----------
         orbit : PeriodicOrbit
         at : LocatedEvent, Step or (y, p), optional
-            A point of its path, by default its start. The phase condition is that of this orbit from now on.
+            A point of its path, by default its start: the orbit is found across the path's tangent if it has one.
         intervals, degree : int, optional
             Others than before.
         """
-        return orbit._remeshed(at, intervals, degree)[0]._corrected()
+        given, tangent = orbit._remeshed(at, intervals, degree, getattr(at, "tangent", None))
+        return given._corrected(tangent)
 
-    def _remeshed(self, at: Any, intervals: int | None, degree: int | None) -> tuple[PeriodicOrbit, Array]:
-        """The orbit, and where its nodes were in the old time."""
+    def _remeshed(
+        self, at: Any, intervals: int | None = None, degree: int | None = None, v: Array | None = None
+    ) -> tuple[PeriodicOrbit, Array | None]:
+        """The orbit, interpolated, and a direction of the path in its unknowns."""
         y, lam = self.start() if at is None else as_point(at)
         old, X, T = self.equations.unknowns(y)
         new, times = old.suited(X / self.scale, intervals or old.intervals, degree or self.degree)
         given = evolve(self, states=old.at(X, times), mesh=new.mesh, degree=new.degree, heading=None)
-        return evolve(given, period=T, parameter=lam), times
+        given = evolve(given, period=T, parameter=lam)
+        if v is None or not np.isfinite(v).all():
+            return given, None
+        way = old.at(v[: X.size].reshape(X.shape), times)
+        return given, np.concatenate([way.ravel(), v[X.size : X.size + 1], np.zeros(new.intervals - 1), v[-1:]])
 
     def doubled(self, at: Any = None, radius: float = 1e-2) -> PeriodicOrbit:
         """The orbit of twice the period that leaves a period doubling; trace from `leaving`.
@@ -316,10 +319,8 @@ class PeriodicOrbit:
 
     def renewed(self, u: Array, v: Array) -> tuple[PeriodicOrbit, Array, Array]:
         """An orbit of the path on a mesh that suits it, in its own phase condition; see `continuation.renewal`."""
-        old, size = self.equations.unknowns(u[:-1])[0], self.states.size
-        given, times = self._remeshed((u[:-1], float(u[-1])), None, None)
-        way = old.at(v[:size].reshape(self.states.shape), times)
-        tangent = np.concatenate([way.ravel(), v[size : size + 1], np.zeros(self.mesh.size - 2), v[-1:]])
+        given, tangent = self._remeshed((u[:-1], float(u[-1])), v=v)
+        assert tangent is not None
         new = given._corrected(tangent)
         return new, np.append(*new.start()), tangent
 

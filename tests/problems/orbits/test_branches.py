@@ -40,6 +40,8 @@ def test_the_curve_of_folds_of_cycles():
     """p = -second^2 / 4."""
     orbit = PeriodicOrbit.from_hopf(normal_form, ([0.0, 0.0], 0.0), intervals=10, second=1.0)
     fold = continuation.trace(orbit, start=orbit.leaving, events=[continuation.TurningPoint(terminal=1)]).events[-1]
+    finer = PeriodicOrbit.from_orbit(orbit, fold, intervals=24)
+    assert finer.parameter == pytest.approx(-0.25, abs=1e-12)
     curve = continuation.trace(Curve(Family(orbit, "second"), fold), target=0.5)
     assert curve.success
     for step in curve.steps:

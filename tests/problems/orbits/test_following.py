@@ -49,7 +49,7 @@ def test_a_part_is_resumed_on_its_own_mesh(tmp_path):
     whole = continuation.trace(renewed, start=(u, v), budget=Budget(steps=6))
     file = tmp_path / "part.h5"
     continuation.trace(renewed, start=(u, v), budget=Budget(steps=3), archive=file)
-    found = resume(file, trust=[PeriodicOrbit, orbit.f], budget=Budget(steps=6))
+    found = resume(file, budget=Budget(steps=6))
     assert np.array_equal(found.u, whole.u)
 
 
