@@ -12,7 +12,6 @@ from typing import Any
 
 import h5py
 import numpy as np
-from attrs import fields_dict
 from h5py import h5s
 
 from continuation.archive.atomic import beside, check_new, publish
@@ -43,7 +42,7 @@ _NUMBERS = (
     Column("seconds", "f8", "s", "processor time, least of the repeated runs", _RUN),
     Column("repeats", "i8", "1", "timed runs after the first", _RUN),
 )
-_COUNTS = tuple(Column(name, "i8", "1", f"count of {name}", _RUN) for name in fields_dict(Counts))
+_COUNTS = tuple(Column(name, "i8", "1", f"count of {name}", _RUN) for name in Counts().as_dict())
 _ERROR = "error_"
 
 

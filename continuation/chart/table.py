@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Sequence
 from statistics import median
 
-from attrs import asdict, field, frozen
+from attrs import field, frozen
 
 from continuation.chart.front import excess, on_front
 from continuation.chart.results import Results, Row
@@ -92,11 +92,11 @@ def runs(results: Results, failures_only: bool = False) -> Table:
     """
     error, work = next(iter(results.errors)), results.work[0]
     front = {id(row) for p in results.problems for row in on_front(results.of(problem=p), error, work)}
-    counts = [name for name in asdict(results.rows[0].counts) if name != "jacobians"] if results.rows else []
+    counts = [name for name in results.rows[0].counts.as_dict() if name != "jacobians"] if results.rows else []
     head = ("problem", "n", "method", results.ladder, "front", "outcome", "turns", *results.errors, *counts, "seconds")
     lines = [
         (row.problem, row.n, row.method, row.rung, ON_FRONT if id(row) in front else "", row.failure or "ok", row.turns,
-         *(row.errors[name] for name in results.errors), *(asdict(row.counts)[name] for name in counts), row.seconds)
+         *(row.errors[name] for name in results.errors), *(getattr(row.counts, name) for name in counts), row.seconds)
         for row in results.rows
         if row.failed or not failures_only
     ]  # fmt: skip
