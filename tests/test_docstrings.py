@@ -40,7 +40,7 @@ def parameters(function):
     for name, parameter in inspect.signature(function).parameters.items():
         unpacked = re.fullmatch(r"Unpack\[(\w+)\]", str(parameter.annotation))
         if unpacked and name not in documented(function):
-            names |= set(function.__globals__[unpacked[1]].__annotations__)
+            names |= set(inspect.unwrap(function).__globals__[unpacked[1]].__annotations__)
         else:
             names.add(name)
     return names - {"self", "cls"}
