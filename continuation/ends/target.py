@@ -38,7 +38,7 @@ CONDITIONED = 0.1
 """An end that round-off may move by so much of the path is none: an asymptote satisfies any equation, in the end."""
 
 ENOUGH = 30.0
-"""A bound of so many tolerances is no reason to look for a limit: components are measured by what their noise allows."""
+"""A bound of so many tolerances is no reason to look for a limit: noise decides what components are measured by."""
 
 VANISHING_SHARE = 1e-18
 """Share of the parameter in the tangent that the square of round-off may leave of none."""
@@ -182,8 +182,8 @@ class Target:
     def _limit(self, arc: Arc, end: Linearization, value: float) -> tuple[Array, float, SingularLimit | None]:
         """The end of the arc at a parameter value, a bound of its error, and the limit if it is singular.
 
-        Newton's method at the value brings a point near a fold to round-off; how far it may be moved there without leaving
-        round-off is the bound. An end that is not known to the tolerance by that may be a limit that is: a fold, or
+        Newton's method at the value brings a point near a fold to round-off; how far it may be moved there without
+        leaving round-off is the bound. An end that is not known to the tolerance by that may be a limit that is: a fold, or
         what the endgame finds. Raises `EvaluationError` where neither is known beside the path.
         """
         evaluator, weights = self.solver.evaluator, end.weights

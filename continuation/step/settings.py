@@ -69,6 +69,12 @@ class Settings:
         """Which of the events stands for kinks; None for smooth homotopies."""
         return self._index_of(KinkPoint)
 
+    @property
+    def stops(self) -> list[tuple[int, float]]:
+        """Components and their values at which the path ends: the target, the faces of a box, other such events."""
+        ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal > 0]
+        return [*([] if self.target is None else [(-1, self.target)]), *((e.component, e.value) for e in ends)]
+
     def room(self, u: Array, v: Array) -> float:
         """How far along a direction, without a target, the nearest value lies on which the path ends; inf without one.
 
