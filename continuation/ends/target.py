@@ -183,8 +183,8 @@ class Target:
         """The end of the arc at a parameter value, a bound of its error, and the limit if it is singular.
 
         Newton's method at the value brings a point near a fold to round-off; how far it may be moved there without
-        leaving round-off is the bound. An end that is not known to the tolerance by that may be a limit that is: a fold, or
-        what the endgame finds. Raises `EvaluationError` where neither is known beside the path.
+        leaving round-off is the bound. An end that is not known to the tolerance by that may be a limit that is: a
+        fold, or what the endgame finds. Raises `EvaluationError` where neither is known beside the path.
         """
         evaluator, weights = self.solver.evaluator, end.weights
         vanishing = share(weights, end.tangent)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
 from attrs import evolve, frozen, has
 
 from continuation.arguments.checks import complain, instance_with
@@ -18,7 +19,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.events import Event, KinkPoint, TargetValue, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
-from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces, offers
+from continuation.homotopy import SupportsBlocks, SupportsEvents, SupportsMetric, SupportsPieces, offers
 from continuation.metric import Automatic, Metric
 from continuation.predictors import Predictor
 from continuation.step.guard import Guard
@@ -121,7 +122,7 @@ def complete_settings(
         predictor=_first(asked["predictor"], preset.predictor),
         corrector=_first(asked["corrector"], preset.corrector),
         controller=_capped(_first(asked["controller"], preset.controller), asked["max_step"]),
-        metric=_first(asked["metric"], own, Automatic()),
+        metric=_first(asked["metric"], own, Automatic(blocks=_blocks(homotopy, start))),
         events=(*_events(homotopy, asked, observers), *_box(homotopy, asked, start)),
         guards=tuple(asked["guards"]),
         tolerance=as_tolerance(asked["tolerance"]),
@@ -130,6 +131,16 @@ def complete_settings(
         direction=asked["direction"],
         examine=bool(asked["examine"]),
     )
+
+
+def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
+    """The homotopy's blocks, checked; None where it names none."""
+    if not offers(homotopy, SupportsBlocks):
+        return None
+    blocks = np.asarray(homotopy.blocks)
+    if blocks.dtype.kind not in "iu" or blocks.shape != (start().size - 1,) or blocks.min() < 0:
+        raise complain(ValueError, "blocks", "a label 0, 1, ... for each unknown", homotopy.blocks)
+    return blocks
 
 
 def _capped(controller: Any, longest: float | None) -> Any:

@@ -13,6 +13,7 @@ from mpmath import mp, mpf
 import continuation
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Status, from_functions, trace
 from continuation.metric import Euclidean
+from continuation.step.tracer import Tracer
 
 sys.path.insert(0, str(File(__file__).parents[2] / "examples" / "benchmarks" / "ends"))
 import families
@@ -142,3 +143,19 @@ def test_all_says_of_the_budget_what_is_in_sight():
     assert path.status is Status.BUDGET_EXHAUSTED
     assert "In sight, and not followed to its end: a pole: " in path.message
     assert continuation.Status(path.status) is path.status
+
+
+def test_samples_of_one_field_have_one_scale():
+    """Of two fields of three samples, and the parameter, which is no part of one."""
+    size = np.array([1.0, 10.0, 0.1, 1e6, 1e5, 1e7])
+
+    def residual(y, lam):
+        return y / size + (y / size) ** 3 - lam
+
+    homotopy = from_functions(residual, start=(np.zeros(6), 0.0), target=1.0)
+    tracer = Tracer(homotopy, metric=continuation.Automatic(blocks=np.array([0, 0, 0, 1, 1, 1])))
+    next(iter(tracer))
+    weights = tracer.state.weights
+    assert len(set(weights[:3])) == len(set(weights[3:6])) == 1
+    assert weights[0] / weights[3] == pytest.approx(1e12, rel=1e-6)
+    assert tracer.run().status is Status.REACHED_TARGET
