@@ -207,6 +207,14 @@ class SupportsExtents(Protocol):
 
 
 @runtime_checkable
+class SupportsBlocks(Protocol):
+    """Which unknowns are samples of one field: the default metric gives those of one label one scale."""
+
+    blocks: Sequence[int]
+    """A label for each unknown: 0, 1, ..."""
+
+
+@runtime_checkable
 class SupportsFinish(Protocol):
     """A problem's own way to end, tried after accepted steps; returns the end y at the target, or None."""
 

@@ -7,6 +7,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 from attrs import field, frozen
+from numpy.typing import NDArray
 from scipy.linalg.blas import dscal
 
 from continuation.arguments.checks import FRACTION, POSITIVE_FINITE
@@ -118,9 +119,13 @@ class Automatic:
     ----------
     share : float
         Weight of the parameter's change beside the mean of all others.
+    blocks : ndarray of int, shape (N,), optional
+        A label for each unknown. Those of one label are samples of one field, and are measured alike: by what goes
+        farthest.
     """
 
     share: float = field(default=0.2, validator=FRACTION)
+    blocks: NDArray[np.int64] | None = field(default=None, eq=False, kw_only=True)
 
     @property
     def longest(self) -> float:
@@ -141,6 +146,10 @@ class Automatic:
         ----------
         extent : ndarray, shape (N + 1,)
         """
+        if self.blocks is not None:
+            farthest = np.zeros(int(self.blocks.max()) + 1)
+            np.maximum.at(farthest, self.blocks, extent[:-1])
+            extent = np.append(farthest[self.blocks], extent[-1])
         weights: Array = extent**-2.0
         last = self.share * weights.item(-1)
         dscal((1.0 - self.share) / (extent.size - 1), weights)

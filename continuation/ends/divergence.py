@@ -9,6 +9,7 @@ a pole until the parameter is as near as 1e-9 of its way.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import brentq
@@ -57,7 +58,9 @@ PRINTED_DIGITS = 9
 Monitor = tuple[float, ...]
 
 
-def divergence(monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator) -> tuple[Monitor, str]:
+def divergence(
+    monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator, stops: Sequence[tuple[int, float]]
+) -> tuple[Monitor, str]:
     """Follow the slope of the path by decades; the monitor afterwards, and which infinity it is in words, if any.
 
     Parameters
@@ -69,6 +72,8 @@ def divergence(monitor: Monitor, point: Linearization, origin: Knot, evaluator: 
     origin : Knot
         The start: slopes are measured in how far each unknown has come from it.
     evaluator : Evaluator
+    stops : sequence of (component, value)
+        Where the path is to end: what comes to one of them on the way runs off to no infinity.
     """
     lam, moves = point.lam, float(point.tangent[-1])
     way, began, *marks = monitor or (0.0, 0.0)
@@ -90,10 +95,17 @@ def divergence(monitor: Monitor, point: Linearization, origin: Knot, evaluator: 
     if not met or model is None or abs(model[0] - lam) > MET_OVER * began:
         return known, ""
     bounded = model[1] > LOGARITHM and largest(point.y) < LARGER * largest(origin.u[:-1])
-    return known, words(known) if not bounded and _met_further(evaluator, point, *model, way) else ""
+    return known, words(known) if not bounded and _met_further(evaluator, point, *model, way, stops) else ""
 
 
-def _met_further(evaluator: Evaluator, point: Linearization, limit: float, order: float, way: float) -> bool:
+def _met_further(
+    evaluator: Evaluator,
+    point: Linearization,
+    limit: float,
+    order: float,
+    way: float,
+    stops: Sequence[tuple[int, float]],
+) -> bool:
     """Whether the path is where the model says decade by decade, until the parameter is at its limit.
 
     Newton's method along the path's hyperplane from each prediction must come to a point whose parameter is no more
@@ -116,7 +128,7 @@ def _met_further(evaluator: Evaluator, point: Linearization, limit: float, order
             at = linearize(evaluator, u, at.weights, at.border)
     except (EvaluationError, ZeroDivisionError, OverflowError):
         return False
-    return True
+    return not any((value - point.u[i]) * (at.u[i] - value) > 0.0 for i, value in stops)
 
 
 def beyond_horizon(u: Array) -> str:

@@ -29,10 +29,6 @@ RESOLUTION = 1e-9
 SINGULAR_SHARE = 1e-10
 """Share of the parameter in the tangent below which an end counts as singular in the parameter."""
 
-ON_TARGET = 1e-13
-"""How near a fold must be to the target, relative to max(1, |target|), to lie on it: it is located to round-off, and
-so is its parameter value."""
-
 DISTANCE, ANGLE = 0.3, 1.0
 """A landing that corrects the prediction by more than this fraction of the step, or turns the tangent by more than this
 (radians), has landed on another branch."""
@@ -158,8 +154,9 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if not fold:
         return None
     gap = (fold[0].lam - value) * np.sign(before)
-    # A path that passes through the target on its way to a fold just behind it ends on the target.
-    if abs(gap) <= ON_TARGET * max(1.0, abs(value)):
+    # A path that passes through the target on its way to a fold just behind it ends on the target; a fold that lies on
+    # it as far as H can tell is the end.
+    if abs(gap) <= solver.noise_by_component(fold[0])[-1]:
         return fold[0]
     return crossing(solver, cut(arc, fold[0]), value) if gap < 0.0 else None
 

@@ -38,7 +38,7 @@ CONDITIONED = 0.1
 """An end that round-off may move by so much of the path is none: an asymptote satisfies any equation, in the end."""
 
 ENOUGH = 30.0
-"""A bound of so many tolerances is no reason to look for a limit: noise tells what a component is measured by."""
+"""A bound of so many tolerances is no reason to look for a limit: noise decides what components are measured by."""
 
 VANISHING_SHARE = 1e-18
 """Share of the parameter in the tangent that the square of round-off may leave of none."""

@@ -248,7 +248,7 @@ class Evaluator:
         return change if self.noise is None else np.maximum(change, self.noise)
 
     def measure_noise(self, u: Array, w: Array, residual: Array) -> Array:
-        """The round-off of each equation at u, or its noise if that is more, which is kept as `noise`; shape (N,).
+        """What the last place of u makes of each equation, or its noise if that is more, which is kept; shape (N,).
 
         `w`, of shape (N + 1,): A way ahead on which H may change. `residual` is H(u).
         """
@@ -260,7 +260,7 @@ class Evaluator:
         self.noise = np.where(noise > NOT_OF_POINT * terms, noise, 0.0)
         if not self.noise.any():
             self.noise = None
-        return np.maximum(terms, noise)
+        return np.maximum(terms / POINT_ULPS, noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:

@@ -44,7 +44,8 @@ class Path:
     references : tuple of str
         BibTeX of the homotopy and of the parts that traced it; see `continuation.cite`.
     end_error : float or None
-        Where the end is singular in the parameter: an estimate of its largest absolute error.
+        Where the path reached its target: a bound of the largest absolute error of a component there, from how far
+        the equations hold to round-off of their own terms; at a limit found by the endgame, its estimate.
     winding_number : int or None
         There: the path is a power series in |lam - target|^(1 / winding_number).
     rejected : tuple of Rejected

@@ -214,7 +214,9 @@ class Advance:
         """Make the arrival the current point: metric, history, divergence, and the step's record."""
         attempt, ending = accepted.attempt, accepted.ending
         arrival, correction = ending.arc.b, attempt.correction
-        monitor, infinity = divergence(state.divergence_monitor, arrival, state.origin, self.solver.evaluator)
+        monitor, infinity = divergence(
+            state.divergence_monitor, arrival, state.origin, self.solver.evaluator, self.settings.stops
+        )
         moved = arrival.with_weights(self._weights(arrival, state))
         if self.extent is not None:
             # The same step in the new metric: the path has become longer, not the step.

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
 from attrs import evolve, frozen, has
 
 from continuation.arguments.checks import complain, instance_with
@@ -18,7 +19,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.events import Event, KinkPoint, TargetValue, TurningPoint
 from continuation.events.box import faces
 from continuation.events.branch_point import BranchPoint
-from continuation.homotopy import SupportsEvents, SupportsMetric, SupportsPieces, offers
+from continuation.homotopy import SupportsBlocks, SupportsEvents, SupportsMetric, SupportsPieces, offers
 from continuation.metric import Automatic, Metric
 from continuation.predictors import Predictor
 from continuation.step.guard import Guard
@@ -69,6 +70,12 @@ class Settings:
         """Which of the events stands for kinks; None for smooth homotopies."""
         return self._index_of(KinkPoint)
 
+    @property
+    def stops(self) -> list[tuple[int, float]]:
+        """Components and their values at which the path ends: the target, the faces of a box, other such events."""
+        ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal > 0]
+        return [*([] if self.target is None else [(-1, self.target)]), *((e.component, e.value) for e in ends)]
+
     def room(self, u: Array, v: Array) -> float:
         """How far along a direction, without a target, the nearest value lies on which the path ends; inf without one.
 
@@ -115,7 +122,7 @@ def complete_settings(
         predictor=_first(asked["predictor"], preset.predictor),
         corrector=_first(asked["corrector"], preset.corrector),
         controller=_capped(_first(asked["controller"], preset.controller), asked["max_step"]),
-        metric=_first(asked["metric"], own, Automatic()),
+        metric=_first(asked["metric"], own, Automatic(blocks=_blocks(homotopy, start))),
         events=(*_events(homotopy, asked, observers), *_box(homotopy, asked, start)),
         guards=tuple(asked["guards"]),
         tolerance=as_tolerance(asked["tolerance"]),
@@ -124,6 +131,16 @@ def complete_settings(
         direction=asked["direction"],
         examine=bool(asked["examine"]),
     )
+
+
+def _blocks(homotopy: Any, start: Callable[[], Array]) -> Any:
+    """The homotopy's blocks, checked; None where it names none."""
+    if not offers(homotopy, SupportsBlocks):
+        return None
+    blocks = np.asarray(homotopy.blocks)
+    if blocks.dtype.kind not in "iu" or blocks.shape != (start().size - 1,) or blocks.min() < 0:
+        raise complain(ValueError, "blocks", "a label 0, 1, ... for each unknown", homotopy.blocks)
+    return blocks
 
 
 def _capped(controller: Any, longest: float | None) -> Any:

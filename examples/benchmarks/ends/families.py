@@ -1,0 +1,120 @@
+"""Paths whose ends are known, and whose numbers mislead: imperfections, symmetry, tails, weak parameters, poles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from attrs import frozen
+
+import continuation
+from continuation import Status
+from continuation.arrays import Array
+
+Residual = Callable[[Any, Any], Any]
+
+
+@frozen
+class Case:
+    """A path: its residual, start and target, how it may end, and how many folds it has; y at the target if known."""
+
+    residual: Residual
+    start: tuple[Array, float]
+    target: float
+    ends: tuple[Status, ...] = (Status.REACHED_TARGET,)
+    folds: int = 0
+    y: float | None = None
+
+    def homotopy(self, D: float = 1.0, a: float = 1.0, E: float = 1.0) -> Any:
+        """In units D of the unknowns, a of the parameter, E of the equations."""
+        y0, lam0 = self.start
+        return continuation.from_functions(
+            lambda y, lam: E * self.residual(y / D, lam / a), start=(D * y0, a * lam0), target=a * self.target
+        )
+
+
+def scalar(f: Residual, y0: float, lam0: float, target: float, **known: Any) -> Case:
+    """A path in one unknown."""
+    return Case(lambda y, lam: np.stack([f(y[0], lam)]), (np.array([y0]), lam0), target, **known)
+
+
+def imperfect(generator: np.random.Generator) -> Case:
+    """A pitchfork, a transcritical point, a cusp or a hysteresis, with an imperfection from 1e-2 to 1e-14."""
+    eps = 10.0 ** generator.uniform(-14.0, -2.0)
+    kind = generator.integers(3)
+    if kind == 0:
+        return scalar(lambda y, lam: lam * y - y**3 + eps, eps, -1.0, 1.0)
+    if kind == 1:
+        return scalar(lambda y, lam: lam * y - y**2 + eps, eps, -1.0, 1.0)
+    return scalar(lambda y, lam: y**3 + eps * y - lam, -1.0, -1.0 - eps, 1.0)
+
+
+def ring(generator: np.random.Generator) -> Case:
+    """Coupled cells that are all zero by symmetry at the start, in a basis in which their terms cancel by rounding."""
+    n = int(generator.integers(3, 8))
+    Q, _ = np.linalg.qr(generator.standard_normal((n, n)))
+    b, shift = Q[:, 0].copy(), generator.standard_normal(n)
+
+    # Along Q's first column alone: all others stay zero.
+    def residual(y: Any, lam: Any) -> Any:
+        x = (y + shift) - shift
+        along = (x * b).sum()
+        return x + b * (along**3) - b * lam
+
+    return Case(residual, (np.zeros(n), 0.0), 2.0)
+
+
+def localised(generator: np.random.Generator) -> Case:
+    """A pulse on a lattice with tails as small as 1e-60, along the way on which it shrinks or grows."""
+    n, c = int(generator.integers(12, 31)), 10.0 ** generator.uniform(-2.0, -1.0)
+
+    # The middle decides the parameter; each further cell is c times the one before, and a little of its square.
+    def residual(y: Any, lam: Any) -> Any:
+        first = y[:1] + y[:1] ** 3 - lam
+        return np.concatenate([first, y[1:] * (1.0 + y[1:]) - c * y[:-1]])
+
+    y = [0.6]
+    for _ in range(n - 1):
+        y.append(float(2.0 * c * y[-1] / (1.0 + np.sqrt(1.0 + 4.0 * c * y[-1]))))
+    return Case(residual, (np.array(y), 0.6 + 0.6**3), 2.0)
+
+
+def weak(generator: np.random.Generator) -> Case:
+    """A parameter that enters by 1e-3 to 1e-12."""
+    small, m = 10.0 ** generator.uniform(-12.0, -3.0), float(generator.uniform(1.0, 3.0))
+    root = 0.5
+    for _ in range(60):
+        root -= (root**3 + m * root - 1.0) / (3.0 * root**2 + m)
+    return scalar(lambda y, lam: y**3 + m * y - 1.0 - small * lam, root, 0.0, 1.0)
+
+
+def pole(generator: np.random.Generator) -> Case:
+    """y ~ (1 - lam)^-p for p = 1/3 to 4, given as y or as its inverse, and a target on it or beyond."""
+    p, target = float(generator.choice([1 / 3, 1 / 2, 1.0, 2.0, 3.0, 4.0])), float(generator.choice([1.0, 1.5]))
+    ends = (Status.DIVERGED,)
+    return scalar(lambda y, lam: y ** (-1.0 / p) - 1.0 + lam, 1.0, 0.0, target, ends=ends)
+
+
+def logarithm(generator: np.random.Generator) -> Case:
+    """y = -c log(1 - lam) to lam = 1."""
+    c = float(generator.uniform(0.3, 3.0))
+    return scalar(lambda y, lam: np.exp(-y / c) - 1.0 + lam, 0.0, 0.0, 1.0, ends=(Status.DIVERGED,))
+
+
+def before_fold(generator: np.random.Generator) -> Case:
+    """A circle to 1e-1 .. 1e-14 before its fold."""
+    d = 10.0 ** generator.uniform(-14.0, -1.0)
+    target = 1.0 - d
+    return scalar(lambda y, lam: y**2 + lam**2 - 1.0, 1.0, 0.0, target)
+
+
+FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
+    "imperfections": imperfect,
+    "zero by symmetry": ring,
+    "localised": localised,
+    "weak parameter": weak,
+    "poles": pole,
+    "logarithms": logarithm,
+    "before folds": before_fold,
+}
