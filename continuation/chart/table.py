@@ -85,7 +85,7 @@ def runs(results: Results, failures_only: bool = False) -> Table:
     front = {id(row) for p in results.problems for row in on_front(results.of(problem=p), error, work)}
     counts = [name for name in results.rows[0].counts.as_dict() if name != "jacobians"] if results.rows else []
     head = ("problem", "n", "method", results.ladder, "front", "outcome", "turns", *results.errors, *counts, "seconds")
-    lines = [
+    lines: list[tuple[Cell, ...]] = [
         (row.problem, row.n, row.method, row.rung, ON_FRONT if id(row) in front else "", row.failure or "ok", row.turns,
          *(row.errors[name] for name in results.errors), *(row.counts.as_dict()[name] for name in counts), row.seconds)
         for row in results.rows
