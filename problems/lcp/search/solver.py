@@ -61,7 +61,6 @@ MOST_RESTARTS, WITHIN_BUDGET = 1000, 100_000
 
 
 @documented
-@one_thread
 def solve(
     problem: MixedLCP | Program,
     homotopy: str = "auto",
@@ -193,7 +192,7 @@ def solve(
     kept: dict[bytes, Face] | None = {} if quick else None
     immediate, looked = None, None
     if quick and not game and start is None and near is None and least(problem.q) < 0.0:
-        with Silence():
+        with Silence(), one_thread:
             immediate, looked = at_once.at_once(Finish(Faces(structure, kept=kept), tolerance))
             if immediate is not None and scaled is not None:
                 immediate = unscaled(problem, scaled, immediate, tolerance)
@@ -229,7 +228,7 @@ def solve(
     case = Case(search, start, asked, restarts, seed, executor, near)
     strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
-    with Silence(), search.log if search.log is not None else nullcontext():
+    with Silence(), one_thread, search.log if search.log is not None else nullcontext():
         if immediate is not None:
             found = immediate
         elif beyond:
