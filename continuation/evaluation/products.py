@@ -11,6 +11,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
+from continuation.evaluation.pattern import generic
 
 Residual = Callable[..., Any]
 """``residual(y, lam) -> (N,)``."""
@@ -132,10 +133,11 @@ def sizes(u: Array) -> Array:
     return np.where(u != 0.0, np.abs(u), 1.0)
 
 
-def _trials(residual: Residual, u: Array, w: Array) -> tuple[list[Array], Array]:
+def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -> tuple[list[Array], Array]:
     """Central differences along w at all steps, and how much each changes from one step to the next: (steps - 1, N).
 
-    The change is beside its own size.
+    The change is beside its own size, or that of its `rows`, shape (N,), the sizes of differences in other directions:
+    of an equation that does not change along w noise would choose the step.
     """
 
     def at(h: float) -> Array:
@@ -152,7 +154,7 @@ def _trials(residual: Residual, u: Array, w: Array) -> tuple[list[Array], Array]
         found = [at(float(h)) for h in DIFFERENCE_STEPS]
         changes = []
         for one, other in pairwise(found):
-            size = np.abs(one) + np.abs(other)
+            size = np.maximum(np.abs(one) + np.abs(other), rows)
             change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
             changes.append(np.maximum(np.where(np.isfinite(change), change, 1.0), CHANCE))
     return found, np.array(changes)
@@ -228,9 +230,10 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
     """
     steps, size = np.empty_like(u0), sizes(u0)
     groups = np.arange(u0.size) if groups is None else groups
+    usual = np.nan_to_num(np.abs(difference_along(residual, u0, size * generic(u0.size))[0]))
     for group in range(int(groups.max()) + 1):
         own = groups == group
-        changes = _trials(residual, u0, np.where(own, size, 0.0))[1].T
+        changes = _trials(residual, u0, np.where(own, size, 0.0), usual)[1].T
         seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
         steps[own] = DIFFERENCE_STEPS[_best(seen)]
     return ByDifferences(u0, steps)

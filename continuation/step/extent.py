@@ -56,9 +56,6 @@ refinement changes by more than the second are."""
 UNCERTAIN = 100.0
 """Corrections up to so many times what round-off makes of them, in two samples of its signs, say nothing."""
 
-TINY = 1e-300
-"""Stands for the motion of a component that stands still."""
-
 OTHER_UNITS = 1e4
 """The nonlinearity above which a size is one of other units: on six symmetric trunks in units of 1: 0.2 to 1,100."""
 
@@ -117,8 +114,9 @@ def initial_extent(
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
     noise = evaluator.measure_noise(u, (nearest if np.isfinite(nearest) else length) * v, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    # Across the path: first with that component held which is known best beside its motion.
-    best = int(np.argmin(np.abs(samples).max(axis=0) / np.where(moving, size, TINY)))
+    # Across the path: first with that component held which is known best beside its motion; one that stands still holds
+    # nothing, even where no noise is seen in it.
+    best = int(np.argmin(np.where(moving, np.abs(samples).max(axis=0) / np.where(moving, size, 1.0), np.inf)))
     blur = np.maximum(_largest([z - z[best] / v[best] * v for z in samples]), np.spacing(np.abs(u)))
     v = np.where(length * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
