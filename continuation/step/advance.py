@@ -255,7 +255,6 @@ class Advance:
             last_failed_endgame=state.last_failed_endgame,
             index=step.index,
             signs=state.signs,
-            near=accepted.near,
         )
         event = accepted.events[-1].name if accepted.events else ""
         verdict = arc_ended(ending, infinity, event)

@@ -42,8 +42,6 @@ class State:
         Of the step that led here.
     signs : tuple of int
         The piece on which the path goes on, where the homotopy has pieces.
-    near : bool
-        Whether a branch that crosses was seen on the arc that led here, or ahead of it.
     """
 
     history: tuple[Knot, ...]
@@ -61,7 +59,6 @@ class State:
     last_failed_endgame: float = float("inf")
     index: int = 0
     signs: tuple[int, ...] = ()
-    near: bool = False
 
     @property
     def here(self) -> Knot:
