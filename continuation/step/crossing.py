@@ -26,10 +26,17 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Arrival
 
-RANGE = 2.5
+RANGE = 3.0
 """How far a real eigenvalue of M_a^-1 M(t) may change on an arc that counts as regular, either way. Two crossings that
 are passed at once leave no sign; if the eigenvalue is a parabola in t, their middle m leaves it in this range half way
-for m = .19 to .31 only, and at the end for m = .39 to .61 only: one of the two always shows them (any RANGE up to 4)."""
+for m = .18 to .32 only, and at the end for m = .37 to .63 only: one of the two always shows them (any RANGE up to 4)."""
+
+LEAST, MOST = 1.0 - RANGE, 1.0 - 1.0 / RANGE
+"""The same for eigenvalues of I - M_a^-1 M(t)."""
+
+TOLD, BENT = 0.25, 0.5
+"""The least change that is told; and how far its value at the arc's end may be off twice that half way. A parabola with
+its vertex at m is off by 1 / (2 m^2) or more if it comes to zero: from a half on where that is on the arc."""
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
 """Where on an arc the eigenvalues are told: on a cubic, and on a series, whose steps reach over more."""
@@ -49,7 +56,11 @@ NEAR_CROSSING = 0.1
 next arc would begin with that."""
 
 STEP_BACK = 0.7
-"""The factor of a step that arrived so near to a crossing."""
+"""The factor of a step that arrived so near to a crossing, and the largest of one that is to end behind it."""
+
+BEST = 4.0 / 3.0
+"""A step over a crossing at s that ends at x s is off by x^4 there, as a cubic is, and the branches are x - 1 apart: here
+the first is least beside the second."""
 
 AT_END = 1e-6
 """Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
@@ -104,55 +115,57 @@ class Crossings:
         index : int
             Of the step: each looks at H' with another first vector.
         """
-        told = self._told(arc, ends, index)
-        places = sorted(t / mu for t, found in told.items() for mu in found if mu > 0.0)
-        if not any(told.values()):
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
-        found = None
-        for place in places[:1]:
-            found = self._found(arc, prediction(place * arc.length))
+        told: dict[float, list[float]] = {}
+        found, before = None, 0.0
+        for k, t in enumerate(HALF if len(arc.segment.inside) <= CUBIC else EIGHTHS):
+            told[t] = there = self._told(arc, prediction(t * arc.length) if t < 1.0 else arc.b.u, t < 1.0, index + k)
+            if found is None and (worst := max((mu / (MOST if mu > 0.0 else LEAST) for mu in there), default=0.0)) > 1.0:
+                found = self._found(arc, prediction(t / there[-1] * arc.length)) if there[-1] > 0.0 else None
+                if found is None:
+                    if there[-1] > t and self._several(arc, flipped, index):
+                        return self._together(arc, prediction, t / there[-1])
+                    return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t / worst))
+            before = t
+        if found is None and BENT < abs(max(told[1.0], default=0.0) - 2.0 * (half := max(told[0.5], default=0.0))):
+            found = self._found(arc, prediction((0.5 / half if half > 0.5 else 1.0) * arc.length))
+            if found is None:
+                return _rejected(attempt, Rejection.ORIENTATION, STEP_BACK)
         if found is None:
-            negative = sum(mu > 1.0 for mu in told.get(1.0, ()))
-            if negative and flipped != bool(negative % 2):
-                lost = self._multiple(arc, places[0])
-                if lost > 1 and flipped == bool(lost % 2):
-                    return self._together(arc, prediction, places[0])
-            if ends and not flipped and (not places or places[0] > 1.0):
-                return None
-            worst = max(max(mu / (1.0 - 1.0 / RANGE), mu / (1.0 - RANGE)) for there in told.values() for mu in there)
-            return _rejected(attempt, Rejection.ORIENTATION, 0.8 / worst)
+            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
         s = position(arc, found.u) / arc.length
-        if ends and s > 1.0:
-            return None if s <= 1.0 + AT_END or not flipped else _rejected(attempt, Rejection.ORIENTATION, 0.5)
+        if ends and 1.0 < s <= 1.0 + AT_END:
+            return None
         if not ends and abs(s - 1.0) < NEAR_CROSSING:
             return _rejected(attempt, Rejection.AT_CROSSING, STEP_BACK)
         if flipped != (s < 1.0):
             # Over a crossing the arc's end is on the other branch, or before it beyond another one.
-            return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * s if s < 0.4 else 0.5 * min(s, 1.0))
+            over = BEST * s
+            return _rejected(attempt, Rejection.OTHER_BRANCH, over if over < STEP_BACK else 0.5 * min(s, 1.0))
         if not all(_as_expected(t, there, s) for t, there in told.items()):
-            others = [place for place in places if place > s + NEAR_CROSSING]
-            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (s + min(others, default=1.0)) if s < 1.0 else 0.5)
+            others = [t / mu for t, there in told.items() for mu in there if mu > 0.0 and t > (s + NEAR_CROSSING) * mu]
+            between = 0.5 * (s + min(others, default=0.0))
+            return _rejected(attempt, Rejection.CROSSINGS, min(between, STEP_BACK))
         if s > 1.0:
             return None
         rays = found.rays(arc.segment.derivative(s), arc.a.weights)
         return Crossed(evolve(arc.a, u=found.u, tangent=rays[1]), rays)
 
-    def _told(self, arc: Arc, ends: bool, index: int) -> dict[float, list[float]]:
-        """At some points of the arc the real 1 - z that are not as on a regular one."""
-        least, most = 1.0 - RANGE, 1.0 if ends else 1.0 - 1.0 / RANGE
-        told: dict[float, list[float]] = {}
-        for k, t in enumerate(HALF if len(arc.segment.inside) <= CUBIC else EIGHTHS):
-            u, border = (arc.segment.at(t), arc.a.border) if t < 1.0 else (arc.b.u, arc.b.border)
-            if (apply := self.solver.evaluator.differential(u)) is None:
-                break
-            told[t] = changes(arc.a, apply, border, most, least, turned=index + k)
-        return told
+    def _told(self, arc: Arc, u: Array, inside: bool, index: int) -> list[float]:
+        """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
+        apply, border = self.solver.evaluator.differential(u), arc.a.border if inside else arc.b.border
+        return [] if apply is None else changes(arc.a, apply, border, TOLD, LEAST, turned=index)
 
-    def _multiple(self, arc: Arc, place: float) -> int:
-        """How many ranks H' loses where it does so first, as it is seen from the arc's beginning."""
-        if (apply := self.solver.evaluator.differential(arc.b.u)) is None:
-            return 1
-        return multiplicity(arc.a, apply, arc.b.border, place)
+    def _several(self, arc: Arc, flipped: bool, index: int) -> bool:
+        """Whether H' loses several ranks where it does so first on the arc, as the determinant's sign says, too.
+
+        A Krylov space shows one eigenvalue for all of them.
+        """
+        told = self._told(arc, arc.b.u, False, index)
+        if flipped == bool(sum(mu > 1.0 for mu in told) % 2) or not told:
+            return False
+        apply = self.solver.evaluator.differential(arc.b.u)
+        lost = 1 if apply is None else multiplicity(arc.a, apply, arc.b.border, 1.0 / told[-1])
+        return lost > 1 and flipped == bool(lost % 2)
 
     def _together(self, arc: Arc, prediction: Prediction, t: float) -> Crossed | Rejected:
         """Several crossings in one place: a point where H' loses several ranks.
@@ -196,10 +209,10 @@ class Crossings:
 
 def _as_expected(t: float, told: list[float], s: float) -> bool:
     """Whether the changes told at t are that of one eigenvalue which vanishes at s, and no other."""
-    expected, least, most = t / s, 1.0 - RANGE, 1.0 - 1.0 / RANGE
-    nearest = min(told, key=lambda mu: abs(mu - expected), default=min(max(expected, least), most))
-    allowed = most * abs(1.0 - expected) + 2.0 * EIGENVALUE_ACCURACY * expected
-    return len(told) <= 1 and abs(nearest - expected) <= allowed
+    expected = t / s
+    nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
+    others = [mu for mu in told if mu != nearest and not LEAST < mu < 1.0 - NEAR_CROSSING]
+    return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + 2.0 * EIGENVALUE_ACCURACY * expected
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:
