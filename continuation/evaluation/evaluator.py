@@ -146,6 +146,7 @@ class Evaluator:
         self.homotopy = homotopy
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
+        self._last: tuple[bytes, Callable[[Array], Array]] | None = None
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
         self._derivative: Derivative | None = None
@@ -242,6 +243,13 @@ class Evaluator:
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
         if self._bordered is not None:
             return None
+        place = u.tobytes()
+        if self._last is None or self._last[0] != place:
+            self._last = place, self._product(u)
+        return self._last[1]
+
+    def _product(self, u: Array) -> Callable[[Array], Array]:
+        """The same by the Jacobian, which is evaluated."""
         self.counts.jacobians += 1
         H_y, H_lam = self._evaluated(u)
         column = np.asarray(H_lam, dtype=float)

@@ -88,7 +88,7 @@ class Examiner:
         """
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
-        branch: Crossed | Rejected | None = None
+        branch: Crossed | None = None
         kink: tuple[Linearization, tuple[int, ...]] | None = None
         try:
             missed = _across(point, attempt, prediction) if landed else attempt.correction.distance
@@ -112,9 +112,10 @@ class Examiner:
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
-                branch = self.crossings.on_arc(part, attempt, prediction, changed, ends, state.index)
-                if isinstance(branch, Rejected):
-                    return branch
+                seen = self.crossings.on_arc(part, attempt, prediction, changed, ends, state.index)
+                if isinstance(seen, Rejected):
+                    return seen
+                branch = seen
             elif flipped:
                 return _rejected(attempt, Rejection.ORIENTATION)
             if flipped:

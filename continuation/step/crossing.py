@@ -1,10 +1,10 @@
 """What lies on an arc before it counts: the eigenvalues of H' along it, and the branch point where one changes sign.
 
-Let M_a be the bordered matrix factored at the beginning of an arc, M(t) the one at its point t, and z(t) the eigenvalues
-of M_a^-1 M(t). M(t) is singular where one of them is zero, and real ones alone can pass zero one at a time. An arc is
-*regular* if every real z(t) lies between 1/RANGE and RANGE: then no branch crosses it, and both ends lie on one branch.
-An arc *crosses* a branch if one real eigenvalue goes through zero where a simple branch point is found, s, as
-1 - t / s does, and all others are as on a regular arc. Any other arc is too long, or no part of the path.
+Let M_a be the bordered matrix factored at the beginning of an arc, M(t) that at its point t, and z(t) the eigenvalues
+of M_a^-1 M(t). M(t) is singular where one of them is zero. An arc is *regular* if its real z(t) lie between 1/RANGE and
+RANGE, and go straight: no branch crosses it, and both its ends lie on one branch. An arc *crosses* a branch if one real
+z(t) goes through zero at a simple branch point s about as 1 - t / s does, and no other comes to zero. Any other arc is
+too long, or no part of the path.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from continuation.step.stepper import Arrival
 RANGE = 3.0
 """How far a real eigenvalue of M_a^-1 M(t) may change on an arc that counts as regular, either way. Two crossings that
 are passed at once leave no sign; if the eigenvalue is a parabola in t, their middle m leaves it in this range half way
-for m = .18 to .32 only, and at the end for m = .37 to .63 only: one of the two always shows them (any RANGE up to 4)."""
+for m = .18 to .32 only, and at the end for m = .37 to .63 only: one of the two always shows them, up to RANGE = 4."""
 
 LEAST, MOST = 1.0 - RANGE, 1.0 - 1.0 / RANGE
 """The same for eigenvalues of I - M_a^-1 M(t)."""
@@ -37,6 +37,10 @@ LEAST, MOST = 1.0 - RANGE, 1.0 - 1.0 / RANGE
 TOLD, BENT = 0.25, 0.5
 """The least change that is told; and how far its value at the arc's end may be off twice that half way. A parabola with
 its vertex at m is off by 1 / (2 m^2) or more if it comes to zero: from a half on where that is on the arc."""
+
+ONWARD = 0.1
+"""A look so far behind the end of an arc, in its lengths, along which H' comes nearer to singular. If it becomes more
+regular there by more than that part, it was singular on the arc, as the branch sees it on which the arc ends."""
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
 """Where on an arc the eigenvalues are told: on a cubic, and on a series, whose steps reach over more."""
@@ -59,8 +63,8 @@ STEP_BACK = 0.7
 """The factor of a step that arrived so near to a crossing, and the largest of one that is to end behind it."""
 
 BEST = 4.0 / 3.0
-"""A step over a crossing at s that ends at x s is off by x^4 there, as a cubic is, and the branches are x - 1 apart: here
-the first is least beside the second."""
+"""A step over a crossing at s that ends at x s is off by x^4 there, as a cubic is, and the branches are x - 1 apart:
+here the first is least beside the second."""
 
 AT_END = 1e-6
 """Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
@@ -91,6 +95,14 @@ class Crossed:
 
 
 @frozen(eq=False)
+class _Seen:
+    """A branch point on an arc or ahead of it, and the changes of eigenvalues that are told along the arc."""
+
+    point: SimpleBranchPoint
+    told: dict[float, list[float]]
+
+
+@frozen(eq=False)
 class Crossings:
     """Looks for them, with the parts it needs."""
 
@@ -115,24 +127,42 @@ class Crossings:
         index : int
             Of the step: each looks at H' with another first vector.
         """
+        seen = self._seen(arc, attempt, prediction, flipped, index)
+        if isinstance(seen, _Seen):
+            return self._over(arc, attempt, seen, flipped, ends)
+        return _rejected(attempt, Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
+
+    def _seen(
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, index: int
+    ) -> _Seen | Crossed | Rejected | None:
+        """The first branch point that the eigenvalues along an arc lead to; None on a regular arc."""
         told: dict[float, list[float]] = {}
         found, before = None, 0.0
         for k, t in enumerate(HALF if len(arc.segment.inside) <= CUBIC else EIGHTHS):
             told[t] = there = self._told(arc, prediction(t * arc.length) if t < 1.0 else arc.b.u, t < 1.0, index + k)
-            if found is None and (worst := max((mu / (MOST if mu > 0.0 else LEAST) for mu in there), default=0.0)) > 1.0:
+            worst = max((mu / (MOST if mu > 0.0 else LEAST) for mu in there), default=0.0)
+            if worst > 1.0 and found is None:
                 found = self._found(arc, prediction(t / there[-1] * arc.length)) if there[-1] > 0.0 else None
                 if found is None:
                     if there[-1] > t and self._several(arc, flipped, index):
                         return self._together(arc, prediction, t / there[-1])
                     return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t / worst))
             before = t
-        if found is None and BENT < abs(max(told[1.0], default=0.0) - 2.0 * (half := max(told[0.5], default=0.0))):
-            found = self._found(arc, prediction((0.5 / half if half > 0.5 else 1.0) * arc.length))
+        if found is None and any(told.values()):
+            half, end = (max(told[t], default=0.0) for t in HALF)
+            onward = self._told(arc, arc.segment.at(1.0 + ONWARD), False, index)
+            if 1.0 - max(onward, default=TOLD) > (1.0 + ONWARD) * (1.0 - end):
+                return _rejected(attempt, Rejection.ORIENTATION, 0.5)
+            if abs(end - 2.0 * half) <= BENT:
+                return None
+            found = self._found(arc, prediction(0.5 / max(half, 0.5) * arc.length))
             if found is None:
                 return _rejected(attempt, Rejection.ORIENTATION, STEP_BACK)
-        if found is None:
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped else None
-        s = position(arc, found.u) / arc.length
+        return None if found is None else _Seen(found, told)
+
+    def _over(self, arc: Arc, attempt: Arrival, seen: _Seen, flipped: bool, ends: bool) -> Crossed | Rejected | None:
+        """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
+        s = position(arc, seen.point.u) / arc.length
         if ends and 1.0 < s <= 1.0 + AT_END:
             return None
         if not ends and abs(s - 1.0) < NEAR_CROSSING:
@@ -141,14 +171,13 @@ class Crossings:
             # Over a crossing the arc's end is on the other branch, or before it beyond another one.
             over = BEST * s
             return _rejected(attempt, Rejection.OTHER_BRANCH, over if over < STEP_BACK else 0.5 * min(s, 1.0))
-        if not all(_as_expected(t, there, s) for t, there in told.items()):
-            others = [t / mu for t, there in told.items() for mu in there if mu > 0.0 and t > (s + NEAR_CROSSING) * mu]
-            between = 0.5 * (s + min(others, default=0.0))
-            return _rejected(attempt, Rejection.CROSSINGS, min(between, STEP_BACK))
+        if not all(_as_expected(t, there, s) for t, there in seen.told.items()):
+            others = [t / mu for t, there in seen.told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
+            return _rejected(attempt, Rejection.CROSSINGS, min(0.5 * (s + min(others, default=0.0)), STEP_BACK))
         if s > 1.0:
             return None
-        rays = found.rays(arc.segment.derivative(s), arc.a.weights)
-        return Crossed(evolve(arc.a, u=found.u, tangent=rays[1]), rays)
+        rays = seen.point.rays(arc.segment.derivative(s), arc.a.weights)
+        return Crossed(evolve(arc.a, u=seen.point.u, tangent=rays[1]), rays)
 
     def _told(self, arc: Arc, u: Array, inside: bool, index: int) -> list[float]:
         """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
@@ -160,11 +189,8 @@ class Crossings:
 
         A Krylov space shows one eigenvalue for all of them.
         """
-        told = self._told(arc, arc.b.u, False, index)
-        if flipped == bool(sum(mu > 1.0 for mu in told) % 2) or not told:
-            return False
-        apply = self.solver.evaluator.differential(arc.b.u)
-        lost = 1 if apply is None else multiplicity(arc.a, apply, arc.b.border, 1.0 / told[-1])
+        told, apply = self._told(arc, arc.b.u, False, index), self.solver.evaluator.differential(arc.b.u)
+        lost = multiplicity(arc.a, apply, arc.b.border, 1.0 / told[-1]) if apply is not None and told else 1
         return lost > 1 and flipped == bool(lost % 2)
 
     def _together(self, arc: Arc, prediction: Prediction, t: float) -> Crossed | Rejected:
@@ -212,7 +238,7 @@ def _as_expected(t: float, told: list[float], s: float) -> bool:
     expected = t / s
     nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
     others = [mu for mu in told if mu != nearest and not LEAST < mu < 1.0 - NEAR_CROSSING]
-    return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + 2.0 * EIGENVALUE_ACCURACY * expected
+    return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:
