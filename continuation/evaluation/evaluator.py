@@ -146,7 +146,7 @@ class Evaluator:
         self.homotopy = homotopy
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
-        self._last: tuple[bytes, Callable[[Array], Array]] | None = None
+        self._products: dict[bytes, Callable[[Array], Array]] = {}
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
         self._derivative: Derivative | None = None
@@ -244,9 +244,11 @@ class Evaluator:
         if self._bordered is not None:
             return None
         place = u.tobytes()
-        if self._last is None or self._last[0] != place:
-            self._last = place, self._product(u)
-        return self._last[1]
+        if place not in self._products:
+            # Of two points: of an arc's end somebody looks at the inside before the end is asked for again.
+            self._products = dict([*self._products.items()][-1:])
+            self._products[place] = self._product(u)
+        return self._products[place]
 
     def _product(self, u: Array) -> Callable[[Array], Array]:
         """The same by the Jacobian, which is evaluated."""

@@ -179,6 +179,9 @@ class Advance:
         if limit is not None and self.pieces is not None and not same_piece(self.pieces, state.signs, point, limit.u):
             # It is one of the piece beyond its border.
             limit = None
+        if limit is not None and point.orientation == 0 and self.examiner.crossings.between(point, limit.u):
+            # No determinant's sign says that it lies on another branch.
+            limit = None
         return limit, state
 
     def _measures(self, attempt: Attempt, prediction: Prediction, rejections: int) -> StepMeasures:

@@ -143,9 +143,10 @@ class Crossings:
             worst = max((mu / (MOST if mu > 0.0 else LEAST) for mu in there), default=0.0)
             if worst > 1.0 and found is None:
                 found = self._found(arc, prediction(t / there[-1] * arc.length)) if there[-1] > 0.0 else None
-                if found is None:
-                    if there[-1] > t and self._several(arc, flipped, index):
-                        return self._together(arc, prediction, t / there[-1])
+                if found is None and there[-1] > t and self._several(arc, flipped, index):
+                    return self._together(arc, prediction, t / there[-1])
+                # What comes near to singular at the end, and goes straight, may do so behind it.
+                if found is None and (t < 1.0 or there[0] < LEAST or there[-1] >= 1.0):
                     return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t / worst))
             before = t
         if found is None and any(told.values()):
@@ -178,6 +179,11 @@ class Crossings:
             return None
         rays = seen.point.rays(arc.segment.derivative(s), arc.a.weights)
         return Crossed(evolve(arc.a, u=seen.point.u, tangent=rays[1]), rays)
+
+    def between(self, point: Linearization, u: Array) -> bool:
+        """Whether H' has an eigenvalue of another sign at u than at a point."""
+        apply = self.solver.evaluator.differential(u)
+        return apply is not None and bool(changes(point, apply, point.border, 1.0 + EIGENVALUE_ACCURACY, -np.inf))
 
     def _told(self, arc: Arc, u: Array, inside: bool, index: int) -> list[float]:
         """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
