@@ -79,7 +79,7 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
     Parameters
     ----------
     a, apply, border
-        As for `singular_places`.
+        As for `changes`.
     place : float
         One of these.
     """

@@ -9,6 +9,8 @@ too long, or no part of the path.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from attrs import evolve, frozen
 
@@ -65,6 +67,9 @@ STEP_BACK = 0.7
 BEST = 4.0 / 3.0
 """A step over a crossing at s that ends at x s is off by x^4 there, as a cubic is, and the branches are x - 1 apart:
 here the first is least beside the second."""
+
+SMALLEST = 2.0**-6
+"""Of an arc: nearer to its beginning no pair of crossings is looked for, of which it would be the second in a row."""
 
 AT_END = 1e-6
 """Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
@@ -140,19 +145,20 @@ class Crossings:
         found, before = None, 0.0
         for k, t in enumerate(HALF if len(arc.segment.inside) <= CUBIC else EIGHTHS):
             told[t] = there = self._told(arc, prediction(t * arc.length) if t < 1.0 else arc.b.u, t < 1.0, index + k)
-            worst = max((mu / (MOST if mu > 0.0 else LEAST) for mu in there), default=0.0)
-            if worst > 1.0 and found is None:
-                found = self._found(arc, prediction(t / there[-1] * arc.length)) if there[-1] > 0.0 else None
+            if there and there[-1] > MOST and found is None:
+                found = self._found(arc, prediction(t / there[-1] * arc.length))
                 if found is None and there[-1] > t and self._several(arc, flipped, index):
                     return self._together(arc, prediction, t / there[-1])
                 # What comes near to singular at the end, and goes straight, may do so behind it.
-                if found is None and (t < 1.0 or there[0] < LEAST or there[-1] >= 1.0):
-                    return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t / worst))
+                if found is None and (t < 1.0 or there[-1] >= 1.0):
+                    return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t * MOST / there[-1]))
             before = t
         if found is None and any(told.values()):
-            half, end = (max(told[t], default=0.0) for t in HALF)
-            onward = self._told(arc, arc.segment.at(1.0 + ONWARD), False, index)
-            if 1.0 - max(onward, default=TOLD) > (1.0 + ONWARD) * (1.0 - end):
+            if (near := self._passed(arc, prediction, told, index)) is not None:
+                return _rejected(attempt, Rejection.CROSSINGS, near)
+            half, end = (max([0.0, *told[t]]) for t in HALF)
+            onward = self._told(arc, arc.segment.at(1.0 + ONWARD), False, index) if end > TOLD else ()
+            if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * (1.0 - end):
                 return _rejected(attempt, Rejection.ORIENTATION, 0.5)
             if abs(end - 2.0 * half) <= BENT:
                 return None
@@ -160,6 +166,22 @@ class Crossings:
             if found is None:
                 return _rejected(attempt, Rejection.ORIENTATION, STEP_BACK)
         return None if found is None else _Seen(found, told)
+
+    def _passed(self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], index: int) -> float | None:
+        """Where near its beginning H' is nearly singular on an arc along which it becomes more regular, if anywhere.
+
+        A pair of crossings there leaves the eigenvalue larger than RANGE farther on: each half of the arc is looked at
+        as a whole one would be, until it is not larger any more.
+        """
+        t = 1.0
+        while told[t] and told[t][0] < LEAST and t > SMALLEST:
+            t *= 0.5
+            for place in (t, 0.5 * t):
+                if place not in told:
+                    told[place] = self._told(arc, prediction(place * arc.length), True, index)
+                if told[place] and told[place][-1] > MOST:
+                    return place
+        return None
 
     def _over(self, arc: Arc, attempt: Arrival, seen: _Seen, flipped: bool, ends: bool) -> Crossed | Rejected | None:
         """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
@@ -182,12 +204,19 @@ class Crossings:
 
     def between(self, point: Linearization, u: Array) -> bool:
         """Whether H' has an eigenvalue of another sign at u than at a point."""
-        apply = self.solver.evaluator.differential(u)
+        apply = self._derivative(u)
         return apply is not None and bool(changes(point, apply, point.border, 1.0 + EIGENVALUE_ACCURACY, -np.inf))
+
+    def _derivative(self, u: Array) -> Callable[[Array], Array] | None:
+        """The map v -> H' v at a point; None where there is none, as beyond the edge of a domain."""
+        try:
+            return self.solver.evaluator.differential(u)
+        except EvaluationError:
+            return None
 
     def _told(self, arc: Arc, u: Array, inside: bool, index: int) -> list[float]:
         """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
-        apply, border = self.solver.evaluator.differential(u), arc.a.border if inside else arc.b.border
+        apply, border = self._derivative(u), arc.a.border if inside else arc.b.border
         return [] if apply is None else changes(arc.a, apply, border, TOLD, LEAST, turned=index)
 
     def _several(self, arc: Arc, flipped: bool, index: int) -> bool:
@@ -195,7 +224,7 @@ class Crossings:
 
         A Krylov space shows one eigenvalue for all of them.
         """
-        told, apply = self._told(arc, arc.b.u, False, index), self.solver.evaluator.differential(arc.b.u)
+        told, apply = self._told(arc, arc.b.u, False, index), self._derivative(arc.b.u)
         lost = multiplicity(arc.a, apply, arc.b.border, 1.0 / told[-1]) if apply is not None and told else 1
         return lost > 1 and flipped == bool(lost % 2)
 
@@ -208,7 +237,7 @@ class Crossings:
         moved, u = np.inf, arc.a.u
         for _ in range(PASSES):
             u, _ = self.solver.project(arc.a, prediction(t * arc.length), arc.a.border)
-            if (apply := self.solver.evaluator.differential(u)) is None:
+            if (apply := self._derivative(u)) is None:
                 break
             found = changes(arc.a, apply, arc.a.border, 0.5, -np.inf, accuracy=PLACE_ON_ARC)
             if not found:
