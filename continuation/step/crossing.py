@@ -142,7 +142,7 @@ class Crossings:
     ) -> _Seen | Crossed | Rejected | None:
         """The first branch point that the eigenvalues along an arc lead to; None on a regular arc."""
         told: dict[float, list[float]] = {}
-        found, before = None, 0.0
+        found, before, changed = None, 0.0, False
         for k, t in enumerate(HALF if len(arc.segment.inside) <= CUBIC else EIGHTHS):
             told[t] = there = self._told(arc, prediction(t * arc.length) if t < 1.0 else arc.b.u, t < 1.0, index + k)
             if there and there[-1] > MOST and found is None:
@@ -152,19 +152,18 @@ class Crossings:
                 # What comes near to singular at the end, and goes straight, may do so behind it.
                 if found is None and (t < 1.0 or there[-1] >= 1.0):
                     return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t * MOST / there[-1]))
+            if there:
+                changed = True
             before = t
-        if found is None and any(told.values()):
+        if found is None and changed:
             if (near := self._passed(arc, prediction, told, index)) is not None:
                 return _rejected(attempt, Rejection.CROSSINGS, near)
             half, end = (max([0.0, *told[t]]) for t in HALF)
             onward = self._told(arc, arc.segment.at(1.0 + ONWARD), False, index) if end > TOLD else ()
             if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * (1.0 - end):
                 return _rejected(attempt, Rejection.ORIENTATION, 0.5)
-            if abs(end - 2.0 * half) <= BENT:
-                return None
-            found = self._found(arc, prediction(0.5 / max(half, 0.5) * arc.length))
-            if found is None:
-                return _rejected(attempt, Rejection.ORIENTATION, STEP_BACK)
+            if abs(end - 2.0 * half) > BENT:
+                found = self._found(arc, prediction(0.5 / max(half, 0.5) * arc.length))
         return None if found is None else _Seen(found, told)
 
     def _passed(self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], index: int) -> float | None:
