@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from continuation.counts import Counts
     from continuation.curves import Curve, Family
     from continuation.diagrams import Deflated, Diagram, diagram
-    from continuation.evaluation.evaluator import EvaluationError
+    from continuation.evaluation.errors import EvaluationError
     from continuation.evaluation.functions import from_functions
     from continuation.evaluation.jacobian_check import check_jacobian
     from continuation.events import Event, KinkPoint, Monitor, TargetValue, TurningPoint

@@ -11,7 +11,8 @@ from continuation.arguments.checks import complain, is_number
 from continuation.arrays import Array
 from continuation.correctors import BorderedNewton
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.events.multiple import Leaving, leaving, still, without_noise
 from continuation.events.singularity import branch_point_near, row_sizes
 from continuation.metric import Automatic, inner, norm

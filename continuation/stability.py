@@ -18,7 +18,8 @@ from scipy.optimize import brentq
 
 from continuation.arguments.checks import integer, one_of, sign
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.linear.followed import Followed
 from continuation.linear.spectrum import Spectrum, plain, spectrum
 from continuation.path import LocatedEvent, Step

@@ -9,7 +9,8 @@ import numpy as np
 from continuation.arguments.checks import instance_with
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import Automatic, Euclidean, Metric, Weighted, norm
 from continuation.path import Path
 from continuation.path.path import require_path

@@ -23,7 +23,8 @@ from continuation.certificate.tails import NEXT_TO_END, Node, tail
 from continuation.certificate.tubes import search
 from continuation.certificate.verify import verified
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsPieces
 from continuation.linear.threads import one_thread
 from continuation.metric import Automatic, Metric, norm

@@ -13,7 +13,7 @@ from typing import Any
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import linearize
 from continuation.point.projection import PathSolver
 

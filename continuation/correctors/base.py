@@ -11,7 +11,8 @@ from attrs import define, frozen
 
 from continuation.arrays import Array, largest
 from continuation.contraction import Contraction, Iteration
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm
 from continuation.point.linearization import Anchor, Linearization
 from continuation.rejection import Rejected, Rejection

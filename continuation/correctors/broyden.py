@@ -11,7 +11,8 @@ from continuation.arguments.checks import POSITIVE, integer
 from continuation.arrays import Array, dot
 from continuation.citation.bibliography import KELLEY
 from continuation.correctors.base import Correction, iterate
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization
 from continuation.tolerance import Tolerance
 

@@ -14,7 +14,8 @@ from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
 from continuation.curves.elimination import Hiding, eliminated
 from continuation.curves.local import Local
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.events.singularity import full_derivative
 from continuation.linear import BorderedSystem
 from continuation.linear.entries import extended

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.metric import inner, norm
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization

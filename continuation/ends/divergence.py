@@ -15,7 +15,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from continuation.arrays import Array, largest
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
@@ -33,7 +34,7 @@ ARRIVED, LAST_PLACES = 1e-11, 8.0
 """It is tried until the parameter is so near to its limit, beside all its way or in units of its last place: imperfect
 pitchforks turn off at the power 2/3 of the imperfection, so those above 1e-16 do not come so near."""
 
-NEWTON_STEPS = 5
+ASYMPTOTE_STEPS = 5
 """From a prediction that is off by a tenth of what is left four steps are quadratic to all digits."""
 
 LARGER = 2.0
@@ -43,7 +44,7 @@ LARGER = 2.0
 HORIZON = 1e100
 """No path is followed to larger numbers: norms are made of their squares, which overflow."""
 
-ORDERS = 0.9, 13.0
+ASYMPTOTE_ORDERS = 0.9, 13.0
 """Between these p + 1 is sought: at folds and cusps it is 1/2 or less, and no pole of a model has an order above 12."""
 
 LOGARITHM = 13.0 / 12.0
@@ -120,7 +121,7 @@ def _met_further(
             grown = math.log(DECADE) if abs(power) < ABOUT else (DECADE**power - 1.0) / power
             u = at.u + at.tangent / at.tangent[-1] * (left * grown)
             u[-1] = limit - nearer
-            for _ in range(NEWTON_STEPS):
+            for _ in range(ASYMPTOTE_STEPS):
                 step = linearize(evaluator, u, at.weights, at.border).solve(-evaluator.residual(u), 0.0, at.border)
                 u = u + step
             if not abs(u[-1] - limit + nearer) <= MET * abs(nearer) or abs(step[-1]) > MET * abs(nearer):
@@ -168,8 +169,8 @@ def _fitted(marks: list[float]) -> tuple[float, float] | None:
         left, last = (a / b) ** (1.0 / order), (a / c) ** (1.0 / order)
         return float((left - last) / (1.0 - left) - ratio)
 
-    if not missed(ORDERS[0]) < 0.0 < missed(ORDERS[1]):
+    if not missed(ASYMPTOTE_ORDERS[0]) < 0.0 < missed(ASYMPTOTE_ORDERS[1]):
         return None
-    order = float(brentq(missed, *ORDERS))
+    order = float(brentq(missed, *ASYMPTOTE_ORDERS))
     gone = (a / c) ** (1.0 / order)
     return first + (third - first) / (1.0 - gone), order

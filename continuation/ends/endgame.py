@@ -18,7 +18,8 @@ from continuation.arrays import Array, generic_vector, largest
 from continuation.contraction import MONOTONE
 from continuation.correctors import BorderedNewton
 from continuation.ends.landing import regular
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.events.roots import zero_between
 from continuation.metric import norm
 from continuation.point.arc import cubic_between

@@ -11,7 +11,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.events import TargetValue, TurningPoint
 from continuation.events.locate import locate, may_vanish
 from continuation.events.roots import zero_between

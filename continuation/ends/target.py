@@ -13,7 +13,8 @@ from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.ends.closed_curve import passes_start
 from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, touching
 from continuation.ends.landing import SINGULAR_SHARE, crossing
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import Linearization, linearize
@@ -37,16 +38,16 @@ FOLD = 0.4, 0.8
 CONDITIONED = 0.1
 """An end that round-off may move by so much of the path is none: an asymptote satisfies any equation, in the end."""
 
-ENOUGH = 30.0
+NEAR_ENOUGH = 30.0
 """A bound of so many tolerances is no reason to look for a limit: noise decides what components are measured by."""
 
 VANISHING_SHARE = 1e-18
 """Share of the parameter in the tangent that the square of round-off may leave of none."""
 
-POLISHED = 4
+END_CORRECTIONS = 4
 """Increments of Newton's method at the target: what was located there is within the reach of quadratic convergence."""
 
-WIDER, PROBES, ENDLESS = 4.0, 40, 1e150
+WIDENED, PROBES, ENDLESS = 4.0, 40, 1e150
 """A way along which the equations hold to round-off is found to this factor, in so many residuals at most; what is not
 found to end by then is taken to be so long."""
 
@@ -190,7 +191,7 @@ class Target:
         vanishing = share(weights, end.tangent)
         u = self._at_value(end, value) if vanishing <= SINGULAR_SHARE else np.append(end.y, value)
         off = off_by(evaluator, end, u)
-        known, enough = norm(weights, off), ENOUGH * self.solver.tolerance.relative
+        known, enough = norm(weights, off), NEAR_ENOUGH * self.solver.tolerance.relative
         if known <= enough and vanishing > VANISHING_SHARE:
             return u, largest(off), None
         limit = self._fold(arc, end, value)
@@ -212,7 +213,7 @@ class Target:
         u = np.append(end.y, value)
         r = evaluator.residual(u)
         try:
-            for _ in range(POLISHED):
+            for _ in range(END_CORRECTIONS):
                 there = linearize(evaluator, u, end.weights, end.border)
                 nearer = u + there.solve(-r, 0.0, unit)
                 nearer[-1] = value
@@ -285,10 +286,10 @@ def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
         for side in (way, -way):
             reach, seen = 1.0, holds(u + side)
             for _ in range(PROBES):
-                reach *= WIDER if seen else 1.0 / WIDER
+                reach *= WIDENED if seen else 1.0 / WIDENED
                 if holds(u + reach * side) is not seen:
                     break
             else:
                 reach = ENDLESS if seen else 0.0
-            off = np.maximum(off, (reach if seen else WIDER * reach) * np.abs(side))
+            off = np.maximum(off, (reach if seen else WIDENED * reach) * np.abs(side))
     return off

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import dis
 import math
-import os
 from collections.abc import Callable
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 from math import isfinite
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from attrs import field, frozen
@@ -18,6 +16,7 @@ from continuation.arguments.checks import instance_with, real_vector
 from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import check_derivative, from_residual, given_pattern
+from continuation.evaluation.errors import EvaluationError, NotFiniteError, SingularPointError, unevaluated
 from continuation.evaluation.noise import noise_along
 from continuation.evaluation.pattern import Pattern, generic
 from continuation.evaluation.pieces import WholeMap
@@ -32,7 +31,6 @@ from continuation.homotopy import (
 )
 from continuation.linear import BorderedSystem, SingularError, factor_bordered
 from continuation.linear.silence import Silence, silent
-from continuation.rejection import Rejection
 
 POINT_ULPS = 4.0
 """Units in the last place by which round-off moves a point, about."""
@@ -41,41 +39,12 @@ DERIVATIVES_KEPT = 4
 """Derivatives that are kept where somebody looks again: at a step's end, and where crossings are looked for ahead."""
 
 LOOK = 64.0
-"""By so many a point is moved to see it: the change of an equation is then more than a few of its own last places."""
+"""By so many a point is moved to see it: the change of an equation is then more than a few of its own last places.
+The moves are of either sign, no two alike: what has one value in all neighbours may not change a difference of them."""
 
 NOT_OF_POINT = 3.0
 """Noise of so many times what the last places of u make of an equation has another source, and goes with the path: what
 `Evaluator.look` sees of that source is POINT_ULPS / LOOK of it."""
-
-
-class EvaluationError(ArithmeticError):
-    """The homotopy has no finite value, or no factorisation, at a point; the sentence says which."""
-
-    rejection: ClassVar[Rejection] = Rejection.UNSOLVABLE
-
-
-class NotFiniteError(EvaluationError):
-    """The homotopy has no finite value at a point: the edge of its domain, or an overflow."""
-
-    rejection = Rejection.NO_VALUE
-
-
-class RaisedError(EvaluationError):
-    """The homotopy's own code says ``raise ValueError(...)`` at a point: the edge of its domain, or a mistake in it."""
-
-    rejection = Rejection.RAISED
-
-
-class SingularPointError(EvaluationError):
-    """The bordered matrix has no factorisation at a point: it is singular there, as in a branch point."""
-
-    rejection = Rejection.SINGULAR
-
-
-@lru_cache(maxsize=4)
-def _moves(n: int) -> Array:
-    """Of either sign, and no two alike: what has one value in all neighbours may not change a difference of them."""
-    return LOOK * generic(n)
 
 
 @frozen(eq=False, slots=False)
@@ -219,7 +188,7 @@ class Evaluator:
             # A copy: a plug-in may well return the same array every time.
             r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
         except (ArithmeticError, ValueError) as error:
-            raise _unevaluated("residual", error) from error
+            raise unevaluated("residual", error) from error
         if not isfinite(dasum(r)):
             raise NotFiniteError("the residual is not finite")
         return r
@@ -242,7 +211,7 @@ class Evaluator:
 
     def look(self, u: Array, residual: Array, order: int = 1) -> Array:
         """The same in one direction, another one for order -1: what is at round-off beside this is so beside both."""
-        change = self.residual(u + np.spacing(np.abs(u)) * _moves(u.size)[::order])
+        change = self.residual(u + np.spacing(np.abs(u)) * LOOK * generic(u.size)[::order])
         change -= residual
         dscal(POINT_ULPS / LOOK, change)
         np.abs(change, out=change)
@@ -310,7 +279,7 @@ class Evaluator:
         try:
             answer = (self._derivative or self.derivative)(u[:-1], float(u[-1]))
         except (ArithmeticError, ValueError) as error:
-            raise _unevaluated("derivative", error) from error
+            raise unevaluated("derivative", error) from error
         if not self._checked:
             # Once: whoever gets it right at the start does so later on.
             check_derivative(answer, u.size - 1)
@@ -356,20 +325,3 @@ class Evaluator:
                 raise NotFiniteError("the derivative is not finite") from error
             raise SingularPointError(f"the bordered matrix could not be factored: {error}") from error
         return CountedSystem(system, self.counts)
-
-
-def _unevaluated(what: str, error: BaseException) -> EvaluationError:
-    """The error for a function that raised: of `math`, numpy and scipy it is the domain's edge, else its author's."""
-    if isinstance(error, EvaluationError):
-        # Of a homotopy that evaluates others, which has said it.
-        return error
-    place = error.__traceback__
-    while place is not None and place.tb_next is not None:
-        place = place.tb_next
-    if type(error) is not ValueError or place is None:
-        return NotFiniteError(f"the {what} could not be evaluated: {error}")
-    code, module = place.tb_frame.f_code, str(place.tb_frame.f_globals.get("__name__", ""))
-    written = code.co_code[place.tb_lasti] == dis.opmap["RAISE_VARARGS"]
-    if not written or module.partition(".")[0] in ("numpy", "scipy"):
-        return NotFiniteError(f"the {what} could not be evaluated: {error}")
-    return RaisedError(f"ValueError: {error} ({os.path.basename(code.co_filename)}, line {place.tb_lineno})")

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from continuation.arguments.checks import real_vector
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import BY_COMPLEX_STEP, BY_JETS, Products, Residual, difference_along
 
 Product = Callable[[Array], Array]

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg.lapack import dgeev
 
 from continuation.arrays import Array, dot, generic_vector
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import Linearization
 
 PRODUCTS = 40

@@ -12,7 +12,7 @@ from scipy.optimize import minimize_scalar
 
 from continuation.arrays import dot, largest
 from continuation.contraction import HALVING
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.events import Event, TargetValue, TurningPoint
 from continuation.events.roots import zero_between
 from continuation.point.arc import Arc, cubic_between

@@ -16,7 +16,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.events.kernels import Doubled, kernels
 from continuation.events.singularity import ScaledDerivative, row_sizes
 from continuation.metric import norm

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.events import Event, KinkPoint
 from continuation.events.branch_point import BranchPoint
 from continuation.events.locate import locate, may_vanish

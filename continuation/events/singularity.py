@@ -18,7 +18,8 @@ from scipy.sparse.linalg import splu
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.contraction import HALVING, Contraction, Iteration
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.events.kernels import kernels
 from continuation.linear import Banded, Symmetric
 from continuation.linear.entries import extended

@@ -6,7 +6,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.kinks.rays import SAME_RAY, Corner, Ray, UnresolvedError, rays_at
 from continuation.metric import inner, norm, share

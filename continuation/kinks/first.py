@@ -9,7 +9,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, generic_vector
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
 from continuation.events.locate import AT_ROUND_OFF, MONITOR_PLACES, NEARLY_ZERO, _descent, _root
 from continuation.events.roots import zero_between

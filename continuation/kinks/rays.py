@@ -22,7 +22,8 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.kinks.pivots import way
 from continuation.metric import inner, norm

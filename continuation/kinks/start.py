@@ -9,7 +9,8 @@ import numpy as np
 from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import BORDER_DISTANCE, Pieces, Signs, SwitchError
 from continuation.homotopy import SupportsPieces
 from continuation.kinks.first import switch_noise

@@ -13,7 +13,8 @@ from attrs import evolve
 from continuation.arguments.checks import complain, is_number
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm
 from continuation.path.steps import LocatedEvent, Step
 from continuation.point.linearization import Linearization, linearize

@@ -12,7 +12,8 @@ from scipy.linalg.blas import dscal
 from continuation.arrays import Array, dot, generic_vector, largest
 from continuation.contraction import MONOTONE, RELIABLE, Contraction, Iteration
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import CountedSystem, EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import CountedSystem, Evaluator
 from continuation.metric import norm
 
 REFINED = 1e-14

@@ -10,7 +10,8 @@ from attrs import define, evolve, field
 
 from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
-from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
 from continuation.metric import norm
 from continuation.point.arc import Arc, guided
 from continuation.point.linearization import Anchor, Linearization, relinearize

@@ -8,7 +8,8 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.contraction import HALVING, Contraction, Iteration
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm
 from continuation.point.linearization import Linearization
 

@@ -18,7 +18,8 @@ from attrs.validators import optional
 from continuation.arguments.checks import FRACTION, POSITIVE_FINITE, complain, integer, of_kind
 from continuation.arrays import Array
 from continuation.citation.bibliography import BAKER_GRAVES_MORRIS, COCHELIN, GRIEWANK_WALTHER
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsTaylor, offers
 from continuation.point.linearization import Linearization, factored, with_exact_solves
 from continuation.point.segment import SeriesSegment

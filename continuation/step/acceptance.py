@@ -11,7 +11,7 @@ from attrs import evolve, field, frozen
 
 from continuation.arrays import dot
 from continuation.ends.target import ArcEnd, EndsAt, Target
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces
 from continuation.events.scan import first_terminal, found_by_events, scan_events
 from continuation.kinks.crossing import Crossing, cross

@@ -13,7 +13,7 @@ from continuation.ends.divergence import divergence
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.landing import Landing
 from continuation.ends.target import Target
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces
 from continuation.events import Event, TurningPoint
 from continuation.kinks.crossing import STILL, Crossing

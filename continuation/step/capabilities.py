@@ -10,7 +10,8 @@ import numpy as np
 
 from continuation.arguments.checks import complain, real_vector
 from continuation.arrays import Array, finite
-from continuation.evaluation.evaluator import POINT_ULPS, EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.homotopy import SupportsFinish, SupportsMaxStep, SupportsObserve, offers
 from continuation.point.projection import MaxStep
 from continuation.predictors import Predictor

@@ -1,8 +1,8 @@
 """What lies on an arc before it counts: the eigenvalues of H' along it, and the branch point where one changes sign.
 
 Let M_a be the bordered matrix factored at the beginning of an arc, M(t) that at its point t, and z(t) the eigenvalues
-of M_a^-1 M(t). M(t) is singular where one of them is zero. An arc is *regular* if its real z(t) lie between 1/RANGE and
-RANGE, and go straight: no branch crosses it, and both its ends lie on one branch. An arc *crosses* a branch if one real
+of M_a^-1 M(t). M(t) is singular where one of them is zero. An arc is *regular* if its real z(t) lie between 1/SPAN and
+SPAN, and go straight: no branch crosses it, and both its ends lie on one branch. An arc *crosses* a branch if one real
 z(t) goes through zero at a simple branch point s about as 1 - t / s does, and no other comes to zero. Any other arc is
 too long, or no part of the path.
 """
@@ -16,7 +16,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array, largest
 from continuation.correctors.base import far_from_round_off
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
 from continuation.events.singularity import SimpleBranchPoint, branch_point_near, row_sizes
 from continuation.metric import norm
@@ -28,12 +28,12 @@ from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Arrival
 
-RANGE = 3.0
+SPAN = 3.0
 """How far a real eigenvalue of M_a^-1 M(t) may change on an arc that counts as regular, either way. Two crossings that
 are passed at once leave no sign; if the eigenvalue is a parabola in t, their middle m leaves it in this range half way
-for m = .18 to .32 only, and at the end for m = .37 to .63 only: one of the two always shows them, up to RANGE = 4."""
+for m = .18 to .32 only, and at the end for m = .37 to .63 only: one of the two always shows them, up to SPAN = 4."""
 
-LEAST, MOST = 1.0 - RANGE, 1.0 - 1.0 / RANGE
+LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
 """The same for eigenvalues of I - M_a^-1 M(t)."""
 
 TOLD, BENT = 0.25, 0.5
@@ -169,11 +169,11 @@ class Crossings:
     def _passed(self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], index: int) -> float | None:
         """Where near its beginning H' is nearly singular on an arc along which it becomes more regular, if anywhere.
 
-        A pair of crossings there leaves the eigenvalue larger than RANGE farther on: each half of the arc is looked at
+        A pair of crossings there leaves the eigenvalue larger than SPAN farther on: each half of the arc is looked at
         as a whole one would be, until it is not larger any more.
         """
         t = 1.0
-        while told[t] and told[t][0] < LEAST and t > SMALLEST:
+        while told[t] and told[t][0] < LOWEST and t > SMALLEST:
             t *= 0.5
             for place in (t, 0.5 * t):
                 if place not in told:
@@ -216,7 +216,7 @@ class Crossings:
     def _told(self, arc: Arc, u: Array, inside: bool, index: int) -> list[float]:
         """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
         apply, border = self._derivative(u), arc.a.border if inside else arc.b.border
-        return [] if apply is None else changes(arc.a, apply, border, TOLD, LEAST, turned=index)
+        return [] if apply is None else changes(arc.a, apply, border, TOLD, LOWEST, turned=index)
 
     def _several(self, arc: Arc, flipped: bool, index: int) -> bool:
         """Whether H' loses several ranks where it does so first on the arc, as the determinant's sign says, too.
@@ -271,7 +271,7 @@ def _as_expected(t: float, told: list[float], s: float) -> bool:
     """Whether the changes told at t are that of one eigenvalue which vanishes at s, and no other."""
     expected = t / s
     nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
-    others = [mu for mu in told if mu != nearest and not LEAST < mu < 1.0 - NEAR_CROSSING]
+    others = [mu for mu in told if mu != nearest and not LOWEST < mu < 1.0 - NEAR_CROSSING]
     return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected
 
 

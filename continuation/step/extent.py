@@ -13,7 +13,8 @@ import math
 import numpy as np
 
 from continuation.arrays import Array, dot, generic_vector, median
-from continuation.evaluation.evaluator import POINT_ULPS, EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.point.linearization import Linearization
 
 TURN = 0.25

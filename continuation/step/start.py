@@ -12,7 +12,8 @@ from continuation.arguments.checks import real_vector
 from continuation.arrays import Array, generic_vector, median
 from continuation.correctors import BorderedNewton
 from continuation.correctors.base import holds
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.homotopy import SupportsExtents, offers
 from continuation.metric import Automatic, Metric, SupportsExtent, norm
 from continuation.path import Path

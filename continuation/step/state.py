@@ -42,7 +42,7 @@ class State:
         Of the step that led here.
     signs : tuple of int
         The piece on which the path goes on, where the homotopy has pieces.
-    noise : tuple of float
+    noise : ndarray, shape (N,), or None
         What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
     tolerance : float
         The relative tolerance that noise allows; 0 where it was not raised.
@@ -63,7 +63,7 @@ class State:
     last_failed_endgame: float = float("inf")
     index: int = 0
     signs: tuple[int, ...] = ()
-    noise: tuple[float, ...] = ()
+    noise: Array | None = None
     tolerance: float = 0.0
 
     @property

@@ -9,7 +9,7 @@ from attrs import frozen
 
 from continuation.arrays import Array, dot, finite
 from continuation.correctors import Correction, Corrector
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.metric import inner
 from continuation.point.linearization import REFINED, Linearization, linearize, relinearize
 from continuation.point.projection import PathSolver

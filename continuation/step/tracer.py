@@ -277,20 +277,19 @@ class Tracer:
             origin=here,
             origin_weights=point.weights,
             signs=signs,
-            noise=() if self._evaluator.noise is None else tuple(self._evaluator.noise.tolist()),
+            noise=self._evaluator.noise,
             tolerance=self._solver.tolerance.relative,
         )
         # The state last: whatever interrupts before it, a resumed trace begins again and lacks nothing.
         self._record(self._recorder.record(point, 0, 0.0, Kind.START), state)
-        verdict = start_on_target(point.lam, settings.target) if self._start is None else None
-        if verdict is not None:
+        if self._start is None and (verdict := start_on_target(point.lam, settings.target)) is not None:
             self._end(verdict)
         return point
 
     def _restored(self, state: State) -> Linearization:
         """The point of a stored state: its factorisation is made anew from the same numbers, its tangent is kept."""
         at, border = state.anchor
-        self._evaluator.noise = np.array(state.noise) if state.noise else None
+        self._evaluator.noise = state.noise
         self._solver.noisy(state.tolerance)
         if self._pieces is not None:
             if len(state.signs) != self._pieces.values(at).size:

@@ -12,7 +12,7 @@ from continuation.ends.closed_curve import same_ray
 from continuation.ends.divergence import beyond_horizon, words
 from continuation.ends.endgame import SingularLimit
 from continuation.ends.target import ArcEnd, EndsAt
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.kinks.crossing import Crossing
 from continuation.point.projection import PathSolver
 from continuation.predictors import Knot

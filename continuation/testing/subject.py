@@ -17,7 +17,8 @@ from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg, Bounds, Controller
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import from_residual
-from continuation.evaluation.evaluator import EvaluationError, Evaluator
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import Automatic
 from continuation.path import Path
 from continuation.point.linearization import Linearization, linearize

@@ -171,9 +171,8 @@ def certified(problem: MixedLCP, x: Array) -> Certificate:
 def _counted(problem: MixedLCP, terms: Terms, x: Array, off: Array) -> Array:
     """How far each row is off, but for those that entries of x that no float holds can make up for.
 
-    So it is at the far end of a solution that falls off by powers, away from the one q_i that is not 0: where a row has
-    a term of a normal float, q_i or of an x_j, it is off by that. An x_j at its bound counts only where w_j is not
-    pressed against it: another one is exactly there.
+    So it is at the far end of a solution that falls off by powers: a row with a term of a normal float is off by that.
+    An x_j at its bound counts only where w_j is not pressed against it: another one is exactly there.
     """
     asked = (off > ROUND_OFF) & (np.abs(np.ldexp(terms.w, terms.exponents)) < x.size * MOST_MADE_UP)
     if not asked.any():
@@ -328,9 +327,8 @@ def _wrong_sign(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tup
         if high < math.inf and value > Fraction(high):
             return f"x[{i}] > {high:g}"
     for i, value in enumerate(w):
-        if problem.fixed[i] or state[i] == BETWEEN:
-            continue
-        if (value < 0) if state[i] == LOWER else (value > 0):
+        wrong = (value < 0) if state[i] == LOWER else (value > 0)
+        if wrong and not (problem.fixed[i] or state[i] == BETWEEN):
             return f"w[{i}] {'<' if state[i] == LOWER else '>'} 0"
     return ""
 

@@ -12,7 +12,8 @@ import continuation
 from continuation import Budget, Curve, Family, Kind, KinkPoint, Monitor, TargetValue, TurningPoint
 from continuation.archive import open_archive, resume
 from continuation.counts import Counts
-from continuation.evaluation.evaluator import Evaluator, RaisedError
+from continuation.evaluation.errors import RaisedError
+from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import difference_along
 from continuation.linear.nullspace import null_vectors
 from continuation.plot import plot_bifurcation

@@ -7,7 +7,7 @@ import pytest
 
 from continuation import Budget, Status, Tracer, from_functions, trace
 from continuation.controllers import Fixed
-from continuation.evaluation.evaluator import EvaluationError
+from continuation.evaluation.errors import EvaluationError
 from continuation.predictors import Tangent
 from continuation.rejection import Rejection
 from problems.bifurcation import Circle, Cusp, FreudensteinRoth
