@@ -87,8 +87,8 @@ class Crossed:
             products = np.abs(self.unmix) @ np.abs(self.mix @ np.append(1.0, -null))
             products = np.abs(np.linalg.inv(self.equations)[0]) @ (np.abs(self.equations) @ (np.abs(inner) @ products))
             found = max(found, float(np.abs(self.unmix[0]) @ size[:-1] + size[-1] + products))
-        # The kernels of OpenBLAS give up to 117 of these units: a product of n terms is rounded n times.
-        return 300.0 * float(np.finfo(float).eps) * found / self.angle
+        # The kernels of OpenBLAS give up to 420 of these units: a product of n terms is rounded n times.
+        return 1000.0 * float(np.finfo(float).eps) * found / self.angle
 
     def start(self) -> tuple[Array, float]:
         return self.point(*self.curve(self.begin))
