@@ -58,7 +58,7 @@ _HOMES = {
     "counts": "Counts",
     "curves": "Curve Family",
     "diagrams": "Deflated Diagram diagram",
-    "evaluation.evaluator": "EvaluationError",
+    "evaluation.errors": "EvaluationError",
     "evaluation.functions": "from_functions",
     "evaluation.jacobian_check": "check_jacobian",
     "events": "Event KinkPoint Monitor TargetValue TurningPoint",

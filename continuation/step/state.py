@@ -42,10 +42,14 @@ class State:
         Of the step that led here.
     signs : tuple of int
         The piece on which the path goes on, where the homotopy has pieces.
+    near : bool
+        Whether a branch that crosses was seen on the arc that led here, or ahead of it.
     noise : ndarray, shape (N,), or None
         What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
     tolerance : float
         The relative tolerance that noise allows; 0 where it was not raised.
+    near : bool
+        Whether a branch that crosses was seen on the arc that led here, or ahead of it.
     """
 
     history: tuple[Knot, ...]
@@ -63,6 +67,7 @@ class State:
     last_failed_endgame: float = float("inf")
     index: int = 0
     signs: tuple[int, ...] = ()
+    near: bool = False
     noise: Array | None = None
     tolerance: float = 0.0
 
