@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from attrs import frozen
+import numpy as np
+from attrs import field, frozen
 
 from continuation.arrays import Array
 from continuation.predictors import Knot
@@ -44,7 +45,7 @@ class State:
         The piece on which the path goes on, where the homotopy has pieces.
     near : bool
         Whether a branch that crosses was seen on the arc that led here, or ahead of it.
-    noise : ndarray, shape (N,), or None
+    noise : ndarray, shape (N,), or (0,) where there is none
         What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
     tolerance : float
         The relative tolerance that noise allows; 0 where it was not raised.
@@ -68,7 +69,7 @@ class State:
     index: int = 0
     signs: tuple[int, ...] = ()
     near: bool = False
-    noise: Array | None = None
+    noise: Array = field(factory=lambda: np.zeros(0))
     tolerance: float = 0.0
 
     @property

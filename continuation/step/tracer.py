@@ -277,7 +277,7 @@ class Tracer:
             origin=here,
             origin_weights=point.weights,
             signs=signs,
-            noise=self._evaluator.noise,
+            noise=np.zeros(0) if self._evaluator.noise is None else self._evaluator.noise,
             tolerance=self._solver.tolerance.relative,
         )
         # The state last: whatever interrupts before it, a resumed trace begins again and lacks nothing.
@@ -289,7 +289,7 @@ class Tracer:
     def _restored(self, state: State) -> Linearization:
         """The point of a stored state: its factorisation is made anew from the same numbers, its tangent is kept."""
         at, border = state.anchor
-        self._evaluator.noise = state.noise
+        self._evaluator.noise = state.noise if state.noise.size else None
         self._solver.noisy(state.tolerance)
         if self._pieces is not None:
             if len(state.signs) != self._pieces.values(at).size:
