@@ -7,7 +7,7 @@ import pytest
 from attrs import evolve
 
 import continuation
-from continuation import Path, Step, certify
+from continuation import Path, Step, certify, from_functions
 from continuation.certificate.certifying import recheck
 from continuation.status import Status
 from problems.bifurcation import ExponentialCosine, FreudensteinRoth
@@ -25,8 +25,24 @@ def test_a_turning_point_that_is_listed_elsewhere_on_the_curve_is_a_gap():
         assert "a turning point is listed where there is none" in str(proof)
 
 
-def test_two_turning_points_next_to_each_other_are_told_apart():
-    # Within 3e-8 of the parameter, where cells of 1/256 of the step are the shortest.
+@pytest.mark.parametrize("e", [3e-2, 1e-2, 3e-3, 1e-3, 3e-4])
+def test_two_turning_points_next_to_each_other_are_told_apart(e):
+    # Of lam = y^3 - 3 e^2 y: within 4 e^3 of the parameter, 1e-1 to 1e-10, and in one step.
+    homotopy = from_functions(
+        lambda y, lam: np.stack([y[0] ** 3 - 3.0 * e * e * y[0] - lam]), start=([-1.0], 3.0 * e * e - 1.0), target=1.0
+    )
+    path = continuation.trace(homotopy)
+    first, second = path.turning_points
+    assert first.step == second.step
+    proof = certify(path, homotopy)
+    assert proof.complete, str(proof)
+    assert len(proof.turning_points) == 2
+    assert recheck(proof.cells, path, homotopy).turning_points == proof.turning_points
+
+
+def test_a_pair_as_near_as_round_off_allows_is_proved_whole_or_not_at_all():
+    # Within 3e-8 of the parameter, where cells of 1/256 of the step are the shortest: under two of four kernels of
+    # OpenBLAS no tube holds the step, under the others both turning points are proved.
     homotopy = ExponentialCosine(10)
     whole = continuation.trace(homotopy)
     k = next(a.step for a, b in zip(whole.turning_points, whole.turning_points[1:]) if abs(a.lam - b.lam) < 1e-7)
@@ -34,9 +50,7 @@ def test_two_turning_points_next_to_each_other_are_told_apart():
     events = [evolve(event, step=1) for event in whole.events if event.step == k]
     path = evolve(whole, steps=steps, events=events, status=Status.STOPPED_AT_EVENT)
     proof = certify(path, homotopy)
-    assert proof.complete, str(proof)
-    assert len(proof.turning_points) == 2
-    assert recheck(proof.cells, path, homotopy).turning_points == proof.turning_points
+    assert len(proof.turning_points) == 2 if proof.complete else proof.gaps
 
 
 class Parabola:
