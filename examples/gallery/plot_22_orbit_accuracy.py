@@ -82,8 +82,7 @@ for degree, colour in ((2, "C0"), (3, "C1"), (4, "C2")):
 orders.set(xlabel="intervals", ylabel="error of the orbit")
 orders.legend(frameon=False, fontsize="small")
 
-# %%
-# What each digit of the period takes.
+# What each digit of the period takes; in one block with the other, since both are parts of one figure.
 for (name, ladder), marker in zip(LADDERS.items(), "os^Dv"):
     errors, seconds = [], []
     for method, arguments in ladder:
