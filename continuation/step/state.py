@@ -49,8 +49,6 @@ class State:
         What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
     tolerance : float
         The relative tolerance that noise allows; 0 where it was not raised.
-    near : bool
-        Whether a branch that crosses was seen on the arc that led here, or ahead of it.
     """
 
     history: tuple[Knot, ...]
