@@ -4,6 +4,8 @@ path is decided in `continuation.step.verdict`.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from enum import Enum
 
 import numpy as np
@@ -47,9 +49,9 @@ VANISHING_SHARE = 1e-18
 END_CORRECTIONS = 4
 """Increments of Newton's method at the target: what was located there is within the reach of quadratic convergence."""
 
-WIDENED, PROBES, ENDLESS = 4.0, 40, 1e150
-"""A way along which the equations hold to round-off is found to this factor, in so many residuals at most; what is not
-found to end by then is taken to be so long."""
+WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
+"""A way along which the equations hold to round-off is found to this factor, from a length that moves no digit of a
+float to one that has no end."""
 
 
 class EndsAt(Enum):
@@ -272,24 +274,40 @@ def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
             ways.append(z - z[-1] / near.tangent[-1] * near.tangent)
             ways[-1][-1] = 0.0
 
-    def holds(at: Array) -> bool:
+    def excess(at: Array) -> float:
         try:
-            return bool((np.abs(evaluator.residual(at)) <= 2.0 * allowed).all())
+            over = float((np.abs(evaluator.residual(at)) / (2.0 * allowed)).max())
+            return over if over == over else np.inf
         except EvaluationError:
-            return False
+            return np.inf
 
     off = np.spacing(np.abs(u))
     off[-1] = 0.0
+    allowed = np.maximum(allowed, np.finfo(float).tiny)
     for way in ways:
-        if not way.any():
-            continue
-        for side in (way, -way):
-            reach, seen = 1.0, holds(u + side)
-            for _ in range(PROBES):
-                reach *= WIDENED if seen else 1.0 / WIDENED
-                if holds(u + reach * side) is not seen:
-                    break
-            else:
-                reach = ENDLESS if seen else 0.0
-            off = np.maximum(off, (reach if seen else WIDENED * reach) * np.abs(side))
+        reach = 1.0
+        for side in (way, -way) if way.any() else ():
+            reach = _reach(lambda length, side=side: excess(u + length * side), reach or 1.0)
+            off = np.maximum(off, reach * np.abs(side))
     return off
+
+
+def _reach(excess: Callable[[float], float], begin: float) -> float:
+    """A length at which `excess` is more than one, while it is not at 1/WIDENED of it; 0 or ENDLESS if there is none.
+
+    Between the two the next length is where the power of the length comes to one that the last two too long ones show.
+    """
+    low, high, over, power = 0.0, np.inf, np.inf, 2.0
+    length, factor = begin, WIDENED
+    while high > WIDENED * low and NOTHING_LEFT < length < ENDLESS:
+        found = excess(length)
+        if found <= 1.0:
+            low, length, factor = length, length * factor, factor * factor
+            length = min(length, math.sqrt(low * high))
+            continue
+        if np.isfinite(over) and found < over:
+            power = max(math.log(over / found) / math.log(high / length), 1.0)
+        high, over = length, found
+        length = 0.5 * high * over ** (-1.0 / power) if np.isfinite(over) else high / factor**2
+        length = max(min(length, 0.5 * high), math.sqrt(low * high))
+    return min(high, ENDLESS) if low else 0.0

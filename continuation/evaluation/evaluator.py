@@ -130,6 +130,7 @@ class Evaluator:
         self.followed = True  # by jets, as long as nobody finds otherwise
         self._checked = False
         self._kept: dict[bytes, Matrix] = {}
+        self._products: dict[bytes, Callable[[Array], Array]] = {}
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
         self._derivative: Callable[[Array, float], tuple[Matrix, Array]] | None = None
@@ -250,6 +251,15 @@ class Evaluator:
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
         if self._bordered is not None:
             return None
+        place = u.tobytes()
+        if place not in self._products:
+            # Of two points: of an arc's end somebody looks at the inside before the end is asked for again.
+            self._products = dict([*self._products.items()][-1:])
+            self._products[place] = self._product(u)
+        return self._products[place]
+
+    def _product(self, u: Array) -> Callable[[Array], Array]:
+        """The same by the Jacobian, which is evaluated."""
         self.counts.jacobians += 1
         H_y, H_lam = self._evaluated(u)
         column = np.asarray(H_lam, dtype=float)

@@ -36,19 +36,19 @@ RANKS, SAME, INDEPENDENT = 4, 1e-3, 1e-4
 length, depends on the others: eigenvectors are known to about the root of what eigenvalues are."""
 
 
-def singular_places(
+def changes(
     a: Linearization,
     apply: Callable[[Array], Array],
     border: Array,
-    ahead: float,
-    behind: float = np.inf,
+    most: float,
+    least: float,
     accuracy: float = EIGENVALUE_ACCURACY,
     turned: int = 0,
 ) -> list[float]:
-    """Where on the way from M_a to another bordered matrix M there are singular ones: t in order, 1 at M itself.
+    """The real eigenvalues of C = I - M_a^{-1} M above `most` or below `least`, in order.
 
-    Arnoldi's method on C with a vector in general position, until the eigenvalues on the right are known. Each
-    dimension takes a product with M and a solve at a.
+    Arnoldi's method with a vector in general position, until these are known. Each dimension takes a product with M
+    and a solve at a.
 
     Parameters
     ----------
@@ -57,59 +57,18 @@ def singular_places(
         v -> H' v at the other point.
     border : ndarray, shape (N + 1,)
         The last row there: its tangent in the dual metric, so that a path that merely turns gives complex eigenvalues.
-    ahead, behind : float
-        Beyond 1, and below 0, the places are extrapolated: they are told from -behind to ahead, if that is finite.
+    most, least : float
     accuracy : float
         Of the eigenvalues, relative.
     turned : int
         Another one for another vector: one in a thousand has next to no part along an eigenvector.
     """
-    right, left_end = 1.0 / ahead, -1.0 / behind if math.isfinite(behind) else -math.inf
     start = generic_vector(a.u.size)
     if turned:
         place = turned % start.size
         start = np.concatenate((start[-place:], start[:-place])) if place else start
-    values, _ = _eigenvalues(a, apply, border, right, left_end, start, accuracy)
-    return sorted((1.0 / values).tolist()) if values.size else []
-
-
-def eigenvalues_along(found: dict[float, list[float]]) -> tuple[Array, Array]:
-    """The largest eigenvalue at each of some points of an arc, from its beginning; one where branches cross.
-
-    Parameters
-    ----------
-    found : dict
-        For each point the places that are seen from there; none where the eigenvalue is small.
-
-    Returns
-    -------
-    times, values : ndarray
-        Zero at zero first.
-    """
-    times = np.array([0.0, *sorted(found)])
-    return times, np.array([t / found[t][0] if t and found[t] else 0.0 for t in times])
-
-
-def peak_between(found: dict[float, list[float]], resolution: float) -> float | None:
-    """Where between points of an arc H' may be singular twice: it was nearly so, and less on either side.
-
-    Parameters
-    ----------
-    found : dict
-        As for `eigenvalues_along`.
-    resolution : float
-        Nothing is told as near as that to one of the points.
-    """
-    at, near = eigenvalues_along(found)
-    for k in range(1, near.size - 1):
-        # From there a crossing is expected before the next point, which does not show it.
-        if near[k + 1] < near[k] < 1.0 and near[k] > max(near[k - 1], at[k] / at[k + 1]):
-            # The vertex of the parabola through the three, if they are known.
-            a, b, _ = np.polyfit(at[k - 1 : k + 2] - at[k], near[k - 1 : k + 2], 2)
-            peak = at[k] - 0.5 * b / a if near[k + 1] else 0.5 * (at[k - 1] + at[k])
-            if min(abs(peak - at)) > resolution:
-                return float(peak)
-    return None
+    values, _ = _eigenvalues(a, apply, border, most, least, start, accuracy)
+    return sorted(values.tolist())
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
@@ -120,7 +79,7 @@ def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Arra
     Parameters
     ----------
     a, apply, border
-        As for `singular_places`.
+        As for `changes`.
     place : float
         One of these.
     """

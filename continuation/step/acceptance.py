@@ -48,7 +48,6 @@ class Accepted:
     orientation: int
     monitors: tuple[float, ...]
     occurrences: tuple[int, ...]
-    near: bool
     crossing: Crossing | None = None
 
 
@@ -90,7 +89,6 @@ class Examiner:
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)
         branch: Crossed | None = None
-        near = False
         kink: tuple[Linearization, tuple[int, ...]] | None = None
         try:
             missed = _across(point, attempt, prediction) if landed else attempt.correction.distance
@@ -114,11 +112,10 @@ class Examiner:
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
-                before = state.occurrences[index] > 0
-                seen = self.crossings.on_arc(part, attempt, prediction, changed, ends, before, state)
+                seen = self.crossings.on_arc(part, attempt, prediction, changed, ends, state.index)
                 if isinstance(seen, Rejected):
                     return seen
-                near, branch = seen is not None, None if seen is None else seen.branch
+                branch = seen
             elif flipped:
                 return _rejected(attempt, Rejection.ORIENTATION)
             if flipped:
@@ -158,7 +155,7 @@ class Examiner:
             located = [evolve(at, **known) if at.kind is Kind.BRANCH_POINT else at for at in located]
         if crossing is not None:
             located[-1] = evolve(located[-1], name=crossing.name, switches=crossing.switches, rays=crossing.rays)
-        return Accepted(ending, attempt, located, orientation, monitors, occurred, near, crossing)
+        return Accepted(ending, attempt, located, orientation, monitors, occurred, crossing)
 
     def _ending_in_kink(self, ending: ArcEnd, kink: Linearization) -> ArcEnd:
         """That of an arc which was cut at a kink: the target, if that is the same point, else the kink."""

@@ -46,10 +46,6 @@ SINGULAR_STRETCH = 1.19
 next one is so much longer than the controller asks for. Measured on 720 traces of lines over branch points at round
 values: without it 648 attempts are rejected and 9 traces stick; with 1.1 .. 1.5 it is 132 .. 144, and none does."""
 
-AT_CROSSINGS, AGAIN = (Rejection.OTHER_BRANCH, Rejection.CROSSINGS, Rejection.AT_CROSSING), 2.0
-"""Behind an attempt that failed for these a crossing lies ahead, and the next step is at most so much longer: a series
-would go over it and its neighbour, between two looks."""
-
 TINY = 1e-300
 """A monitor that is next to nothing, and has a sign."""
 
@@ -162,8 +158,6 @@ class Advance:
             else:
                 examined = self.examiner.examine(point, state, attempt, prediction, landed=False)
                 if isinstance(examined, Accepted):
-                    if any(failed.reason in AT_CROSSINGS for failed in rejected):
-                        h = min(h, AGAIN * attempt.h)
                     return self._moved(point, state, examined, memory, h, rejected)
                 failed, h = examined, attempt.h * examined.factor
             rejected = (*rejected, failed)
@@ -184,6 +178,9 @@ class Advance:
             limit, state = self.target.endgame(point), evolve(state, last_failed_endgame=point.lam)
         if limit is not None and self.pieces is not None and not same_piece(self.pieces, state.signs, point, limit.u):
             # It is one of the piece beyond its border.
+            limit = None
+        if limit is not None and point.orientation == 0 and self.examiner.crossings.between(point, limit.u):
+            # No determinant's sign says that it lies on another branch.
             limit = None
         return limit, state
 
@@ -257,7 +254,6 @@ class Advance:
             last_failed_endgame=state.last_failed_endgame,
             index=step.index,
             signs=state.signs,
-            near=accepted.near,
             noise=state.noise,
             tolerance=state.tolerance,
         )

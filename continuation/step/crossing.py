@@ -1,28 +1,51 @@
-"""What crosses an accepted arc: the branch points on it, each polished, or why the arc does not count.
+"""What lies on an arc before it counts: the eigenvalues of H' along it, and the branch point where one changes sign.
 
-A step past a crossing may arrive on either branch, whichever Newton's method found. On its own branch the determinant's
-sign has changed, on the other it has not; so what lies on the arc decides, and not where it ends.
+Let M_a be the bordered matrix factored at the beginning of an arc, M(t) that at its point t, and z(t) the eigenvalues
+of M_a^-1 M(t). M(t) is singular where one of them is zero. An arc is *regular* if no real z falls to less than 1/SPAN
+from one look to the next, none grows by more than SPAN, and of three looks in a row z at the first and the last add up
+to at most SPAN times that between them, where of a parabola that touches zero it is four times: no branch crosses it,
+and both its ends lie on one branch. An arc *crosses* a branch if one real z(t) goes through zero at a simple branch
+point s about as 1 - t / s does, and no other comes to zero. Any other arc is too long, or no part of the path.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
-from attrs import evolve, field, frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
-from continuation.events.crossing import eigenvalues_along, multiplicity, singular_places
+from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
 from continuation.events.singularity import SimpleBranchPoint, branch_point_near, row_sizes
 from continuation.metric import norm
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
+from continuation.point.segment import CUBIC
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
-from continuation.step.looks import BEYOND, CHANGED, DOUBTFUL, END_MARGIN, LOOKS, NEAR_CROSSING, STRIDE, Looks
-from continuation.step.state import State
 from continuation.step.stepper import Arrival
+
+SPAN = 3.0
+"""How far a real eigenvalue of M_a^-1 M(t) may change from one look to the next on an arc that counts as regular. Two
+crossings that are passed at once leave no sign; but of a parabola that touches zero between three looks the values at
+the first and the last add up to four times the one between them, or more."""
+
+LOWEST, MOST = 1.0 - SPAN, 1.0 - 1.0 / SPAN
+"""The same for eigenvalues of I - M_a^-1 M(t)."""
+
+TOLD = 0.25
+"""The least change that is told."""
+
+ONWARD = 0.1
+"""A look so far behind the end of an arc, in its lengths, along which H' comes nearer to singular. If it becomes more
+regular there by more than that part, it was singular on the arc, as the branch sees it on which the arc ends."""
+
+HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
+"""Where on an arc the eigenvalues are told: on a cubic, and on a series, whose steps reach over more."""
 
 NEAR_ARC = 2e-2
 """How far from the arc a branch point on it may lie, in its lengths: five times what an arc may be off the path."""
@@ -31,27 +54,29 @@ ON_PATH = 8 * float(np.finfo(float).eps)
 """Of the rows of H' over the arc: so little of H is round-off, also where all that H is made of vanishes at the point.
 At true crossings at most 3e-16 was seen; with 1e-13 curves 2e-6 apart were said to cross."""
 
-EXTRAPOLATED_PAIR = 1.5
-"""A pair of crossings near the beginning of the next arc, where half way nothing is seen of it (in .27 of that arc at
-most), is extrapolated to less than this from half way along the arc before, if the next is not six times as long."""
+AHEAD = 3.0
+"""So far ahead, in arcs, a branch point that is found is believed: the next arc has it on its first two thirds."""
 
-TOUCHES = 0.75
-"""From there on a largest eigenvalue along a series may have passed one and come back between two looks an eighth of
-the arc apart, where the branches cross twice: a branch point is sought there."""
+NEAR_CROSSING = 0.1
+"""An arc does not end so near to a crossing, in its lengths: the factors there have a part ten times too small, and the
+next arc would begin with that."""
 
-PASSES, PLACE_ON_ARC = 60, 1e-12
-"""A point where H' loses several ranks is no regular zero of a system of ours: its place on the arc is iterated, to the
-second of an arc, each time by a part of what was off."""
+STEP_BACK = 0.7
+"""The factor of a step that arrived so near to a crossing, and the largest of one that is to end behind it."""
+
+BEST = 4.0 / 3.0
+"""A step over a crossing at s that ends at x s is off by x^4 there, as a cubic is, and the branches are x - 1 apart:
+here the first is least beside the second."""
+
+SMALLEST = 2.0**-6
+"""Of an arc: nearer to its beginning no pair of crossings is looked for, of which it would be the second in a row."""
 
 AT_END = 1e-6
 """Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
 
-STEP_BACK = 0.7
-"""The factor of a step that arrived so near to a crossing that nothing can be said there."""
-
-OVER, SHORT = 0.4, 0.5
-"""A crossing in the first part of an arc that came out on the other branch is stepped over by as much again: there the
-branches are as far apart as they were. One farther on is first approached, to half the way."""
+PASSES, PLACE_ON_ARC = 60, 1e-12
+"""A point where H' loses several ranks is no regular zero of a system of ours: its place on the arc is iterated, to the
+second of an arc, each time by a part of what was off."""
 
 SHORTEST = 0.1
 """The least factor of a step: a place next to the arc's beginning may be round-off, and would end the path at once."""
@@ -74,11 +99,12 @@ class Crossed:
     rays: Array | None
 
 
-@frozen
-class Passed:
-    """An arc on which, or ahead of which, something that crosses was seen; the branch point if one is on it."""
+@frozen(eq=False)
+class _Seen:
+    """A branch point on an arc or ahead of it, and the changes of eigenvalues that are told along the arc."""
 
-    branch: Crossed | None
+    point: SimpleBranchPoint
+    told: dict[float, list[float]]
 
 
 @frozen(eq=False)
@@ -86,181 +112,143 @@ class Crossings:
     """Looks for them, with the parts it needs."""
 
     solver: PathSolver
-    looks: Looks = field(init=False)
-
-    @looks.default
-    def _looks(self) -> Looks:
-        return Looks(self.solver)
 
     def on_arc(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, before: bool, state: State
-    ) -> Passed | Rejected | None:
-        """The branch point on an arc, if there is one; or why the arc does not count, and which step to try.
-
-        None where nothing that crosses was seen on the arc or ahead.
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
+    ) -> Crossed | Rejected | None:
+        """The branch point on an arc; None where none is; or why the arc does not count, and which step to try.
 
         Parameters
         ----------
         arc : Arc
         attempt : Arrival
-            Where the arc ends.
+            Where the arc, or the one of which it is a part, ends.
         prediction : Prediction
             Of the arc.
         flipped : bool
             Whether the determinant's sign changes from its beginning to its end.
         ends : bool
             Whether the path ends where the arc does: what lies beyond does not count.
-        before : bool
-            Whether branches have crossed on this path already.
-        state : State
-            At the arc's beginning.
+        index : int
+            Of the step: each looks at H' with another first vector.
         """
-        # An arc that was cut, as at a kink, is the beginning of what was predicted.
-        if arc.b is not attempt.point:
-            attempt = evolve(attempt, h=attempt.h * arc.length / position(arc, attempt.point.u))
-        seen = self.looks.along(arc, attempt, prediction, state)
-        found = self._examined(arc, attempt, prediction, seen, flipped, ends, before)
-        if isinstance(found, Rejected):
-            return found
-        ahead = any(t < EXTRAPOLATED_PAIR for there in seen.values() for t in there)
-        return Passed(found) if found is not None or ahead else None
+        seen = self._seen(arc, attempt, prediction, flipped, ends, index)
+        if isinstance(seen, _Seen):
+            return self._over(arc, attempt, seen, flipped, ends)
+        return _rejected(attempt, Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
 
-    def _examined(
-        self,
-        arc: Arc,
-        attempt: Arrival,
-        prediction: Prediction,
-        seen: dict[float, list[float]],
-        flipped: bool,
-        ends: bool,
-        before: bool,
-    ) -> Crossed | Rejected | None:
-        """As for `on_arc`, with what was seen along the prediction."""
-        looked, series, whole = seen, hasattr(prediction, "segment"), False
-        if series:
-            # So near to the path they need not be extrapolated far: a place counts where a look is behind it.
-            looked = {at: [t for t in there if t < at + STRIDE] for at, there in seen.items()}
-        places = max(([t for t in found if t < BEYOND] for found in looked.values()), key=len, default=[])
-        if flipped and not places and (apply := self.looks.derivative(arc.b.u)) is not None:
-            places = singular_places(arc.a, apply, arc.b.border, 1.0)
-        guesses, places = places, [t for t in places if not ends or t < 1.0]
-        if ends and not (places or flipped):
-            return None
-        if not ends and any(abs(t - 1.0) < END_MARGIN for t in places):
-            return _rejected(attempt, Rejection.AT_CROSSING, STEP_BACK)
-        inside = [t for t in places if t < 1.0]
-        apart = [t for t in inside if t - inside[0] >= END_MARGIN]
-        if apart:
-            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (inside[0] + apart[0]))
-        together = self._counted(arc, inside, flipped)
-        if inside and not together:
-            # Along the prediction a branch crosses, and the arc's end knows nothing of it: it is looked at from nearer.
-            return _rejected(attempt, Rejection.ORIENTATION, min(inside[0], STEP_BACK))
-        if len(together) > 1:
-            return self._together(arc, attempt, prediction, together, flipped)
-        changing = series or bool(looked.get(LOOKS[0]))
-        doubtful = changing and len(looked) >= len(LOOKS) and attempt.correction.contraction > DOUBTFUL
-        # A series is so near to the path that its looks tell all.
-        passed = [there[0] for at, there in sorted(looked.items()) if there and there[0] <= at] if series else []
-        if not flipped:
-            whole = series and not passed and self.looks.continues(arc, seen)
-            if whole and eigenvalues_along(seen)[1].max() < TOUCHES:
-                return None
-            if not (places or doubtful):
-                # Between two crossings the branches may be nearer to each other than a prediction is to either.
-                left = before and not series and (back := self.looks.behind(arc)) is not None and back > 0.0
-                return _rejected(attempt, Rejection.ORIENTATION, 0.5) if left else None
-        found = None
-        if whole:
-            # Newton's method from outside of a pair: between the two its system is singular.
-            times, values = eigenvalues_along(seen)
-            peak = int(values.argmax())
-            found = self._found(arc, prediction(times[peak - 1 : peak + 1].mean() * attempt.h))
-        elif places or flipped:
-            t = self.looks.refined(arc, attempt, prediction, (passed or inside or places or guesses or [LOOKS[0]])[0])
-            found = self._found(arc, prediction(t * attempt.h))
-        back = None if flipped or whole or found is not None else self.looks.behind(arc)
-        if back is not None:
-            found = self._found(arc, arc.segment.at(back))
-        if found is None and flipped and inside and len(lost := self._multiple(arc, inside)) > 1:
-            return self._together(arc, attempt, prediction, lost, flipped)
-        if found is None:
-            # Where branches are nearly parallel Newton's method finds their crossing from nearby only.
-            suspect = flipped or ((inside or doubtful) and not whole) or (back is not None and back > 0.0)
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if suspect else None
-        at = position(arc, found.u) / arc.length
-        if ends and 1.0 < at <= 1.0 + AT_END:
-            return None
-        if not ends and abs(at - 1.0) < NEAR_CROSSING:
-            return _rejected(attempt, Rejection.AT_CROSSING, STEP_BACK)
-        if at > 1.0:
-            # What lies beyond does not change the sign on the arc, which left its branch.
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5) if flipped or passed else None
-        if not flipped or doubtful:
-            # With a second crossing behind it the sign is that of the other branch: how well the corrector contracts
-            # tells the two apart.
-            return _rejected(attempt, Rejection.OTHER_BRANCH, 2.0 * at if at < OVER else SHORT * at)
-        if not series and found.branch_of(arc.a) != found.branch_of(arc.b):
-            # The arc's end is on the other branch: a second crossing, of which nothing was seen, made its sign right.
-            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (at + 1.0))
-        if (more := self._more(arc, attempt, seen, at, ends)) is not None:
-            return more
-        return self._point(arc, found, at)
+    def _seen(
+        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
+    ) -> _Seen | Crossed | Rejected | None:
+        """The first branch point that the eigenvalues along an arc lead to; None on a regular arc."""
+        told: dict[float, list[float]] = {}
+        found, before, changed, left = None, 0.0, False, [1.0]
+        cubic = len(arc.segment.inside) <= CUBIC
+        for k, t in enumerate(HALF if cubic else EIGHTHS):
+            told[t] = there = self._told(arc, prediction(t * arc.length) if t < 1.0 else arc.b.u, t, index + k)
+            left.append(1.0 - max([0.0, *there]))
+            if left[-1] * SPAN < left[-2] * (1.0 if t < 1.0 or not ends else 0.0) and found is None:
+                found = self._found(arc, prediction(t / there[-1] * arc.length))
+                if found is None and there[-1] > t and self._several(arc, flipped, index):
+                    return self._together(arc, prediction, t / there[-1])
+                # What comes near to singular at the end, and goes straight, may do so behind it.
+                if found is None and (t < 1.0 or there[-1] >= 1.0):
+                    return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t * MOST / there[-1]))
+            if there:
+                changed = True
+            before = t
+        if found is None and changed:
+            if (near := self._passed(arc, prediction, told, index)) is not None:
+                return _rejected(attempt, Rejection.CROSSINGS, near)
+            if cubic and left[-1] < 1.0 - TOLD:
+                # What a series is made of is seen on it already.
+                onward = self._told(arc, arc.segment.at(1.0 + ONWARD), 1.0, index)
+                if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
+                    return _rejected(attempt, Rejection.ORIENTATION, 0.5)
+            touching = (t for t, *z in zip(told, left, left[1:], left[2:]) if z[0] + z[2] > SPAN * z[1])
+            if (t := next(touching, None)) is not None:
+                found = self._found(arc, prediction(t * arc.length))
+        return None if found is None else _Seen(found, told)
 
-    def _more(
-        self, arc: Arc, attempt: Arrival, seen: dict[float, list[float]], at: float, ends: bool
-    ) -> Rejected | None:
-        """Why an arc with a crossing does not count: another one on it or at its end; None where there is none.
+    def _passed(self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], index: int) -> float | None:
+        """Where near its beginning H' is nearly singular on an arc along which it becomes more regular, if anywhere.
 
-        The largest eigenvalue passes one where branches cross: between two looks, or behind the last one.
+        A pair of crossings there leaves the eigenvalue larger than SPAN farther on: each half of the arc is looked at
+        as a whole one would be, until it is not larger any more.
         """
-        apply = self.looks.derivative(arc.b.u)
-        there = [] if apply is None else singular_places(arc.a, apply, arc.b.border, 1.0 / CHANGED)
-        if not ends and any(abs(1.0 - 1.0 / t) < NEAR_CROSSING for t in there):
-            return _rejected(attempt, Rejection.AT_CROSSING, STEP_BACK)
-        times, values = eigenvalues_along({**seen, 1.0: there})
-        changes = [times[k : k + 2] for k in np.flatnonzero(np.diff(values > 1.0))]
-        if len(changes) > 1:
-            return _rejected(attempt, Rejection.CROSSINGS, float(changes[0][1]))
-        if changes and not changes[0][0] - NEAR_CROSSING < at < changes[0][1] + NEAR_CROSSING:
-            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (at + float(changes[0].mean())))
+        t = 1.0
+        while told[t] and told[t][0] < LOWEST and t > SMALLEST:
+            t *= 0.5
+            for place in (t, 0.5 * t):
+                if place not in told:
+                    told[place] = self._told(arc, prediction(place * arc.length), place, index)
+                if told[place] and told[place][-1] > MOST:
+                    return place
         return None
 
-    def _counted(self, arc: Arc, places: list[float], flipped: bool) -> list[float]:
-        """The same places, each as often as H' loses a rank there, if their number does not agree with the sign."""
-        return places if not places or flipped == bool(len(places) % 2) else self._multiple(arc, places)
+    def _over(self, arc: Arc, attempt: Arrival, seen: _Seen, flipped: bool, ends: bool) -> Crossed | Rejected | None:
+        """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
+        s = position(arc, seen.point.u) / arc.length
+        if ends and 1.0 < s <= 1.0 + AT_END:
+            return None
+        if not ends and abs(s - 1.0) < NEAR_CROSSING:
+            return _rejected(attempt, Rejection.AT_CROSSING, STEP_BACK)
+        if flipped != (s < 1.0):
+            # Over a crossing the arc's end is on the other branch, or before it beyond another one.
+            over = BEST * s
+            return _rejected(attempt, Rejection.OTHER_BRANCH, over if over < STEP_BACK else 0.5 * min(s, 1.0))
+        if not all(_as_expected(t, there, s) for t, there in seen.told.items()):
+            others = [t / mu for t, there in seen.told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
+            # Where another eigenvalue has grown too much the arc is only too long.
+            nearest = min(others, default=1.0 if any(told and told[0] < LOWEST for told in seen.told.values()) else 0.0)
+            return _rejected(attempt, Rejection.CROSSINGS, min(0.5 * (s + nearest), STEP_BACK))
+        if s > 1.0:
+            return None
+        rays = seen.point.rays(arc.segment.derivative(s), arc.a.weights)
+        return Crossed(evolve(arc.a, u=seen.point.u, tangent=rays[1]), rays)
 
-    def _multiple(self, arc: Arc, places: list[float]) -> list[float]:
-        """The first of some places as often as H' loses a rank there; all of them where that cannot be told."""
-        if (apply := self.looks.derivative(arc.b.u)) is None:
-            return places
-        there = singular_places(arc.a, apply, arc.b.border, BEYOND)
-        if not there or abs(there[0] - places[0]) > NEAR_CROSSING:
-            return places
-        return multiplicity(arc.a, apply, arc.b.border, there[0]) * places[:1]
+    def between(self, point: Linearization, u: Array) -> bool:
+        """Whether H' has an eigenvalue of another sign at u than at a point."""
+        apply = self._derivative(u)
+        return apply is not None and bool(changes(point, apply, point.border, 1.0 + EIGENVALUE_ACCURACY, -np.inf))
 
-    def _together(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, places: list[float], flipped: bool
-    ) -> Crossed | Rejected:
-        """Several crossings in about one place: a point where H' loses several ranks, or simple ones side by side.
+    def _derivative(self, u: Array) -> Callable[[Array], Array] | None:
+        """The map v -> H' v at a point; None where there is none, as beyond the edge of a domain."""
+        try:
+            return self.solver.evaluator.differential(u)
+        except EvaluationError:
+            return None
+
+    def _told(self, arc: Arc, u: Array, t: float, index: int) -> list[float]:
+        """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
+        apply, tangent = self._derivative(u), arc.segment.derivative(t)
+        border = arc.a.weights * tangent / norm(arc.a.weights, tangent)
+        return [] if apply is None else changes(arc.a, apply, border, TOLD, LOWEST, turned=index)
+
+    def _several(self, arc: Arc, flipped: bool, index: int) -> bool:
+        """Whether H' loses several ranks where it does so first on the arc, as the determinant's sign says, too.
+
+        A Krylov space shows one eigenvalue for all of them.
+        """
+        told, apply = self._told(arc, arc.b.u, 1.0, index), self._derivative(arc.b.u)
+        lost = multiplicity(arc.a, apply, arc.b.border, 1.0 / told[-1]) if apply is not None and told else 1
+        return lost > 1 and flipped == bool(lost % 2)
+
+    def _together(self, arc: Arc, prediction: Prediction, t: float) -> Crossed | Rejected:
+        """Several crossings in one place: a point where H' loses several ranks.
 
         Which branch goes on is not asked there: the path passes if the determinant's sign agrees with their number, and
         the prediction was good, as it is along a branch that symmetry keeps.
         """
-        t = self.looks.refined(arc, attempt, prediction, places[0])
-        if self._found(arc, prediction(t * attempt.h)) is not None:
-            return _rejected(attempt, Rejection.CROSSINGS, 0.5 * (places[0] + places[1]))
-        if flipped != bool(len(places) % 2) or attempt.correction.contraction > DOUBTFUL:
-            return _rejected(attempt, Rejection.ORIENTATION, 0.5)
-        moved = np.inf
+        moved, u = np.inf, arc.a.u
         for _ in range(PASSES):
-            u, _ = self.solver.project(arc.a, prediction(t * attempt.h), arc.a.border)
-            if (apply := self.looks.derivative(u)) is None:
+            u, _ = self.solver.project(arc.a, prediction(t * arc.length), arc.a.border)
+            if (apply := self._derivative(u)) is None:
                 break
-            found = singular_places(arc.a, apply, arc.a.border, 2.0, accuracy=PLACE_ON_ARC)
+            found = changes(arc.a, apply, arc.a.border, 0.5, -np.inf, accuracy=PLACE_ON_ARC)
             if not found:
                 break
-            before, t = t, t * min(found, key=lambda place: abs(place - 1.0))
+            before, t = t, t / min(found, key=lambda mu: abs(mu - 1.0))
             last, moved = moved, abs(t - before)
             # What no longer falls is round-off, which is more than that where zero is far away.
             if moved <= PLACE_ON_ARC or moved >= last:
@@ -269,7 +257,7 @@ class Crossings:
         return Crossed(evolve(arc.a, u=u, tangent=tangent / norm(arc.a.weights, tangent)), None)
 
     def _found(self, arc: Arc, guess: Array) -> SimpleBranchPoint | None:
-        """The simple branch point on or just behind the arc that Newton's method finds from a guess."""
+        """The simple branch point on or ahead of the arc that Newton's method finds from a guess."""
         a, evaluator = arc.a, self.solver.evaluator
         try:
             rows = row_sizes(evaluator, 1.0 / np.sqrt(a.weights), (a.u, arc.b.u))
@@ -282,14 +270,16 @@ class Crossings:
             return None
         length = norm(a.weights, arc.b.u - a.u)
         at = position(arc, found.u) / arc.length
-        if not 0.0 < at < BEYOND or norm(a.weights, found.u - arc.segment.at(at)) > NEAR_ARC * length:
-            return None
-        return found
+        off = norm(a.weights, found.u - arc.segment.at(at))
+        return found if 0.0 < at < AHEAD and off <= NEAR_ARC * max(at**4, 1.0) * length else None
 
-    def _point(self, arc: Arc, found: SimpleBranchPoint, at: float) -> Crossed:
-        """The branch point as a point of the path, its tangent that of the branch which goes on."""
-        rays = found.rays(arc.segment.derivative(at), arc.a.weights)
-        return Crossed(evolve(arc.a, u=found.u, tangent=rays[1]), rays)
+
+def _as_expected(t: float, told: list[float], s: float) -> bool:
+    """Whether the changes told at t are that of one eigenvalue which vanishes at s, and no other."""
+    expected = t / s
+    nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
+    others = [mu for mu in told if mu != nearest and not LOWEST < mu < 1.0 - NEAR_CROSSING]
+    return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected
 
 
 def _rejected(attempt: Arrival, reason: Rejection, factor: float) -> Rejected:

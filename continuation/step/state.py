@@ -43,8 +43,6 @@ class State:
         Of the step that led here.
     signs : tuple of int
         The piece on which the path goes on, where the homotopy has pieces.
-    near : bool
-        Whether a branch that crosses was seen on the arc that led here, or ahead of it.
     noise : ndarray, shape (N,), or (0,) where there is none
         What each equation was seen to be uncertain by at the start, where that is more than round-off of the point.
     tolerance : float
@@ -66,7 +64,6 @@ class State:
     last_failed_endgame: float = float("inf")
     index: int = 0
     signs: tuple[int, ...] = ()
-    near: bool = False
     noise: Array = field(factory=lambda: np.zeros(0))
     tolerance: float = 0.0
 
