@@ -11,6 +11,7 @@ from continuation.arguments.checks import POSITIVE, SHARE, integer
 from continuation.arrays import Array
 from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER
 from continuation.correctors.base import Correction, iterate
+from continuation.correctors.broyden import updated
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import Anchor, Linearization, linearize
 from continuation.tolerance import Tolerance
@@ -49,6 +50,7 @@ class BorderedNewton:
     ) -> Correction:
         """See `Corrector.correct`."""
         anchors: list[Anchor] = []
+        increments: list[Array] = []
         fresh_at = 0
 
         def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
@@ -56,7 +58,8 @@ class BorderedNewton:
             if not anchors or self.reuse == 0.0 or (contraction > self.reuse and k > fresh_at + 1):
                 anchors[:] = [Anchor(u.copy(), border, evaluator.factor(u, border))]
                 fresh_at = k
-            return anchors[0].system.approximate(-r, 0.0)
+                increments.clear()
+            return updated(increments, anchors[0].system.approximate(-r, 0.0))
 
         # Newton's own factors are those of the iterate before the last: not offered where none is to serve twice.
         offered = anchors if self.reuse > 0.0 else ()

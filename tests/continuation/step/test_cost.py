@@ -23,6 +23,6 @@ def test_calls_of_functions_a_step(name, most):
 
 def test_what_the_benchmark_measures():
     found = benchmark_of_steps.measured("circle")
-    assert found["steps"] == 24
-    assert found["factorizations"] == 27
-    assert found["calls"] > 24 * 100
+    assert 20 <= found["steps"] <= 28
+    assert found["steps"] <= found["factorizations"] <= 34
+    assert found["calls"] > found["steps"] * 100
