@@ -13,7 +13,7 @@ from continuation.contraction import HALVING, RELIABLE
 from continuation.correctors import BorderedNewton
 from continuation.evaluation.errors import EvaluationError
 from continuation.events import TargetValue, TurningPoint
-from continuation.events.locate import locate, may_vanish
+from continuation.events.locate import may_vanish, zeros
 from continuation.events.roots import zero_between
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
@@ -132,14 +132,13 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     """Where the arc first takes a parameter value that its ends enclose, or that it touches in a fold."""
     before, after = arc.a.lam - value, arc.b.lam - value
     if before * after < 0.0:
-        points = locate(solver, _at(value), arc, before, after)
-        return points[0] if points else None
+        return next(zeros(solver, _at(value), arc, before, after), None)
     if before == 0.0:
         return None
     if arc.a.tangent[-1] * arc.b.tangent[-1] >= 0.0 or before * arc.a.tangent[-1] >= 0.0:
         if not may_vanish(_at(value), arc, before, after) or _below_round_off(solver, arc, value):
             return None
-        return next(iter(locate(solver, _at(value), arc, before, after)), None)
+        return next(zeros(solver, _at(value), arc, before, after), None)
     # The parameter came nearer and turned away again: a fold on the target is an end, and so is what lies beyond it.
 
     def slope(t: float) -> float:
@@ -150,15 +149,15 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
         nearest = math.nan if turn is None else arc.segment.at(turn)[-1] - value
         if nearest * before > 0.5 * min(abs(before), abs(after)) * abs(before):
             return None
-    fold = locate(solver, TurningPoint(), arc, float(arc.a.tangent[-1]), float(arc.b.tangent[-1]))
-    if not fold:
+    ends = float(arc.a.tangent[-1]), float(arc.b.tangent[-1])
+    if (fold := next(zeros(solver, TurningPoint(), arc, *ends), None)) is None:
         return None
-    gap = (fold[0].lam - value) * np.sign(before)
+    gap = (fold.lam - value) * np.sign(before)
     # A path that passes through the target on its way to a fold just behind it ends on the target; a fold that lies on
     # it as far as H can tell is the end.
-    if abs(gap) <= solver.noise_by_component(fold[0])[-1]:
-        return fold[0]
-    return crossing(solver, cut(arc, fold[0]), value) if gap < 0.0 else None
+    if abs(gap) <= solver.noise_by_component(fold)[-1]:
+        return fold
+    return crossing(solver, cut(arc, fold), value) if gap < 0.0 else None
 
 
 def _below_round_off(solver: PathSolver, arc: Arc, value: float) -> bool:

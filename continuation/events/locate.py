@@ -1,21 +1,27 @@
-"""Where on an accepted arc a monitor vanishes: a bracketing method of high order on corrected points."""
+"""Where on an accepted arc a function of its points vanishes: one scanner for events, targets, faces and switches.
+
+The arc's segment is a model of the function, and costs no evaluation of H. An arc has no zero where the model keeps the
+sign that the function has at both ends, and comes down to no less than half of what it is there. It has one zero where
+the ends have two signs and the model changes its sign once: that is bracketed on points of the path. Any other arc is
+divided by a point of the path, where the model is lowest or has come through zero, and both parts are asked again.
+"""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-from attrs import evolve
+from attrs import evolve, frozen
 from scipy.optimize import minimize_scalar
 
-from continuation.arrays import dot, largest
+from continuation.arrays import Array, dot, largest
 from continuation.contraction import HALVING
 from continuation.evaluation.errors import EvaluationError
 from continuation.events import Event, TargetValue, TurningPoint
 from continuation.events.roots import zero_between
-from continuation.point.arc import Arc, cubic_between
+from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC, HermiteSegment, QuinticSegment, Segment, hermite
@@ -26,9 +32,9 @@ JUMP = 1e-3
 MONITOR_PLACES = 17
 """Places where a monitor is looked at before its lowest value is sought: a cubic has two turns at most."""
 
-DESCENTS, INSIDE_ARC, AS_EXPECTED = 8, 1e-6, 0.1
-"""At most so many points are put on the path to find a monitor's least value, so far inside of an arc; one at which it
-is within a tenth of what was expected settles that there is no zero."""
+DIVISIONS, INSIDE_ARC, AS_EXPECTED = 8, 1e-6, 0.1
+"""An arc is divided so often in a row at most, so far inside of it; a point at which the function is within a tenth of
+the least value that was expected settles that there is no zero."""
 
 PASSES = 60
 """A bisection in every other pass narrows a bracket to round-off in these."""
@@ -97,44 +103,61 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
     return least
 
 
-def _lowest(event: Event, arc: Arc, sign: float) -> tuple[float, float]:
-    """Where on the arc's segment the monitor comes nearest to changing its sign, and its value there times the sign."""
-    along = _along(event, arc.guide, arc.length)
+@frozen(eq=False)
+class _Part:
+    """A part of an arc between two points of the path, the function there, and its model from `low` to `high`."""
 
-    def g(t: float) -> float:
-        return sign * along(t)
+    a: Linearization
+    b: Linearization
+    ga: float
+    gb: float
+    model: Segment
+    low: float = 0.0
+    high: float = 1.0
+    depth: int = 0
 
-    places = np.linspace(0.0, 1.0, MONITOR_PLACES)
-    k = int(np.argmin([g(float(t)) for t in places]))
-    around = float(places[max(k - 1, 0)]), float(places[min(k + 1, MONITOR_PLACES - 1)])
-    least = minimize_scalar(g, bounds=around, method="bounded", options={"xatol": 1e-9})
-    return float(least.x), float(least.fun)
-
-
-def _descent(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[tuple[Linearization, float]]:
-    """Points of the path towards the least value of a monitor that has one sign at both ends, up to another sign.
-
-    The segment says where; the point of the path there makes two segments out of one, which say it better, until the
-    monitor changes its sign, or is what was expected and does not.
-    """
-    sign = float(np.sign(ga))
-    knots, parts = [(arc.a, ga), (arc.b, gb)], [arc]
-    for _ in range(DESCENTS):
-        lowest = [_lowest(event, part, sign) for part in parts]
-        k = min(range(len(parts)), key=lambda i: lowest[i][1])
-        part, (t, expected) = parts[k], lowest[k]
-        if not INSIDE_ARC < t < 1.0 - INSIDE_ARC:
-            break
-        point, g = _knot(solver, event, part, t)
-        knots.insert(k + 1, (point, g))
-        if sign * g <= 0.0 or abs(sign * g - expected) <= AS_EXPECTED * abs(g):
-            break
-        parts[k : k + 1] = [cubic_between(part.a, point, arc.border), cubic_between(point, part.b, arc.border)]
-    return knots[1:-1]
+    def divided(self, point: Linearization, g: float, t: float, border: Array) -> tuple[_Part, _Part]:
+        """The two parts on either side of a point. A series stays their model, a cubic gives way to two."""
+        parts = []
+        for a, b, ga, gb, low, high in (
+            (self.a, point, self.ga, g, self.low, t),
+            (point, self.b, g, self.gb, t, self.high),
+        ):
+            series = len(self.model.inside) > CUBIC
+            model = (self.model, low, high) if series else (hermite(a.u, a.tangent, b.u, b.tangent, border), 0.0, 1.0)
+            parts.append(_Part(a, b, ga, gb, *model, depth=self.depth + 1))
+        return parts[0], parts[1]
 
 
-def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> list[Linearization]:
-    """All zeros of the monitor on the arc, in order, each on the path to round-off.
+def _undecided(event: Event, part: _Part, length: float) -> tuple[float, float] | None:
+    """Where to divide a part, and which value is expected there; None if its ends say what is on it."""
+    along = _along(event, part.model, length)
+    sign = math.copysign(1.0, part.ga)
+    inner = [t for t in part.model.inside if part.low < t < part.high]
+    if len(part.model.inside) <= CUBIC:
+        inner = np.linspace(part.low, part.high, MONITOR_PLACES)[1:-1].tolist()
+    places = [part.low, *inner, part.high]
+    values = [sign * part.ga, *(sign * along(t) for t in inner), sign * part.gb]
+    turns = [k for k, (p, q) in enumerate(itertools.pairwise(values)) if p > 0.0 > q or p < 0.0 < q]
+    if part.gb * part.ga <= 0.0:
+        if len(turns) <= (part.gb != 0.0):
+            return None
+        m = max(len(turns) // 2 - 1, 0)
+        between = range(turns[m] + 1, turns[m + 1] + 1 if m + 1 < len(turns) else len(values) - 1)
+        k = max(between, key=lambda k: abs(values[k]), default=turns[m])
+        return places[k], sign * values[k]
+    if not turns and _least(places, values) >= 0.5 * min(abs(part.ga), abs(part.gb)):
+        return None
+    k = min(range(len(values)), key=values.__getitem__)
+    around = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
+    least = minimize_scalar(lambda t: sign * along(t), bounds=around, method="bounded", options={"xatol": 1e-9})
+    return float(least.x), sign * float(least.fun)
+
+
+def zeros(
+    solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float, noise: float = 0.0
+) -> Iterator[Linearization]:
+    """The zeros of the monitor on the arc, in order, each on the path to round-off.
 
     Parameters
     ----------
@@ -143,51 +166,31 @@ def locate(solver: PathSolver, event: Event, arc: Arc, ga: float, gb: float) -> 
     arc : Arc
     ga, gb : float
         The monitor at the ends; ga is not zero.
+    noise : float
+        Values inside of the arc up to this are round-off, and change no sign.
     """
-    knots = [(arc.a, ga), (arc.b, gb)]
-    along = [ga, *(event.monitor(u, v) for u, v in arc.samples), gb]
-    changes = sum(p * q < 0.0 for p, q in itertools.pairwise(along))
-    divided = ga * gb > 0.0 or changes > 1
-    if ga * gb > 0.0 and changes <= 2:
-        knots[1:1] = _descent(solver, event, arc, ga, gb)
-    elif divided:
-        knots[1:1] = [_knot(solver, event, arc, t) for t in _dividing(arc, along) if 0.0 < t < 1.0]
-    found = []
-    for (left, gl), (right, gr) in itertools.pairwise(knots):
-        if gl == 0.0 or gl * gr > 0.0 or np.sign(gl) * event.direction > 0:
+    parts = [_Part(arc.a, arc.b, ga, gb, arc.guide)]
+    while parts:
+        part = parts.pop()
+        if part.ga == 0.0:
             continue
-        if gr == 0.0:
-            found.append(right)
-        else:
-            series = None if divided else arc.guide
-            part = Arc(left, right, arc.border, arc.segment)
-            root = _root(solver, event, part, series, gl, gr)
-            found += [] if root is None else [root]
-    return found
+        where = _undecided(event, part, arc.length) if part.depth < DIVISIONS else None
+        if where is not None and INSIDE_ARC < (where[0] - part.low) / (part.high - part.low) < 1.0 - INSIDE_ARC:
+            t, expected = where
+            near = part.a if t - part.low < part.high - t else part.b
+            point = solver.project_and_linearize(near, part.model.at(t), arc.border, part.model.derivative(t))
+            g = event.monitor(point.u, point.tangent)
+            if abs(g) <= noise:
+                g = math.copysign(noise, part.ga)
+            if not min(part.ga * part.gb, part.ga * g) > 0.0 or abs(g - expected) > AS_EXPECTED * abs(g):
+                parts += part.divided(point, g, t, arc.border)[::-1]
+        elif part.ga * part.gb <= 0.0 and np.sign(part.ga) * event.direction <= 0:
+            found = part.b if part.gb == 0.0 else _root(solver, event, arc.border, part)
+            if found is not None:
+                yield found
 
 
-def _dividing(arc: Arc, along: list[float]) -> list[float]:
-    """Where to evaluate the monitor on the path itself, so that each zero gets a bracket of its own.
-
-    All samples of a cubic, which is a rough guide. Of the many samples of a series, which is a good one, those on
-    either side of a sign change, and the lowest if there is none.
-    """
-    inside = arc.guide.inside
-    if len(inside) <= CUBIC:
-        return list(inside)
-    wanted = {k for k, (p, q) in enumerate(itertools.pairwise(along)) if p * q < 0.0}
-    wanted |= {k + 1 for k in wanted}
-    wanted = wanted or {min(range(1, len(along) - 1), key=lambda k: abs(along[k]))}
-    return [inside[k - 1] for k in sorted(wanted) if 0 < k < len(along) - 1]
-
-
-def _knot(solver: PathSolver, event: Event, arc: Arc, t: float) -> tuple[Linearization, float]:
-    segment = arc.guide
-    point = solver.project_and_linearize(arc.a if t < 0.5 else arc.b, segment.at(t), arc.border, segment.derivative(t))
-    return point, event.monitor(point.u, point.tangent)
-
-
-def _guess(event: Event, segment: Segment, low: float = 0.0, high: float = 1.0) -> float | None:
+def _guess(event: Event, segment: Segment, low: float, high: float) -> float | None:
     """The monitor's zero on a part of the segment; None where the values at its ends do not bracket one."""
     g = _along(event, segment)
     if g(low) * g(high) >= 0.0:
@@ -197,25 +200,28 @@ def _guess(event: Event, segment: Segment, low: float = 0.0, high: float = 1.0) 
 
 
 def _continued(
-    event: Event, arc: Arc, replaced: tuple[Linearization, float], last: tuple[Linearization, float], room: float
+    event: Event,
+    border: Array,
+    first: float,
+    replaced: tuple[Linearization, float],
+    last: tuple[Linearization, float],
+    room: float,
 ) -> tuple[Segment, float] | None:
     """The interpolant of the last point and the one that it took the place of, and where its continuation has the zero.
 
     None where these two are farther from each other than the `room` in which the zero lies is wide.
     """
     (old, before), (point, g) = replaced, last
-    way = dot(arc.border, point.u - old.u)
+    way = dot(border, point.u - old.u)
     if not 0.0 < abs(way) < room or g == before:
         return None
-    segment, until = hermite(old.u, old.tangent, point.u, point.tangent, arc.border), 1.0 + min(room / abs(way), 1.0)
-    narrow = abs(way) <= NARROW_BRACKET * arc.length
+    segment, until = hermite(old.u, old.tangent, point.u, point.tangent, border), 1.0 + min(room / abs(way), 1.0)
+    narrow = abs(way) <= NARROW_BRACKET * first
     t = 1.0 + g / (before - g) if narrow else _guess(event, segment, 1.0, until)
     return None if t is None or not 1.0 < t < until else (segment, t)
 
 
-def _root(
-    solver: PathSolver, event: Event, arc: Arc, series: Segment | None, ga: float, gb: float
-) -> Linearization | None:
+def _root(solver: PathSolver, event: Event, border: Array, part: _Part) -> Linearization | None:
     """One zero: interpolate, correct, linearize, narrow; None where the monitor jumps instead, as a tangent may.
 
     The interpolant has the tangents of both ends, so each pass raises the error of the guess to about the fourth
@@ -223,27 +229,28 @@ def _root(
     another one, which is continued. A pass of the first kind that does not halve the monitor is followed by a
     bisection, or is the last one if the monitor is at round-off.
     """
-    a, b = (arc.a, ga), (arc.b, gb)
+    a, b = (part.a, part.ga), (part.b, part.gb)
     last = best = min(a, b, key=lambda end: abs(end[1]))
-    scale = max(abs(ga), abs(gb))
-    width = first = arc.length
+    scale = max(abs(part.ga), abs(part.gb))
+    width = first = dot(border, part.b.u - part.a.u)
+    known: tuple[Segment, float, float] | None = (part.model, part.low, part.high)
     bisect, stalled, noise, replaced = False, 0, None, last
     for _ in range(PASSES):
         fine = width <= NARROW_BRACKET * first
-        ahead = None if bisect or fine else _continued(event, arc, replaced, last, width)
+        ahead = None if bisect or fine else _continued(event, border, first, replaced, last, width)
         near = last[0]
         if ahead is not None:
             segment, t = ahead
         else:
             ua, ub = a[0], b[0]
-            segment = series if series is not None else hermite(ua.u, ua.tangent, ub.u, ub.tangent, arc.border)
-            guess = 0.5 if bisect else a[1] / (a[1] - b[1]) if fine else _guess(event, segment)
-            t = 0.5 if guess is None else min(max(guess, 1e-12), 1.0 - 1e-12)
-            near = ua if t < 0.5 else ub
-        series = None
+            segment, low, high = known or (hermite(ua.u, ua.tangent, ub.u, ub.tangent, border), 0.0, 1.0)
+            guess = None if bisect else a[1] / (a[1] - b[1]) if fine else _guess(event, segment, low, high)
+            t = low + 0.5 * (high - low) if guess is None else min(max(guess, low + 1e-12), high - 1e-12)
+            near = ua if t - low < high - t else ub
+        known = None
         # The ends of a narrow bracket differ by round-off in part, and so does the interpolant's direction.
         along = near.tangent if fine else segment.derivative(t)
-        point = solver.project_and_linearize(near, segment.at(t), arc.border, along)
+        point = solver.project_and_linearize(near, segment.at(t), border, along)
         last = point, event.monitor(point.u, point.tangent)
         slow = abs(last[1]) > HALVING * abs(best[1])
         bisect, stalled = slow and ahead is None, stalled + 1 if slow else 0
@@ -252,12 +259,12 @@ def _root(
             replaced, a = a, last
         else:
             replaced, b = b, last
-        width, least = dot(arc.border, b[0].u - a[0].u), abs(best[1])
+        width, least = dot(border, b[0].u - a[0].u), abs(best[1])
         if least <= AT_ROUND_OFF * scale or (stalled >= 2 and least <= NEARLY_ZERO * scale):
             break
         if bisect or fine or least <= NEARLY_ZERO * scale:
             # As near as points are known: farther bisections would locate round-off.
-            noise = solver.noise(arc.a) if noise is None else noise
+            noise = solver.noise(part.a) if noise is None else noise
             if width <= noise or least <= noise * abs(b[1] - a[1]) / width:
                 break
     if abs(best[1]) > JUMP * scale and not (noise is not None and width <= noise):

@@ -10,7 +10,7 @@ from continuation.arrays import Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.events import Event, KinkPoint
 from continuation.events.branch_point import BranchPoint
-from continuation.events.locate import locate, may_vanish
+from continuation.events.locate import may_vanish, zeros
 from continuation.point.arc import Arc, position
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
@@ -70,7 +70,7 @@ def scan_events(
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue
         try:
-            points = locate(solver, event, arc, first, g)
+            points = list(zeros(solver, event, arc, first, g))
         except EvaluationError:
             # The arc is on the path, its interior could not be evaluated: the crossing is reported at its end.
             points = [arc.b] if first * g < 0.0 and np.sign(g) * event.direction >= 0 else []

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
@@ -11,10 +9,9 @@ from numpy.typing import NDArray
 from continuation.arrays import Array, generic_vector
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.pieces import Pieces, Signs, SwitchError
-from continuation.events.locate import AT_ROUND_OFF, MONITOR_PLACES, NEARLY_ZERO, _descent, _root
-from continuation.events.roots import zero_between
+from continuation.events.locate import MONITOR_PLACES, zeros
 from continuation.point.arc import Arc, cubic_between, position
-from continuation.point.linearization import Linearization, linearize, relinearize
+from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
@@ -32,15 +29,9 @@ at the end of the one before, and switches so near to zero in one place vanish t
 NEAR_ZERO = 1e-6
 """Of a switch's largest value on an arc: an end nearer to zero is looked at more closely."""
 
-HALVINGS = 40
-"""How near to a kink a switch that vanished there is looked for on its right side, in halves of a sixteenth."""
-
 TOUCHING = 1e-9
 """Of a switch's largest value on the way to a limit of the path: so far beyond zero it may be at that limit, which is
 known to a root of round-off."""
-
-ZERO_ITERATIONS = 8
-"""Iterations that bring a zero from four digits to round-off, and two that see that no more is to be had."""
 
 ZEROS_ON_ARC = 50
 """Zeros located on one arc, each before the one found last; more than that are not between two points of a path."""
@@ -168,155 +159,50 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 def _first(
     solver: PathSolver, watched: _Watched, arc: Arc, grid: Array, suspects: NDArray[np.int64]
 ) -> tuple[Linearization, int] | None:
-    """The first zero of the suspects: where the segment has the earliest, then whatever lies before that."""
+    """The first zero of the suspects, then of any switch that has changed its sign before that.
+
+    What is found cuts the arc: others are asked for on the part before it.
+    """
     found: tuple[Linearization, int] | None = None
-    whole, end = position(arc, arc.b.u), np.inf
-    for j in sorted(suspects.tolist(), key=lambda j: _estimate(grid[:, j])):
-        # A switch that has changed its sign before is seen at the zero found; one that only dips is not.
-        if _estimate(grid[:, j]) > end + (0.0 if _change(grid[:, j]) else 1.0 / (MONITOR_PLACES - 1)):
-            continue
-        point = _zero(solver, watched.switch(j), arc, grid[:, j])
-        if point is not None and (found is None or position(arc, point.u) < position(arc, found[0].u)):
-            found, end = (point, j), position(arc, point.u) / whole
-    for _ in range(ZEROS_ON_ARC):
-        if found is None:
-            return None
-        point = found[0]
-        crossed = [j for j in watched.crossed(point) if j != found[1]]
-        if not crossed:
-            return found
-        part, first = part_between(arc, arc.a, point), watched.switch(crossed[0])
-        places = np.linspace(0.0, 1.0, MONITOR_PLACES)[1:-1]
-        inner = [first.monitor(part.segment.at(float(t)), point.tangent) for t in places]
-        values = np.array([grid[0, first.index], *inner, first.seen(point)])
-        earlier = _zero(solver, first, part, np.where(np.abs(values) <= first.noise, 0.0, values))
-        if earlier is None:
+    wrong = grid < 0.0
+    order = np.where(wrong.any(axis=0), wrong.argmax(axis=0), grid.argmin(axis=0))
+    waiting = sorted(suspects.tolist(), key=lambda j: int(order[j]))
+    for _ in range(len(waiting) + ZEROS_ON_ARC):
+        if waiting:
+            j, must = waiting.pop(0), False
+        else:
+            crossed = [] if found is None else [j for j in watched.crossed(found[0]) if j != found[1]]
+            if not crossed:
+                return found
+            j, must = crossed[0], True
+        point = _zero(solver, watched.switch(j), arc, found[0] if found else arc.b, grid[:, j])
+        if point is not None:
+            found = point, j
+        elif must:
             raise EvaluationError("a switch has changed its sign on the arc, and its zero is not found")
-        found = earlier, first.index
     raise EvaluationError("switches vanish without end on the arc")
 
 
-def _change(values: Array) -> tuple[int, int] | None:
-    """The last place of the right sign before the first of the wrong one, and that; -1 where none is right before."""
-    wrong = np.flatnonzero(values[1:] < 0.0)
-    k = int(wrong[0]) + 1 if wrong.size else len(values) - 1
-    if values[k] > 0.0:
+def _zero(
+    solver: PathSolver, switch: _Switch, arc: Arc, end: Linearization, values: Array
+) -> Linearization | None:
+    """The first zero of one switch on an arc up to a point; `values` are those of the grid on the whole of it."""
+    begin, ga = arc.a, float(values[0])
+    if ga <= 0.0:
+        # It has vanished since the beginning: asked again once it has left zero, and at its last zero if it leaves to
+        # the wrong side.
+        first = int(np.flatnonzero(values[1:])[0]) + 1
+        if first == 1 and values[1] < 0.0:
+            raise EvaluationError("a switch that vanishes at the beginning of the arc takes the wrong sign behind it")
+        begin = _on_path(solver, arc, (first if values[first] > 0.0 else first - 1) / (len(values) - 1))
+        if values[first] < 0.0:
+            return begin
+        ga = switch.seen(begin)
+    if ga <= 0.0 or position(arc, begin.u) >= position(arc, end.u):
         return None
-    right = np.flatnonzero(values[:k] > 0.0)
-    return (int(right[-1]) if right.size else -1), k
-
-
-def _estimate(values: Array) -> float:
-    """Where on the segment the switch first comes to zero, or to its deepest dip."""
-    change = _change(values)
-    if change is None:
-        return (int(np.argmin(values[1:-1])) + 1) / (len(values) - 1)
-    left, right = change
-    if left < 0:
-        return 0.0
-    a, b = values[left], values[right]
-    return float((left + (right - left) * a / (a - b)) / (len(values) - 1))
-
-
-def _zero(solver: PathSolver, switch: _Switch, arc: Arc, values: Array) -> Linearization | None:
-    """The first zero of one switch behind the beginning; None where the path says that there is none.
-
-    The values are those of the segment; where the path disagrees, points of the path take their place.
-    """
-    places = np.linspace(0.0, 1.0, len(values))
-    known = {0: arc.a, len(values) - 1: arc.b}
-
-    def at(k: int) -> Linearization:
-        if k not in known:
-            known[k] = _on_path(solver, arc, float(places[k]))
-        return known[k]
-
-    change = _change(values)
-    if change is not None:
-        left, right = change
-        quick = _by_newton(solver, switch, arc, float(places[left]), float(places[right])) if left >= 0 else None
-        if quick is not None:
-            return quick
-        if left >= 0 and (switch.seen(at(left)) <= 0.0 or switch.seen(at(right)) > 0.0):
-            values = np.array([values[0], *(switch.seen(at(k)) for k in range(1, len(values)))])
-            change = _change(values)
-            if change is None:
-                return None
-            left, right = change
-        if left < 0:
-            # It has vanished since the beginning, and goes to the wrong side: from there, or having been on the right.
-            return at(right - 1) if right > 1 else _left_at_once(solver, switch, arc, float(places[1]))
-        return _between(solver, switch, arc, at(left), at(right))
-    start = int(np.argmax(values > 0.0))
-    part = part_between(arc, at(start), arc.b)
-    if switch.seen(part.a) <= 0.0:
-        return None
-    knots = [part.a, *(p for p, _ in _descent(solver, switch, part, *map(switch.seen, (part.a, part.b)))), part.b]
-    for p, q in pairwise(knots):
-        if switch.seen(p) > 0.0 > switch.seen(q):
-            return _between(solver, switch, arc, p, q)
-    return None
-
-
-def _between(solver: PathSolver, switch: _Switch, arc: Arc, a: Linearization, b: Linearization) -> Linearization:
-    ga, gb = switch.monitor(a.u, a.tangent), switch.monitor(b.u, b.tangent)
-    if gb >= 0.0:
-        return b
-    part = part_between(arc, a, b)
-    point = _root(solver, switch, part, None, ga, gb)
-    if point is None:
-        raise EvaluationError(f"switch {switch.index} jumps from one sign to the other")
-    return point
-
-
-def _by_newton(solver: PathSolver, switch: _Switch, arc: Arc, low: float, high: float) -> Linearization | None:
-    """The zero by Newton's method along the path, from the segment's, with one factorisation made there.
-
-    None where it does not come to round-off between the places: then bracketing will, with many more points.
-    """
-    evaluator, segment = solver.evaluator, arc.segment
-
-    def g(t: float) -> float:
-        return switch.monitor(segment.at(t), arc.a.tangent)
-
-    scale = max(ga := g(low), -(gb := g(high)))
-    if not ga > 0.0 > gb:
-        return None
-    t = zero_between(g, low, high, xtol=1e-15, rtol=1e-14, disp=False)
-    if t is None:
-        return None
-    u, _ = solver.project(arc.a if t < 0.5 else arc.b, segment.at(t), arc.border)
-    near = linearize(evaluator, u, arc.a.weights, arc.border)
-    value = switch.monitor(u, near.tangent)
-    whole, wide = position(arc, arc.b.u), high - low
-    for _ in range(ZERO_ITERATIONS):
-        slope = switch.sign * float(switch.pieces.along(u, near.tangent)[switch.index])
-        if abs(value) <= AT_ROUND_OFF * scale or slope >= 0.0:
-            break
-        ahead, _ = solver.project(near, u - (value / slope) * near.tangent, arc.border)
-        there = switch.monitor(ahead, near.tangent)
-        if not abs(there) < abs(value):
-            break
-        u, value = ahead, there
-    t = position(arc, u) / whole
-    inside = max(low - wide, 0.0) < t < min(high + wide, 1.0)
-    if not inside or abs(value) > min(switch.noise, NEARLY_ZERO * scale):
-        return None
-    return relinearize(evaluator, u, near.weights, near.anchor, arc.border)
-
-
-def _left_at_once(solver: PathSolver, switch: _Switch, arc: Arc, t: float) -> Linearization:
-    """The zero of a switch that begins at zero, and is back there so soon that no place of the grid saw it."""
-    before = _on_path(solver, arc, t)
-    for _ in range(HALVINGS):
-        t *= 0.5
-        point = _on_path(solver, arc, t)
-        if switch.seen(point) > 0.0:
-            return _between(solver, switch, arc, point, before)
-        if switch.seen(point) == 0.0:
-            break
-        before = point
-    raise EvaluationError("a switch that vanishes at the beginning of the arc takes the wrong sign behind it")
+    if begin is not arc.a or end is not arc.b:
+        arc = part_between(arc, begin, end)
+    return next(zeros(solver, switch, arc, ga, switch.seen(end), switch.noise), None)
 
 
 def _on_path(solver: PathSolver, arc: Arc, t: float) -> Linearization:
