@@ -12,9 +12,9 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined, sizes
-from continuation.certificate.engine import Engine, SupportsProofEngine
+from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
-from continuation.certificate.krawczyk import ByIntervals
+from continuation.certificate.krawczyk import engine_of
 from continuation.certificate.lifting import lifted
 from continuation.certificate.links import Nodes
 from continuation.certificate.links import nodes as ends_of
@@ -39,35 +39,8 @@ CELL_HALVINGS = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
 
 
-STANDS_STILL = 1e-10
-"""Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
-
 LARGE_NUMBERS = 4_000_000
 """Numbers of an array of 32 MB, the largest that has this effect."""
-
-
-def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
-    """What bounds derivatives for this homotopy: by products where it is quadratic, else by intervals.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    points : ndarray, shape (m, N + 1), optional
-        Of the path.
-
-    Raises
-    ------
-    TypeError
-        If the residual does not run on interval arrays; the message names the operation.
-    """
-    if isinstance(homotopy, SupportsProofEngine):
-        return homotopy.proof_engine()
-    y, lam = homotopy.start()
-    start = np.append(np.asarray(y, dtype=float), float(lam))
-    still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
-    engine = ByIntervals(homotopy.residual, len(start) - 1, still)
-    engine.probe(start)
-    return engine
 
 
 @one_thread

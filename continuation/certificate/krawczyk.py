@@ -19,7 +19,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Index, Slabs, expansion, sizes
-from continuation.certificate.engine import Judged, applied, solved, up_by
+from continuation.certificate.engine import Engine, Judged, SupportsProofEngine, applied, solved, up_by
 from continuation.certificate.inverse import inverses, times
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
@@ -33,6 +33,9 @@ RESIDUAL_NUMBERS = 2_000_000
 DIRECTIONS_THAT_PAY = 16
 """Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
 Bratu's equation with 30 none, and its proof took eight times as long."""
+
+STANDS_STILL = 1e-10
+"""Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
 
 PARTS = 4
 """Into so many parts a slab is cut to bound H along the cubic: what Taylor's formula leaves of it is of third order."""
@@ -205,6 +208,30 @@ class ByIntervals:
             blunt = size_of(left, along[1]) * x
             bound = up_by(size_of(left, at[0]) + np.fmin(linear, blunt), 4)
             return np.asarray(bound.reshape(len(slabs), parts, -1).max(axis=1))
+
+
+def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
+    """What bounds derivatives for this homotopy: by products where it is quadratic, else by intervals.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    points : ndarray, shape (m, N + 1), optional
+        Of the path.
+
+    Raises
+    ------
+    TypeError
+        If the residual does not run on interval arrays; the message names the operation.
+    """
+    if isinstance(homotopy, SupportsProofEngine):
+        return homotopy.proof_engine()
+    y, lam = homotopy.start()
+    start = np.append(np.asarray(y, dtype=float), float(lam))
+    still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
+    engine = ByIntervals(homotopy.residual, len(start) - 1, still)
+    engine.probe(start)
+    return engine
 
 
 def size_of(Y: Array, v: Ends) -> Array:
