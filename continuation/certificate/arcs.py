@@ -19,7 +19,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node, joined
 from continuation.certificate.engine import Engine, up_by
 from continuation.certificate.krawczyk import ByIntervals, engine_of
-from continuation.certificate.links import distance, nodes, reach
+from continuation.certificate.links import nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.switches import judged, signs_along, value_at
 from continuation.numbers.boxes import derivatives, with_gradient
@@ -207,8 +207,8 @@ def _joined(homotopy: Any, before: Arc, after: Arc | None, kink: LocatedEvent) -
         if change[0] != before.signs[j] or change[1] != signs[j]:
             continue
         room = Slabs(np.zeros(1, dtype=np.intp), np.ones(1), np.full(1, delta), left)
-        off = up_by(window.radius + distance(room, left.end), 2)
-        if right is not None and not (reach(right, np.zeros(1), off) <= right.radius).all():
+        off = up_by(window.radius + (room.over[0] - thin(left.end)).magnitude(), 2)
+        if right is not None and not (reach(right, np.zeros(1), Ends(-off, off)) <= right.radius).all():
             continue
         came = _rate(before.engine, left, 1.0, off)
         if after is None or right is None:

@@ -10,6 +10,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import Cells
 from continuation.certificate.links import Nodes, reach
 from continuation.certificate.proof import Gap
+from continuation.numbers.ends import Ends
 from continuation.path import Path
 from continuation.status import Status
 
@@ -67,7 +68,7 @@ def at_target(cells: Cells, ends: Nodes, path: Path) -> bool:
         return False
     last, there = cells.take(slice(-1, None)), ends.take(slice(1, 2))
     whole = last.place[0, 1] == path.arclength[-1] and bool((last.end[0] == path.steps[-1].u).all())
-    held = reach(last, np.ones(1), there.radius) <= last.radius
+    held = reach(last, np.ones(1), Ends(-there.radius, there.radius)) <= last.radius
     return bool(whole and there.proved.all() and held.all())
 
 

@@ -182,9 +182,7 @@ def _bends(engine: Engine, judged: Judged, slabs: Slabs, radius: Array, tube: Ar
     """
     if sign.all():
         return np.zeros_like(sign)
-    x = slabs.offset[:, None]
-    t = judged.tangent(radius, tube)
-    box = slabs.expansion.over(Ends(-x, x))[0] + Ends(-radius, radius)
+    t, box = judged.tangent(radius, tube), slabs.box(radius)
     with np.errstate(all="ignore"):
         second = engine.bent(box, t)
         if second is None:  # no derivative has a sign

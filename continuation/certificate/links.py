@@ -14,9 +14,9 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_node, expansion
-from continuation.certificate.engine import Engine, up_by
-from continuation.numbers.ends import EPS, Ends, Mask, thin
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_node
+from continuation.certificate.engine import Engine, together, up_by
+from continuation.numbers.ends import EPS, Ends, Mask
 
 NODE_TESTS, NODE_RADII = 4, 8
 """Tests of a node, with derivatives over ever larger boxes, and radii that are tried with one of them."""
@@ -84,6 +84,11 @@ def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
     half : float
         Half the length of the range.
     """
+    parts = together(engine, cells)
+    return Nodes.joined([_nodes(engine, cells.take(place), s[place], half) for place in parts])
+
+
+def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
     slabs = evolve(at_node(cells, s), half=np.full(len(s), half))
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
     least = NODE_ULPS * EPS * np.abs(u) + LEAST_BOX * cells.radius
@@ -106,31 +111,23 @@ def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
     return Nodes(np.where(done[:, None], radius, np.nan), judged.tangent(radius, radius))
 
 
-def reach(cells: Cells, s: Array, radius: Array) -> Array:
-    """How wide a tube has to be at one end to hold every point within `radius` of the node; nan where it ends before.
+def reach(cells: Cells, s: Array, off: Ends) -> Array:
+    """How wide a tube has to be at a parameter to hold what is `off` the cubic there; nan where the tube ends before.
 
     Parameters
     ----------
     cells : Cells
     s : ndarray, shape (cells,)
-        0 or 1.
-    radius : ndarray, shape (cells, N + 1)
+        From 0 to 1.
+    off : Ends, shape (cells, N + 1)
     """
     count = len(cells)
-    room = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells)
-    speed = room.velocity
-    least, _ = along(cells.chart, speed)
+    speed = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells).over[1]
     with np.errstate(all="ignore"):
-        off = up_by((np.abs(cells.chart) * radius).sum(axis=1), radius.shape[1])
-        away = np.where(least > 0.0, off / least, np.nan) * (1.0 + 4.0 * EPS)
-        wide = up_by(radius + away[:, None] * speed.magnitude(), 2)
+        least, (lo, hi) = along(cells.chart, speed)[0], along(cells.chart, off)
+        away = np.where(least > 0.0, np.maximum(np.abs(lo), np.abs(hi)) / least, np.nan) * (1.0 + 4.0 * EPS)
+        wide = up_by(off.magnitude() + away[:, None] * speed.magnitude(), 2)
     return np.where((away <= 0.9 * OVERHANG)[:, None], wide, np.nan)
-
-
-def distance(slabs: Slabs, u: Array) -> Array:
-    """A bound of |p(s) - u| over each slab."""
-    x = slabs.offset[:, None]
-    return (expansion(slabs).over(Ends(-x, x))[0] - thin(u)).magnitude()
 
 
 def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
@@ -149,6 +146,6 @@ def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
     with np.errstate(all="ignore"):
         same = (left.end == right.begin).all(axis=1)
         inside = (at.radius <= left.radius).all(axis=1)
-        held = (reach(right, np.zeros(len(right)), at.radius) <= right.radius).all(axis=1)
+        held = (reach(right, np.zeros(len(right)), Ends(-at.radius, at.radius)) <= right.radius).all(axis=1)
         onward, _ = along(right.chart, at.tangent)
         return np.asarray(same & inside & held & (onward > 0.0))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Slabs, at_node, expansion, slabs_of
+from continuation.certificate.cells import Cells, Slabs, at_node, slabs_of
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, narrowed, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import nodes
 from continuation.numbers.boxes import derivatives, with_gradient
-from continuation.numbers.ends import Ends, bilinear, thin
+from continuation.numbers.ends import Ends, bilinear
 
 ARC_PARTS = 4
 """Parts of an arc of few slabs: a switch that vanishes at both ends has its sign in between."""
@@ -40,9 +40,9 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
     radius = slabs.cells.radius
     found: list[list[Piece]] = []
     for depth in range(SLAB_HALVINGS + 1):
-        x, m = slabs.offset[:, None], radius.shape[1]
+        m = radius.shape[1]
         known, radius = narrowed(engine, slabs, radius)
-        box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
+        box = slabs.box(radius)
         image = switches.image(with_gradient(box.lo, box.hi))
         sign = _signs(image.c[0])
         t = known.tangent(radius, slabs.cells.radius)
@@ -107,8 +107,7 @@ def judged(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> 
 
 def value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Array:
     """Signs of the switches within radii of the middles of slabs, shape (slabs, m); 0 where there is none."""
-    zero = thin(np.zeros((len(slabs), 1)))
-    box = expansion(slabs).over(zero)[0] + Ends(-radius, radius)
+    box = slabs.cubic[:, 0] + Ends(-radius, radius)
     return _signs(switches.image(with_gradient(box.lo, box.hi)).c[0])
 
 

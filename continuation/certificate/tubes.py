@@ -7,7 +7,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, joined, sizes, slabs_of
-from continuation.certificate.engine import Engine, Judged
+from continuation.certificate.engine import Engine, Judged, together
 from continuation.certificate.folds import Piece, told
 from continuation.certificate.links import Nodes
 from continuation.numbers.ends import EPS, Mask
@@ -91,7 +91,7 @@ def search(engine: Engine, cells: Cells) -> Found:
     cells : Cells
         With lengths of components that stand still for radii.
     """
-    found = [_search(engine, cells.take(place)) for place in _together(engine, cells)]
+    found = [_search(engine, cells.take(place)) for place in together(engine, cells)]
     return Found(
         joined([one.cells for one in found]),
         np.concatenate([one.proved for one in found]),
@@ -99,13 +99,6 @@ def search(engine: Engine, cells: Cells) -> Found:
         [some for one in found for some in one.pieces],
         Nodes.joined([one.ends for one in found]),
     )
-
-
-def _together(engine: Engine, cells: Cells) -> list[Index]:
-    """Places of cells to be judged together, by the number of their slabs."""
-    most = engine.together(cells.radius.shape[1])
-    groups = (np.cumsum(cells.slabs) - cells.slabs) // most
-    return np.split(np.arange(len(cells)), np.flatnonzero(np.diff(groups)) + 1)
 
 
 def _search(engine: Engine, cells: Cells) -> Found:
@@ -235,7 +228,7 @@ def check(engine: Engine, cells: Cells) -> tuple[Mask, Nodes]:
         Where the bounds tell it.
     """
     good, ends = [], []
-    for place in _together(engine, cells):
+    for place in together(engine, cells):
         some = cells.take(place)
         parts = slabs_of(some)
         radius = some.radius[parts.owner]

@@ -10,7 +10,7 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along, expansion, joined, sizes
+from continuation.certificate.cells import OVERHANG, Cells, Index, at_node, joined, sizes
 from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, at_target, certificate_of, series_of
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import RANGE, Piece, Turn, located, pieces, turns
@@ -19,7 +19,6 @@ from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
 from continuation.numbers.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
-from continuation.point.segment import HermiteSegment
 from continuation.status import Kind
 
 NOT_A_NODE = "a point of the path is no node of the proof"
@@ -33,6 +32,9 @@ POINT_DISTANCE = 1e-4
 
 LINK_TRIALS = 3
 """Looks at the links: with what tubes tell of their ends, with tests of these alone, and with wider tubes."""
+
+PARAMETER_STEPS = 30
+"""Of Newton's method from the middle of a cell, along which its chart advances."""
 
 WIDER = 1.5
 """A tube that does not hold its neighbour's node is tried with radii that do, and so much more."""
@@ -135,7 +137,7 @@ def _widened(engine: Engine, cells: Cells, at: Nodes, left: Index) -> Cells:
     wanted = cells.radius.copy()
     for k, least in (
         (left, at.radius[left]),
-        (left + 1, reach(cells.take(left + 1), np.zeros(len(left)), at.radius[left])),
+        (left + 1, reach(cells.take(left + 1), np.zeros(len(left)), Ends(-at.radius[left], at.radius[left]))),
     ):
         wanted[k] = np.maximum(wanted[k], np.where(np.isfinite(least), WIDER * least, 0.0))
     changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
@@ -268,8 +270,7 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
 def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> float | None:
     """Cell and parameter of a point that lies in the tube; None where it lies in none.
 
-    With c . (u - p(s - e)) > 0 > c . (u - p(s + e)) it belongs to a parameter in between, and is to be within the
-    radius of all that the cubic is there. Arclengths of cells are shares of those of a step between two of `knots`,
+    Arclengths of cells are shares of those of a step between two of `knots`,
     which tell little more than which step it is.
     """
     s = event.arclength
@@ -279,11 +280,10 @@ def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> flo
         k = int(_later(knots, np.array(s)))
         near |= (knots[k - 1] <= cells.place[:, 0]) & (cells.place[:, 1] <= knots[k])
     for k in np.flatnonzero(near).tolist():
-        cell = cells.take(np.array([k]))
+        cell = cells.take(slice(k, k + 1))
         t = _parameter(cell, event.u)
-        for width in (1e-9, 1e-6, 0.5 * OVERHANG):
-            if -OVERHANG + width <= t <= 1.0 + OVERHANG - width and _inside(cell, t, width, event.u):
-                return float(k + t)
+        if (reach(cell, t, thin(event.u) - at_node(cell, t).over[0]) <= cell.radius).all():
+            return float(k + t[0])
     return None
 
 
@@ -306,31 +306,16 @@ def _on_curve(engine: Engine, cells: Cells, path: Path, places: list[float | Non
     return [None if k in lost else place for k, place in enumerate(places)]
 
 
-def _parameter(cell: Cells, u: Array) -> float:
-    """Newton's method for c . (p(t) - u) = 0, in floats."""
-    c = cell.chart[0]
-    cubic = HermiteSegment(cell.begin[0], cell.end[0], cell.slope_begin[0], cell.slope_end[0])
+def _parameter(cell: Cells, u: Array) -> Array:
+    """About where c . (p(t) - u) = 0 in a cell, by Newton's method."""
+    chord = cell.end - cell.begin
+    bend = 3.0 * chord - 2.0 * cell.slope_begin - cell.slope_end
+    rows = cell.begin - u, cell.slope_begin, bend, cell.slope_begin + cell.slope_end - 2.0 * chord
+    a, b, c, d = (float(cell.chart[0] @ row[0]) for row in rows)
     t = 0.5
-    for _ in range(30):
-        slope, before = float(c @ cubic.derivative(t)), t
-        if not slope > 0.0:
-            return np.nan
-        t = min(max(t + float(c @ (u - cubic.at(t))) / slope, -OVERHANG), 1.0 + OVERHANG)
-        if abs(t - before) < 1e-12:
-            break
-    return t
-
-
-def _inside(cell: Cells, t: float, width: float, u: Array) -> bool:
-    signs = []
-    for s, side in ((t - width, 1.0), (t + width, -1.0)):
-        q0 = expansion(Slabs(np.zeros(1, int), np.array([s]), np.zeros(1), cell)).q[0]
-        lo, hi = along(cell.chart, thin(u[None]) - q0)
-        signs.append(lo[0] > 0.0 if side > 0.0 else hi[0] < 0.0)
-    room = Slabs(np.zeros(1, int), np.array([t]), np.array([width]), cell)
-    x = room.offset[:, None]
-    off = thin(u[None]) - expansion(room).over(Ends(-x, x))[0]
-    return bool(all(signs) and (off.magnitude() <= cell.radius).all())
+    for _ in range(PARAMETER_STEPS):
+        t = min(max(t - (a + t * (b + t * (c + t * d))) / (b + t * (2.0 * c + 3.0 * t * d)), 0.0), 1.0)
+    return np.array([t])
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:
