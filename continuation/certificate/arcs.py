@@ -226,9 +226,7 @@ def _joined(homotopy: Any, before: Arc, after: Arc | None, kink: LocatedEvent) -
     return why
 
 
-def _rate(
-    engine: Engine, cell: Cells, s: float, off: Array, switches: ByIntervals | None = None, j: int = 0
-) -> int:
+def _rate(engine: Engine, cell: Cells, s: float, off: Array, switches: ByIntervals | None = None, j: int = 0) -> int:
     """The sign with which the parameter moves along the curve at a point within `off` of a node; 0 where it has none.
 
     Along the curve is where the cell's chart advances, or where switch j grows.

@@ -12,6 +12,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined, sizes
+from continuation.certificate.closing import made
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
 from continuation.certificate.krawczyk import engine_of
@@ -29,7 +30,7 @@ from continuation.homotopy import SupportsPieces
 from continuation.linear.threads import one_thread
 from continuation.metric import Automatic, Metric, norm
 from continuation.numbers.ends import Mask
-from continuation.path import Path, Step
+from continuation.path import Path
 from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -195,7 +196,7 @@ class Search:
         out: list[Node] = []
         for k, step in enumerate(self.path.steps):
             tangent = step.tangent
-            if not np.isfinite(tangent).all() or _made(step):
+            if not np.isfinite(tangent).all() or made(step):
                 tangent = self._tangent(evaluator, step.u, weights[k], out[-1].u if out else None)
             out.append(Node(step.u, tangent, weights[k], step.arclength))
         return out
@@ -203,7 +204,7 @@ class Search:
     def _to_end(self, solver: PathSolver, nodes: list[Node]) -> list[Node]:
         """The nodes, with others in place of an end that was found otherwise than by a step, unless a tube holds it."""
         before, end = nodes[-2:]
-        if not _made(self.path.steps[-1]):
+        if not made(self.path.steps[-1]):
             return nodes
         regular = self._regular(_cell(before, end))
         if regular and search(self.engine, _cell(before, end)).proved.all():
@@ -261,11 +262,6 @@ def _bulges(a: Node, b: Node) -> Iterator[Array]:
     if all(lengths):
         first, last = (slope / length for slope, length in zip(slopes, lengths))
         yield 0.125 * norm(a.weights, b.u - a.u) * (first - last)
-
-
-def _made(step: Step) -> bool:
-    """Whether a point was not stepped to, but is an end that was found otherwise: its tangent is a chord."""
-    return step.index > 0 and step.segment is None and step.corrector_iterations == 0
 
 
 def _cell(a: Node, b: Node) -> Cells:

@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Index, at_node, joined, sizes
-from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, at_target, certificate_of, series_of
+from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import RANGE, Piece, Turn, located, pieces, turns
+from continuation.certificate.folds import RANGE, Piece, located, pieces, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
 from continuation.numbers.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
-from continuation.status import Kind
+from continuation.status import Kind, Status
 
 NOT_A_NODE = "a point of the path is no node of the proof"
 OFF_CURVE = "a point of the path does not lie on the curve"
@@ -80,20 +80,18 @@ def verified(
     ]
     gaps += _order(cells, path, ends.take(slice(0, 1)))
     gaps += _beside(engine, cells, at, ends.take(slice(0, 1)), path)
-    there, before = at_target(cells, ends, path), float(cells.place[-1, 1])
-    certificate = "" if there else certificate_of(cells, at, path, homotopy)
-    series = "" if certificate else series_of(cells, at, path)
-    if certificate or series:
-        gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
+    end, radius, missing = ending(cells, at, ends, path, homotopy)
+    before, last = float(cells.place[-1, 1]), float(path.arclength[-1])
+    if end and radius is None and path.status is Status.REACHED_TARGET:
+        # What is said of the end takes the place of the rest.
+        gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END)]
     places = [_place(cells, event, path.arclength) for event in path.events]
-    places = _on_curve(engine, cells, path, places)
+    _leave_out(engine, cells, path, places)
     told = _between_nodes(known or pieces(engine, cells), cells, ends, at)
     turning, more = _turning(engine, cells, told, path, places)
     gaps += more + _events(path, places)
-    end, radius, missing = (certificate, None, []) if certificate else at_end(at, ends, path, there)
-    if series:
-        end, missing = series, [Gap(before, float(path.arclength[-1]), LIMIT)]
-    gaps += missing
+    if missing:
+        gaps.append(Gap(before if missing == LIMIT else last, last, missing))
     return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
 
@@ -153,16 +151,15 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
     """That the points of the path are nodes, in order, and that nothing is between cells; and the start."""
     gaps = []
     arclength, points = path.arclength, path.u
+    places, nodes_ = cells.place.ravel(), np.stack([cells.begin, cells.end], axis=1).reshape(-1, points.shape[1])
     k = 0
     for j, (s, u) in enumerate(zip(arclength.tolist(), points)):
-        while k < len(cells) and not (cells.place[k, 0] == s and (cells.begin[k] == u).all()):
-            if cells.place[k, 1] == s and (cells.end[k] == u).all():
-                break
+        while k < len(places) and not (places[k] == s and (nodes_[k] == u).all()):
             k += 1
-        if k == len(cells):
+        if k == len(places):
             before = float(arclength[max(j - 1, 0)])
-            at_end = bool(j == len(points) - 1 and before < cells.place[-1, 1])
-            gaps.append(Gap(float(cells.place[-1, 1]) if at_end else before, float(s), NOT_A_NODE))
+            at_end = j == len(points) - 1 and before < places[-1]
+            gaps.append(Gap(float(places[-1]) if at_end else before, float(s), NOT_A_NODE))
             break
     for (_, before), (after, _) in pairwise(cells.place.tolist()):
         if before != after:
@@ -221,50 +218,36 @@ def _turning(
     """Ranges of arclength with one turning point each, and where they are not those of the path."""
     understood, unknown = turns(found)
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
-    turning = {id(event) for event in path.turning_points}
-    listed = [(p, event.arclength) for p, event in zip(places, path.events) if id(event) in turning]
-    understood = located(engine, cells, understood, [place for place, _ in listed if place is not None])
-    wide = [turn for turn in understood if turn.hi - turn.lo > RANGE and _counts(turn, listed)]
-    gaps += [Gap(*_range(cells, turn.lo, turn.hi), NOWHERE) for turn in wide]
-    gaps += _unlike(cells, understood, listed, "turning point")
-    return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
-
-
-def _unlike(
-    cells: Cells, found: list[Turn], listed: list[tuple[float | None, float]], name: str, shared: bool = False
-) -> list[Gap]:
-    """Where what was found is not what is listed."""
-    gaps: list[Gap] = []
-    used: set[int] = set()
-    for turn in found:
-        slack = 2.0 * OVERHANG
-        inside = [
+    listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.kind is Kind.TURNING_POINT]
+    ranges, taken, slack = [], set(), 2.0 * OVERHANG
+    for turn in located(engine, cells, understood, [place for place, _ in listed if place is not None]):
+        inside = {
             k
             for k, (place, _) in enumerate(listed)
-            if place is not None and (shared or k not in used) and turn.lo - slack <= place <= turn.hi + slack
-        ]
-        most = sum(other.lo <= turn.hi and turn.lo <= other.hi for other in found) if shared else 1
-        if (turn.certain and not inside) or len(inside) > most:
-            reason = f"a {name} that the path does not list" if not inside else f"more {name}s are listed"
-            gaps.append(Gap(*_range(cells, turn.lo, turn.hi), reason))
-        used.update(inside)
-    gaps += [Gap(s, s, f"a {name} is listed where there is none") for k, (_, s) in enumerate(listed) if k not in used]
-    return gaps
-
-
-def _counts(turn: Turn, listed: list[tuple[float | None, float]]) -> bool:
-    slack = 2.0 * OVERHANG
-    return turn.certain or any(p is not None and turn.lo - slack <= p <= turn.hi + slack for p, _ in listed)
+            if place is not None and k not in taken and turn.lo - slack <= place <= turn.hi + slack
+        }
+        if not turn.certain and not inside:
+            continue  # beyond an end of the path
+        where = _range(cells, turn.lo, turn.hi)
+        ranges.append(where)
+        taken |= inside
+        if turn.hi - turn.lo > RANGE:
+            gaps.append(Gap(*where, NOWHERE))
+        if len(inside) != 1:
+            more = "more turning points are listed" if inside else "a turning point that the path does not list"
+            gaps.append(Gap(*where, more))
+    gaps += [
+        Gap(s, s, "a turning point is listed where there is none") for k, (_, s) in enumerate(listed) if k not in taken
+    ]
+    return tuple(ranges), gaps
 
 
 def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
     """Places in cells as arclengths."""
-    out = []
-    for place in (lo, hi):
-        k = min(max(int(place), 0), len(cells) - 1)
-        begin, end = cells.place[k].tolist()
-        out.append(begin + min(max(place - k, 0.0), 1.0) * (end - begin))
-    return out[0], out[1]
+    k = np.clip(np.array([lo, hi]).astype(int), 0, len(cells) - 1)
+    begin, end = cells.place[k].T
+    first, last = (begin + np.clip([lo, hi] - k, 0.0, 1.0) * (end - begin)).tolist()
+    return first, last
 
 
 def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> float | None:
@@ -292,18 +275,16 @@ def _later(knots: Array, s: Array) -> NDArray[np.intp]:
     return np.clip(np.searchsorted(knots, s), 1, len(knots) - 1)
 
 
-def _on_curve(engine: Engine, cells: Cells, path: Path, places: list[float | None]) -> list[float | None]:
-    """The places of events next to which there is a point of the curve; None for others, in a wide tube."""
-    known = [k for k, place in enumerate(places) if place is not None]
+def _leave_out(engine: Engine, cells: Cells, path: Path, places: list[float | None]) -> None:
+    """Make None of the places of events next to which there is no point of the curve, in a wide tube."""
+    known = {k: place for k, place in enumerate(places) if place is not None}
     if not known:
-        return places
-    owner = np.clip(np.array([int(places[k] or 0.0) for k in known]), 0, len(cells) - 1)
-    own, u = cells.take(owner), np.array([path.events[k].u for k in known])
-    at = nodes(engine, evolve(own, begin=u), np.zeros(len(known)))
-    allowed = _allowed(own, u, np.array([path.events[k].arclength for k in known]), path)
-    near = np.asarray((at.radius <= allowed).all(axis=1))
-    lost = {k for k, good in zip(known, near) if not good}
-    return [None if k in lost else place for k, place in enumerate(places)]
+        return
+    own = cells.take(np.clip(np.array([*known.values()]).astype(int), 0, len(cells) - 1))
+    u, s = (np.array([getattr(path.events[k], name) for k in known]) for name in ("u", "arclength"))
+    near = nodes(engine, evolve(own, begin=u), np.zeros(len(u))).radius <= _allowed(own, u, s, path)
+    for k in np.flatnonzero(~near.all(axis=1)):
+        places[[*known][k]] = None
 
 
 def _parameter(cell: Cells, u: Array) -> Array:
