@@ -187,6 +187,12 @@ class Slabs:
         x = self.offset[:, None]
         return evaluated(self.cubic, Ends(-x, x))
 
+    @cached_property
+    def velocity(self) -> Ends:
+        """The range of p' alone."""
+        x = self.offset[:, None]
+        return rate(self.cubic, Ends(-x, x))
+
     def box(self, radius: Array) -> Ends:
         """What is within `radius` of the cubics."""
         return self.over[0] + Ends(-radius, radius)
@@ -232,14 +238,19 @@ def evaluated(cubic: Ends, x: Ends) -> tuple[Ends, Ends, Ends]:
     """p, p' and p''/2 of cubics, shape (slabs, 4, m), over offsets x of shape (slabs, 1)."""
     q0, q1, q2, q3 = (cubic[:, k] for k in range(4))
     by_last = x * q3
-    second = q2 + by_last + by_last
-    third = second + by_last
-    return q0 + x * (q1 + x * (q2 + by_last)), q1 + x * (q2 + third), third
+    second = q2 + by_last + by_last + by_last
+    return q0 + x * (q1 + x * (q2 + by_last)), rate(cubic, x), second
+
+
+def rate(cubic: Ends, x: Ends) -> Ends:
+    """Their derivative alone."""
+    q2, by_last = cubic[:, 2], x * cubic[:, 3]
+    return cubic[:, 1] + x * (q2 + q2 + by_last + by_last + by_last)
 
 
 def advance(slabs: Slabs) -> Array:
     """A lower bound of c . p'(s) over each slab, shape (slabs,)."""
-    bound, _ = along(slabs.cells.chart, slabs.over[1])
+    bound, _ = along(slabs.cells.chart, slabs.velocity)
     return bound
 
 

@@ -184,9 +184,11 @@ class Search:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
         if not len(cells):
             return np.zeros(0, bool), []
-        by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
-        for piece in pieces(self.engine, cells, known, last):
-            by_cell[piece.cell].append(piece)
+        by_cell: list[list[Piece]] = known
+        if not known:
+            by_cell = [[] for _ in range(len(cells))]
+            for piece in pieces(self.engine, cells, last):
+                by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]
 

@@ -131,7 +131,7 @@ class ByIntervals:
         Y, R = self._inverse(slabs, slabs.cubic[:, 0] + Ends(-radius, radius))
         left = Y[:, :, :-1]
         with np.errstate(all="ignore"):
-            W = self._change(slabs.box(radius), slabs.over[1], sizes(slabs.cells))
+            W = self._change(slabs.box(radius), slabs.velocity, sizes(slabs.cells))
             middle = W.middle()
             E = np.matmul(left, middle)
             size_E = np.abs(E)

@@ -122,7 +122,7 @@ def reach(cells: Cells, s: Array, off: Ends) -> Array:
     off : Ends, shape (cells, N + 1)
     """
     count = len(cells)
-    speed = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells).over[1]
+    speed = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells).velocity
     with np.errstate(all="ignore"):
         least, (lo, hi) = along(cells.chart, speed)[0], along(cells.chart, off)
         away = np.where(least > 0.0, np.maximum(np.abs(lo), np.abs(hi)) / least, np.nan) * (1.0 + 4.0 * EPS)

@@ -213,7 +213,7 @@ class Polynomial:
         the errors that x times it has in I - Y(s) G'.
         """
         if self.E is None or self.left is None:
-            return self._pushed(self.derivative.products(self.slabs.over[1].magnitude(), radius))
+            return self._pushed(self.derivative.products(self.slabs.velocity.magnitude(), radius))
         unit, errors = self._errors
         t, r = self.slabs.offset[:, None], radius / self.d
         third, by_F, by_H = np.split(image_of(self.left, r), 3, axis=1)
@@ -250,7 +250,7 @@ class Polynomial:
         """See `Judged.tangent`: u'(s)."""
         for terms in (0, TERMS):
             room = self._drift(radius, tube, terms)
-            found = self.slabs.over[1] + Ends(-room, room)
+            found = self.slabs.velocity + Ends(-room, room)
             if ((found.lo[:, -1] > 0.0) | (found.hi[:, -1] < 0.0)).all():
                 break
         return found
