@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -238,32 +237,17 @@ class Search:
 
     def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
         """A point of the path between two nodes, or why there is none."""
-        chart, lost = _cell(a, b).chart[0], ""
-        for bulge in _bulges(a, b):
-            guess = 0.5 * (a.u + b.u) + bulge
-            try:
-                near = linearize(solver.evaluator, guess, a.weights, chart)
-                found: Linearization = solver.project_and_linearize(near, guess, chart)
-            except EvaluationError as error:
-                lost = str(error)
-            else:
-                return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
-        return f"no point of the path was found between its ends ({lost})"
-
-
-def _bulges(a: Node, b: Node) -> Iterator[Array]:
-    """How far the middle of the cubic between two nodes is from that of the chord.
-
-    Where a tangent is nearly across the chord its slope in the chart is out of all proportion, and the corrector may
-    not come back from there: the second slopes are as long as the chord.
-    """
-    cell = _cell(a, b)
-    yield 0.125 * (cell.slope_begin[0] - cell.slope_end[0])
-    slopes = cell.slope_begin[0], cell.slope_end[0]
-    lengths = [norm(a.weights, slope) for slope in slopes]
-    if all(lengths):
-        first, last = (slope / length for slope, length in zip(slopes, lengths))
-        yield 0.125 * norm(a.weights, b.u - a.u) * (first - last)
+        cell = _cell(a, b)
+        # The cubic's middle, but for slopes as long as the chord: where a tangent is nearly across the chord its slope
+        # in the chart is out of all proportion, and the corrector may not come back from there.
+        first, last = (x[0] / (norm(a.weights, x[0]) or 1.0) for x in (cell.slope_begin, cell.slope_end))
+        guess = 0.5 * (a.u + b.u) + 0.125 * norm(a.weights, b.u - a.u) * (first - last)
+        try:
+            near = linearize(solver.evaluator, guess, a.weights, cell.chart[0])
+            found: Linearization = solver.project_and_linearize(near, guess, cell.chart[0])
+        except EvaluationError as error:
+            return f"no point of the path was found between its ends ({error})"
+        return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
 
 
 def _cell(a: Node, b: Node) -> Cells:

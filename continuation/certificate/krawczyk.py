@@ -27,8 +27,8 @@ from continuation.numbers.boxes import along_curve, derivatives, with_gradient
 from continuation.numbers.ends import Ends, accumulated, moved, thin
 from continuation.numbers.truncated import wrap
 
-RESIDUAL_NUMBERS = 2_000_000
-"""Numbers of one array while many slabs go through a residual together: 16 MB."""
+RESIDUAL_NUMBERS = 500_000
+"""Numbers of one array while many slabs go through a residual together: 4 MB, and 64 where each is cut into `most`."""
 
 DIRECTIONS_THAT_PAY = 16
 """Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
@@ -100,7 +100,7 @@ class ByIntervals:
 
     def together(self, m: int) -> int:
         """As their boxes go through the residual together."""
-        return max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)) // self.most)
+        return max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
 
     def bent(self, box: Ends, t: Ends) -> Ends | None:
         """See `Engine`."""

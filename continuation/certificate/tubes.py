@@ -31,9 +31,6 @@ WIDE = 10.0
 CELL_TESTS, RADII = 6, 12
 """Tests of a cell, and radii that are tried with the bounds of one of them."""
 
-SOON, HOPELESS = 3, 1.3
-"""After so many radii their shape has settled; where the image is then wider than they are by so much, it stays so."""
-
 CONTRACTING = 0.6
 """A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
 power that is the engine's order; at half of it a test holds at once."""
@@ -103,12 +100,10 @@ def search(engine: Engine, cells: Cells) -> Found:
 
 def _search(engine: Engine, cells: Cells) -> Found:
     count, scale = len(cells), sizes(cells, cells.radius)
-    ends = Nodes.unknown(count, scale.shape[1])
-    radius = np.zeros_like(scale)
-    slabs = cells.slabs.copy()
+    ends, slabs = Nodes.unknown(count, scale.shape[1]), cells.slabs.copy()
+    radius = FIRST_RADII * scale / (2.0 * slabs[:, None])
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[Piece]] = [[] for _ in range(count)]
-    radius[:] = FIRST_RADII * scale / (2.0 * slabs[:, None])
     pending = np.arange(count)
     for _ in range(CELL_TESTS):
         if not len(pending):
@@ -126,24 +121,17 @@ def _search(engine: Engine, cells: Cells) -> Found:
                 if good[piece.cell]:
                     known[pending[piece.cell]].append(piece)
             ends.put(pending[good], _ends(parts, judged, tube).take(good))
-        undefined[pending] = ~np.isfinite(off)
-        with np.errstate(all="ignore"):
-            radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
-        proved[pending] = good
+        proved[pending], undefined[pending] = good, ~np.isfinite(off)
         # Bounds that hold for all radii are the same again; the others are not.
         more = ~good & (engine.exact | ~(kappa < CONTRACTING))
-        if engine.exact and more.any():
-            kappa, wide = _without_tube(parts, judged, tried, wanted)
-            slabs[pending[more & (wide | (kappa < CONTRACTING))]] = engine.most + 1
         with np.errstate(all="ignore"):
-            least = np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0) ** (1.0 / engine.order))
-            factor = np.where(np.isfinite(kappa), least, 4.0)
-        grown = np.where(more, np.maximum(2, factor) * slabs[pending], slabs[pending]).astype(np.intp)
-        slabs[pending] = np.minimum(grown, engine.most + 1)
-        again = more | ~np.asarray(np.isfinite(wanted).all(axis=1))
-        radius[pending] = np.where(
-            (again & ~good)[:, None], FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
-        )
+            factor = np.ceil(np.clip(2.0 * kappa / CONTRACTING, 2.0**engine.order, 8.0) ** (1.0 / engine.order))
+            cut = np.where(more, np.where(np.isfinite(kappa), factor, 4.0), 1.0) * slabs[pending]
+            wider = np.where(good[:, None], wanted, INFLATION * wanted)
+        slabs[pending] = np.minimum(cut, engine.most + 1).astype(np.intp)
+        first = FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None])
+        again = ~good & (more | ~np.isfinite(wanted).all(axis=1))
+        radius[pending] = np.where(again[:, None], first, wider)
         pending = pending[~good & (slabs[pending] <= engine.most)]
     return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known, ends)
 
@@ -166,37 +154,15 @@ def _fixed_point(
         radius = np.minimum(np.maximum(2.0 * off, least), bounded)
         radius = np.where(np.isfinite(radius), radius, cells.radius)
         kappa = np.full(count, np.inf)
-        for k in range(RADII):
+        for _ in range(RADII):
             image = _largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, count)
             kappa = (image / radius).max(axis=1)
             total = off + image
             inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
-            hopeless = ~(radius <= WIDE * scale).all(axis=1) | (k >= SOON) & (kappa > HOPELESS)
-            if (inside | hopeless).all():
+            if (inside | ~(radius <= WIDE * scale).all(axis=1)).all():
                 break
             radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
         return radius, kappa, (off / scale).max(axis=1)
-
-
-def _without_tube(slabs: Slabs, judged: Judged, cells: Cells, radius: Array) -> tuple[Array, Mask]:
-    """The contraction along the cubics alone, and whether tubes are too wide however short the slabs are; a cell.
-
-    What the width of a tube adds to the derivative is not less over a shorter slab, nor is the misfit: where their
-    equation alone has no fixed point, more slabs are in vain.
-    """
-    count, owner = len(cells), slabs.owner
-    with np.errstate(all="ignore"):
-        kappa = _largest(judged.spread(radius[owner], 0.0 * radius[owner]) / radius[owner], owner, count).max(axis=1)
-        off = _largest(judged.misfit, owner, count)
-        x, narrow = 2.0 * off + np.finfo(float).tiny, np.zeros(count, bool)
-        for _ in range(RADII):
-            own = x[owner]
-            image = off + _largest(judged.spread(own, own) - judged.spread(own, 0.0 * own), owner, count)
-            narrow |= np.asarray((image < x).all(axis=1))
-            if narrow.all():
-                break
-            x = np.where(narrow[:, None], x, INFLATION * image)
-        return kappa, ~narrow
 
 
 def _largest(values: Array, owner: Index, count: int) -> Array:
