@@ -218,7 +218,7 @@ def _turning(
     """Ranges of arclength with one turning point each, and where they are not those of the path."""
     understood, unknown = turns(found)
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
-    listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.kind is Kind.TURNING_POINT]
+    listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.turns]
     ranges, taken, slack = [], set(), 2.0 * OVERHANG
     for turn in located(engine, cells, understood, [place for place, _ in listed if place is not None]):
         inside = {
