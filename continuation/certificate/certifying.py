@@ -193,13 +193,16 @@ class Search:
 
     def _nodes(self, evaluator: Evaluator) -> list[Node]:
         """The stored points; tangents that are not stored, or are those of a chord, computed."""
-        weights = _weights(self.homotopy, self.path)
-        out: list[Node] = []
-        for k, step in enumerate(self.path.steps):
+        u, out = self.path.u, list[Node]()
+        for k, (step, weights) in enumerate(zip(self.path.steps, _weights(self.homotopy, self.path))):
             tangent = step.tangent
             if not np.isfinite(tangent).all() or made(step):
-                tangent = self._tangent(evaluator, step.u, weights[k], out[-1].u if out else None)
-            out.append(Node(step.u, tangent, weights[k], step.arclength))
+                border = weights * (u[k] - u[k - 1] if k else u[1] - u[0])
+                try:
+                    tangent = linearize(evaluator, step.u, weights, border).tangent
+                except EvaluationError:
+                    tangent = np.full_like(step.u, np.nan)
+            out.append(Node(step.u, tangent, weights, step.arclength))
         return out
 
     def _to_end(self, solver: PathSolver, nodes: list[Node]) -> list[Node]:
@@ -207,8 +210,10 @@ class Search:
         before, end = nodes[-2:]
         if not made(self.path.steps[-1]):
             return nodes
-        regular = self._regular(_cell(before, end))
-        if regular and search(self.engine, _cell(before, end)).proved.all():
+        cell = _cell(before, end)
+        # Whether the end can be proved to be a point of the curve: where it cannot, no tube reaches it.
+        regular = bool(ends_of(self.engine, cell.with_tubes(sizes(cell), cell.slabs), np.ones(1)).proved.all())
+        if regular and search(self.engine, cell).proved.all():
             return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
@@ -216,24 +221,11 @@ class Search:
             return nodes
         before = evolve(before, weights=_by_extent(np.ptp(self.path.u, axis=0)))
         found = tail(solver, before, end, near)
-        if not found:
-            return nodes
         for k, a in enumerate(found if regular else []):
             if search(self.engine, _cell(a, end)).proved.all():
                 found = [*found[: k + 1], end]
                 break
-        return [*nodes[:-2], before, *found]
-
-    def _regular(self, cell: Cells) -> bool:
-        """Whether the end of a cell can be proved to be a point of the curve: where it cannot, no tube reaches it."""
-        return bool(ends_of(self.engine, cell.with_tubes(sizes(cell), cell.slabs), np.ones(1)).proved.all())
-
-    def _tangent(self, evaluator: Evaluator, u: Array, weights: Array, before: Array | None) -> Array:
-        border = weights * (u - before) if before is not None else weights * (self.path.steps[1].u - u)
-        try:
-            return linearize(evaluator, u, weights, border).tangent
-        except EvaluationError:
-            return np.full_like(u, np.nan)
+        return [*nodes[:-2], before, *found] if found else nodes
 
     def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
         """A point of the path between two nodes, or why there is none."""

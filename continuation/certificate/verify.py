@@ -30,9 +30,6 @@ POINT_DISTANCE = 1e-4
 """How far a point or an event may be from the curve, in sizes of its step: located ones are off by their tolerance, of
 1e-6."""
 
-LINK_TRIALS = 3
-"""Looks at the links: with what tubes tell of their ends, with tests of these alone, and with wider tubes."""
-
 PARAMETER_STEPS = 30
 """Of Newton's method from the middle of a cell, along which its chart advances."""
 
@@ -113,16 +110,13 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
     every = nodes(engine, joined([cells.take(ask), first, last]), s)
     at.put(ask, every.take(slice(0, -2)))
     joints = linked(cells.take(slice(None, -1)), at.take(slice(0, -1)), cells.take(slice(1, None)))
-    asked = ask
-    for _ in range(LINK_TRIALS - 1):
+    # What the bounds of a tube tell of its end may be wide: that alone is looked at, and then with wider tubes.
+    for wider in (False, True):
         left = np.flatnonzero(~joints)
         if not len(left):
             break
-        ask = np.append(~joints, False) & ~asked
-        asked = asked | ask
-        if not ask.any():
-            cells = _widened(engine, cells, at, left)
-            ask = ~at.proved
+        cells = _widened(engine, cells, at, left) if wider else cells
+        ask = ~at.proved if wider else np.append(~joints, False)
         if ask.any():
             at.put(ask, nodes(engine, cells.take(ask), np.ones(ask.sum())))
         # Links that hold do so between wider tubes as well.
@@ -132,12 +126,10 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
 
 def _widened(engine: Engine, cells: Cells, at: Nodes, left: Index) -> Cells:
     """The cells, those to the left and to the right of links that fail with wider tubes, where these are proved."""
-    wanted = cells.radius.copy()
-    for k, least in (
-        (left, at.radius[left]),
-        (left + 1, reach(cells.take(left + 1), np.zeros(len(left)), Ends(-at.radius[left], at.radius[left]))),
-    ):
-        wanted[k] = np.maximum(wanted[k], np.where(np.isfinite(least), WIDER * least, 0.0))
+    wanted, off = cells.radius.copy(), at.radius[left]
+    wanted[left] = np.fmax(wanted[left], WIDER * off)
+    least = reach(cells.take(left + 1), np.zeros(len(left)), Ends(-off, off))
+    wanted[left + 1] = np.fmax(wanted[left + 1], WIDER * least)
     changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
     if not len(changed):
         return cells
