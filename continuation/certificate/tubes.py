@@ -9,7 +9,7 @@ from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, joined, sizes, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
 from continuation.certificate.folds import Piece, told
-from continuation.certificate.links import Nodes
+from continuation.certificate.links import INFLATION, Nodes, largest, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
@@ -22,14 +22,11 @@ STILL_ULPS = 1024.0
 FIRST_RADII = 0.1
 """The radii that a test begins with, in half widths of a slab: they widen the derivatives by so much."""
 
-INFLATION = 1.1
-"""How much wider than what the test gives the next radii are: a fixed point is approached from above."""
-
 WIDE = 10.0
 """Radii of so many sizes of the cell are given up: they grow from one trial to the next."""
 
-CELL_TESTS, RADII = 6, 12
-"""Tests of a cell, and radii that are tried with the bounds of one of them."""
+CELL_TESTS = 6
+"""Tests of a cell, with more slabs or other radii each time."""
 
 CONTRACTING = 0.6
 """A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
@@ -113,7 +110,8 @@ def _search(engine: Engine, cells: Cells) -> Found:
         judged = engine.judge(parts, tried.radius[parts.owner])
         # Exact bounds hold for all radii, others for those that they were made with.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
-        wanted, kappa, off = _fixed_point(parts, judged, tried, scale[pending], bounded)
+        least = LEAST_RADIUS * scale[pending] + STILL_ULPS * EPS * np.maximum(np.abs(tried.begin), np.abs(tried.end))
+        wanted, kappa, _ = settled(judged, parts.owner, least, bounded, WIDE * scale[pending])
         good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             tube = wanted[parts.owner]
@@ -121,7 +119,8 @@ def _search(engine: Engine, cells: Cells) -> Found:
                 if good[piece.cell]:
                     known[pending[piece.cell]].append(piece)
             ends.put(pending[good], _ends(parts, judged, tube).take(good))
-        proved[pending], undefined[pending] = good, ~np.isfinite(off)
+        proved[pending] = good
+        undefined[pending] = ~np.isfinite(largest(judged.misfit, parts.owner, len(tried))).all(axis=1)
         # Bounds that hold for all radii are the same again; the others are not.
         more = ~good & (engine.exact | ~(kappa < CONTRACTING))
         with np.errstate(all="ignore"):
@@ -141,35 +140,6 @@ def _ends(slabs: Slabs, judged: Judged, tube: Array) -> Nodes:
     last = np.flatnonzero(np.append(np.diff(slabs.owner) != 0, True))
     found = judged.closed(tube)
     return Nodes.unknown(len(last), tube.shape[1]) if found is None else Nodes(found[0][last], found[1][last])
-
-
-def _fixed_point(
-    slabs: Slabs, judged: Judged, cells: Cells, scale: Array, bounded: Array
-) -> tuple[Array, Array, Array]:
-    """Radii a little above what the test gives back, the bound of the contraction, and the misfit in sizes; a cell."""
-    count, owner = len(cells), slabs.owner
-    least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
-    with np.errstate(all="ignore"):
-        off = _largest(judged.misfit, owner, count)
-        radius = np.minimum(np.maximum(2.0 * off, least), bounded)
-        radius = np.where(np.isfinite(radius), radius, cells.radius)
-        kappa = np.full(count, np.inf)
-        for _ in range(RADII):
-            image = _largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, count)
-            kappa = (image / radius).max(axis=1)
-            total = off + image
-            inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
-            if (inside | ~(radius <= WIDE * scale).all(axis=1)).all():
-                break
-            radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
-        return radius, kappa, (off / scale).max(axis=1)
-
-
-def _largest(values: Array, owner: Index, count: int) -> Array:
-    """The largest of each cell's slabs; nan where one is."""
-    out = np.zeros((count, values.shape[1]))
-    np.maximum.at(out, owner, values)
-    return out
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:

@@ -143,7 +143,7 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
     """That the points of the path are nodes, in order, and that nothing is between cells; and the start."""
     gaps = []
     arclength, points = path.arclength, path.u
-    places, nodes_ = cells.place.ravel(), np.stack([cells.begin, cells.end], axis=1).reshape(-1, points.shape[1])
+    places, nodes_ = cells.place.ravel().tolist(), np.stack([cells.begin, cells.end], axis=1).reshape(-1, points.shape[1])
     k = 0
     for j, (s, u) in enumerate(zip(arclength.tolist(), points)):
         while k < len(places) and not (places[k] == s and (nodes_[k] == u).all()):
@@ -151,7 +151,7 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
         if k == len(places):
             before = float(arclength[max(j - 1, 0)])
             at_end = j == len(points) - 1 and before < places[-1]
-            gaps.append(Gap(float(places[-1]) if at_end else before, float(s), NOT_A_NODE))
+            gaps.append(Gap(places[-1] if at_end else before, s, NOT_A_NODE))
             break
     for (_, before), (after, _) in pairwise(cells.place.tolist()):
         if before != after:
