@@ -143,10 +143,11 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
     """That the points of the path are nodes, in order, and that nothing is between cells; and the start."""
     gaps = []
     arclength, points = path.arclength, path.u
-    places, nodes_ = cells.place.ravel().tolist(), np.stack([cells.begin, cells.end], axis=1).reshape(-1, points.shape[1])
+    places = cells.place.ravel().tolist()
+    corners = np.stack([cells.begin, cells.end], axis=1).reshape(-1, points.shape[1])
     k = 0
     for j, (s, u) in enumerate(zip(arclength.tolist(), points)):
-        while k < len(places) and not (places[k] == s and (nodes_[k] == u).all()):
+        while k < len(places) and not (places[k] == s and (corners[k] == u).all()):
             k += 1
         if k == len(places):
             before = float(arclength[max(j - 1, 0)])
