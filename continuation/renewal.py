@@ -11,6 +11,7 @@ from contextlib import nullcontext
 from os import PathLike
 from typing import Any, Protocol, Unpack, runtime_checkable
 
+import numpy as np
 from attrs import evolve, field, frozen
 
 from continuation.archive.atomic import as_file
@@ -18,7 +19,7 @@ from continuation.archive.writer import PathLog
 from continuation.arguments.checks import complain, instance_with
 from continuation.arrays import Array
 from continuation.budget import Budget
-from continuation.path import Path
+from continuation.path import LocatedEvent, Path, Step
 from continuation.path.parts import shifted
 from continuation.status import Status
 from continuation.step.options import Options, check_names, checked, documented
@@ -87,11 +88,12 @@ class Followed:
         ----------
         event : LocatedEvent or Step
         """
-        u = getattr(event, "u", None)
-        for homotopy, path in zip(self.homotopies, self.paths):
-            if any(u is step.u for step in path.steps) or any(u is known.u for known in path.events):
-                return homotopy
-        raise complain(ValueError, "event", "an event or a step of this path", event)
+        number = event.index if isinstance(event, Step) else event.step if isinstance(event, LocatedEvent) else -1
+        if not 0 <= number < len(self.path):
+            raise complain(ValueError, "event", "an event or a step of this path", event)
+        # A part ends with the point from which the next one goes on, in unknowns of its own.
+        ends = np.cumsum([len(path) - 1 for path in self.paths])
+        return self.homotopies[int(np.searchsorted(ends, number))]
 
 
 @documented

@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from attrs import define, field, frozen
+from attrs import astuple, define, field, frozen
 from attrs.validators import optional
 from scipy.optimize import brentq
 
@@ -93,7 +93,7 @@ class HopfPoint:
             Of the homotopy.
         """
         evaluator.keeping = True
-        return BoundHopf(self, evaluator)
+        return BoundHopf(evaluator, *astuple(self))
 
 
 @frozen
@@ -134,29 +134,14 @@ class Stability:
 class BoundHopf:
     """The event `HopfPoint` on the path of one homotopy."""
 
-    event: HopfPoint
     evaluator: Evaluator
+    side: int
+    k: int | None
+    terminal: int
+    direction: int
+    kind: Kind
+    name: str
     _known: dict[Any, Spectrum] = field(factory=dict, init=False)
-
-    @property
-    def name(self) -> str:
-        """As of the event."""
-        return self.event.name
-
-    @property
-    def kind(self) -> Kind:
-        """As of the event."""
-        return self.event.kind
-
-    @property
-    def terminal(self) -> int:
-        """As of the event."""
-        return self.event.terminal
-
-    @property
-    def direction(self) -> int:
-        """As of the event."""
-        return self.event.direction
 
     def at(self, u: Array) -> Spectrum:
         """The eigenvalues at a point, on the piece that the path is on."""
@@ -172,7 +157,7 @@ class BoundHopf:
         H_y = self.evaluator.matrix(u)
         counts.factorizations += 1
         try:
-            found = spectrum(H_y, self.event.side, self.event.k)
+            found = spectrum(H_y, self.side, self.k)
             counts.solves += found.solves
             return found
         except (ArithmeticError, np.linalg.LinAlgError) as error:
@@ -257,7 +242,7 @@ class BoundHopf:
         if arc.a.u.size - 1 == before.values.size or rank >= min(before.pairs.size, after.pairs.size):
             return None
         p, q = complex(before.pairs[rank]), complex(after.pairs[rank])
-        side, counts, pair = self.event.side, self.evaluator.counts, None
+        side, counts, pair = self.side, self.evaluator.counts, None
         # The nearer end last.
         (s, g), (t, h) = sorted([(left, p.real), (right, q.real)], key=lambda end: -abs(end[1]))
         try:

@@ -16,17 +16,21 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, joined
+from continuation.certificate.cells import OVERHANG, Cells, Slabs, at_node, joined
 from continuation.certificate.engine import Engine, up_by
-from continuation.certificate.krawczyk import ByIntervals
-from continuation.certificate.links import distance, nodes, reach
+from continuation.certificate.krawczyk import ByIntervals, engine_of
+from continuation.certificate.links import nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.switches import judged, signs_along, value_at
+from continuation.numbers.boxes import derivatives, with_gradient
+from continuation.numbers.ends import Ends, bilinear, thin
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
 
 NEXT_TO = 10.0 ** -np.arange(4.0, 10.0)
 """How far from its end the signs of a switch are asked, in lengths of the last cell: the first that will do."""
+
+NO_KINK = "a kink is listed where there is none"
 
 Prove = Callable[[Any, Path, Cells | None], tuple[Proof, Engine]]
 
@@ -70,7 +74,7 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
     arcs, others = [], [event for event in path.events if event.kind is not Kind.KINK]
     before = None
     for k, (first, last) in enumerate(pairwise(places)):
-        if first == last:  # a kink in which the path begins or ends
+        if first == last:  # a kink in which the path ends
             continue
         steps, ends = path.steps[first : last + 1], (tied[k], tied[k + 1])
         signs, told = _signs(homotopy, steps, ends, before)
@@ -94,9 +98,9 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
     crossed = []
     for kink in kinks:
         left, right = by_end.get(kink.arclength), by_begin.get(kink.arclength)
-        if left is None or right is None:
-            continue  # the path begins or ends there, or there is a gap
-        found = _joined(left, right, switches, kink)
+        if left is None or (right is None and kink.step < len(path) - 1):
+            continue  # there is a gap
+        found = _joined(homotopy, left, right, kink)
         if isinstance(found, str):
             gaps.append(Gap(kink.arclength, kink.arclength, found))
         else:
@@ -119,9 +123,10 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
     out: list[LocatedEvent] = []
     gaps = []
     for kink in sorted(path.kinks, key=lambda event: event.step):
-        step, s = path.steps[min(max(kink.step, 0), len(path) - 1)], kink.arclength
+        step, s = path.steps[min(max(kink.step, 1), len(path) - 1)], kink.arclength
+        # In a kink in which a path begins it has come from nowhere.
         if kink.step != step.index or s != step.arclength or not (kink.u == step.u).all():
-            gaps.append(Gap(s, s, "a kink is listed where there is none"))
+            gaps.append(Gap(s, s, NO_KINK))
         elif out and out[-1].step == kink.step:
             gaps.append(Gap(s, s, "more kinks are listed"))
         else:
@@ -172,36 +177,72 @@ def _kept(arc: Arc, switches: ByIntervals, span: tuple[float, float]) -> list[Ga
     return gaps
 
 
-def _joined(before: Arc, after: Arc, switches: ByIntervals, kink: LocatedEvent) -> tuple[float, float] | str:
-    """A range of arclength with the kink in which one arc goes over into the next, or why they are not proved to."""
+def _joined(homotopy: Any, before: Arc, after: Arc | None, kink: LocatedEvent) -> tuple[float, float] | str:
+    """A range of arclength with the kink in which one arc goes over into the next, or why they are not proved to.
+
+    Where the path ends in the kink there is no arc `after` it, and the next piece alone says whether the parameter
+    turns: the curve of its zeros goes on to where the switch has the sign that it had not before.
+    """
     if len(kink.switches) != 1:
-        return "several switches vanish in one kink" if kink.switches else "a kink is listed where there is none"
+        return "several switches vanish in one kink" if kink.switches else NO_KINK
     j = kink.switches[0]
-    if not 0 <= j < len(before.signs) or before.signs[j] == after.signs[j]:
-        return "a kink is listed where there is none"
-    left, right = before.proof.cells.take(slice(-1, None)), after.proof.cells.take(slice(0, 1))
+    if not 0 <= j < len(before.signs):
+        return NO_KINK
+    signs = np.where(np.arange(len(before.signs)) == j, -before.signs, before.signs) if after is None else after.signs
+    if before.signs[j] == signs[j]:
+        return NO_KINK
+    switches = ByIntervals(homotopy.switches, kink.u.size - 1)
+    left = before.proof.cells.take(slice(-1, None))
+    right = None if after is None else after.proof.cells.take(slice(0, 1))
+    why = "two arcs are not joined in the kink"
     for delta in NEXT_TO.tolist():
-        u, here = left.end, np.zeros(1, dtype=np.intp)
         sides = joined([left, left])
         at = nodes(before.engine, sides, np.array([1.0 - delta, 1.0 + delta]))
         window = nodes(before.engine, left, np.ones(1), delta)
         # Within the tube it is the tube's curve; a nan, where nothing is proved, is not.
         if not ((at.radius <= left.radius).all() and (window.radius <= left.radius).all()):
             continue
-        room = Slabs(here, np.ones(1), np.full(1, delta), left)
         slabs = Slabs(np.arange(2), np.array([1.0 - delta, 1.0 + delta]), np.zeros(2), sides)
         change = value_at(switches, slabs, at.radius)[:, j]
-        if change[0] != before.signs[j] or change[1] != after.signs[j]:
+        if change[0] != before.signs[j] or change[1] != signs[j]:
             continue
-        off = up_by(window.radius + distance(room, u), 2)
-        if not (reach(right, np.zeros(1), off) <= right.radius).all():
+        room = Slabs(np.zeros(1, dtype=np.intp), np.ones(1), np.full(1, delta), left)
+        off = up_by(window.radius + (room.over[0] - thin(left.end)).magnitude(), 2)
+        if right is not None and not (reach(right, np.zeros(1), Ends(-off, off)) <= right.radius).all():
             continue
-        onward = nodes(after.engine, right, np.zeros(1), 0.9 * OVERHANG)
-        rates = [float(np.sign(t.lo[0, -1])) for t in (window.tangent, onward.tangent) if t.lo[0, -1] * t.hi[0, -1] > 0]
-        if len(rates) < 2 or not (onward.radius <= right.radius).all():
-            return "whether the parameter turns in the kink is not decided"
-        if (rates[0] != rates[1]) != (kink.name == "turning kink"):
+        came = _rate(before.engine, left, 1.0, off)
+        if after is None or right is None:
+            onward = engine_of(homotopy.piece(signs), np.vstack([left.begin, left.end]))
+            goes = _rate(onward, left, 1.0, off, switches, j) * int(signs[j])
+        else:
+            goes = _rate(after.engine, right, 0.0, off)
+        if not came * goes:
+            why = "whether the parameter turns in the kink is not decided"
+            continue
+        if kink.name != ("kink" if came == goes else "turning kink"):
             return "the parameter does not turn in the kink as the path says"
-        (begin, end), (_, later) = left.place[0].tolist(), right.place[0].tolist()
+        (begin, end), later = left.place[0].tolist(), kink.arclength if right is None else float(right.place[0, 1])
         return end - delta * (end - begin), end + OVERHANG * (later - end)
-    return "two arcs are not joined in the kink"
+    return why
+
+
+def _rate(engine: Engine, cell: Cells, s: float, off: Array, switches: ByIntervals | None = None, j: int = 0) -> int:
+    """The sign with which the parameter moves along the curve at a point within `off` of a node; 0 where it has none.
+
+    Along the curve is where the cell's chart advances, or where switch j grows.
+    """
+    t = engine.judge(at_node(cell, np.array([s])), off).tangent(off, off)
+    found = _sign(t[0, -1])
+    if switches is None:
+        return found
+    u = cell.end if s else cell.begin
+    box = thin(u) + Ends(-off, off)
+    slope = Ends(*derivatives(switches.image(with_gradient(box.lo, box.hi)), u.size))[0, j]
+    with np.errstate(all="ignore"):
+        grows = bilinear(np.matmul, slope, t[0])
+    return found * _sign(grows)
+
+
+def _sign(x: Ends) -> int:
+    """That of one interval."""
+    return int(x.lo > 0.0) - int(x.hi < 0.0)

@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.numbers.ends import EPS, TINIEST, Ends, bilinear, thin, up_sum
+from continuation.numbers.ends import EPS, Ends, bilinear, thin
 
 Index = NDArray[np.intp]
 
@@ -159,14 +159,43 @@ class Slabs:
         return np.where(self.half > 0.0, self.half * (1.0 + 8.0 * EPS) + 8.0 * EPS * (1.0 + np.abs(self.middle)), 0.0)
 
     @cached_property
-    def expansion(self) -> Expansion:
-        """The cubics about the middles."""
-        return expansion(self)
+    def cubic(self) -> Ends:
+        """The cubics about the middles: p(middle + x) = sum_k q_k x^k, shape (slabs, 4, N + 1).
+
+        In the distance from the nearer end a cubic is base + slope t + bend t^2 + last t^3: at a node it is the node,
+        and round-off of the other one does not count.
+        """
+        cells, later = self.cells, self.middle[:, None] > 0.5
+        sign, m = np.where(later, -1.0, 1.0), self.middle[:, None]
+        t = thin(np.where(later, 1.0 - m, m))  # exact, as 1/2 < m <= 2 (Sterbenz)
+        base, other = (thin(np.where(later, *ends)) for ends in ((cells.end, cells.begin), (cells.begin, cells.end)))
+        slope = thin(sign * np.where(later, cells.slope_end, cells.slope_begin))
+        chord = other - base
+        last = slope + thin(sign * np.where(later, cells.slope_begin, cells.slope_end)) - chord - chord
+        bend, by_last = chord - slope - last, t * last
+        third = bend + by_last
+        second = third + by_last + by_last
+        parts = base + t * (slope + t * third), slope + t * (second + bend), second, last
+        # From there on, whichever end is the nearer one.
+        lo, hi = (np.stack([getattr(part, end) for part in parts], axis=1) for end in ("lo", "hi"))
+        turned = later[:, :, None] & np.array([False, True, False, True])[:, None]
+        return Ends(np.where(turned, -hi, lo), np.where(turned, -lo, hi))
+
+    @cached_property
+    def over(self) -> tuple[Ends, Ends, Ends]:
+        """The ranges of p, p' and p''/2 over each slab, shape (slabs, N + 1)."""
+        x = self.offset[:, None]
+        return evaluated(self.cubic, Ends(-x, x))
 
     @cached_property
     def velocity(self) -> Ends:
-        """The range of p' over each slab, shape (slabs, N + 1)."""
-        return self.expansion.rate(self.offset[:, None])
+        """The range of p' alone."""
+        x = self.offset[:, None]
+        return rate(self.cubic, Ends(-x, x))
+
+    def box(self, radius: Array) -> Ends:
+        """What is within `radius` of the cubics."""
+        return self.over[0] + Ends(-radius, radius)
 
     def halved(self, parts: int) -> Slabs:
         """Each cut into so many."""
@@ -205,80 +234,18 @@ def at_node(cells: Cells, s: Array) -> Slabs:
     return Slabs(np.arange(len(cells)), s, np.zeros(len(cells)), cells)
 
 
-@frozen(eq=False, slots=False)
-class Expansion:
-    """The cubic about the middle of a slab: p(middle + x) = sum_k q_k x^k, exactly, as intervals that hold q_k.
-
-    Attributes
-    ----------
-    coefficients : Ends, shape (slabs, 4, N + 1)
-    """
-
-    coefficients: Ends
-
-    @cached_property
-    def q(self) -> tuple[Ends, ...]:
-        """The coefficients one by one."""
-        return tuple(self.coefficients[:, k] for k in range(4))
-
-    @property
-    def last(self) -> Expansion:
-        """Of the last component, the parameter, shape (slabs, 1)."""
-        return Expansion(self.coefficients[:, :, -1:])
-
-    def over(self, x: Ends) -> tuple[Ends, Ends, Ends]:
-        """p, p' and p''/2 over offsets x of shape (slabs, 1)."""
-        q0, q1, q2, q3 = self.q
-        two, three = thin(np.full((1, 1), 2.0)), thin(np.full((1, 1), 3.0))
-        value = q0 + x * (q1 + x * (q2 + x * q3))
-        first = q1 + x * (two * q2 + three * x * q3)
-        return value, first, q2 + three * x * q3
-
-    def rate(self, x: Array) -> Ends:
-        """The range of p' over offsets of at most x >= 0, of shape (slabs, 1): as `over`, with sizes alone."""
-        size = self.coefficients[:, 2:].magnitude()
-        # Five roundings of numbers >= 0, half an EPS each; and products that underflow, unless all is zero.
-        room = x * (2.0 * size[:, 0] + 3.0 * x * size[:, 1]) * (1.0 + 4.0 * EPS) + (size[:, 0] > 0.0) * 16.0 * TINIEST
-        return self.coefficients[:, 1] + Ends(-room, room)
+def evaluated(cubic: Ends, x: Ends) -> tuple[Ends, Ends, Ends]:
+    """p, p' and p''/2 of cubics, shape (slabs, 4, m), over offsets x of shape (slabs, 1)."""
+    q0, q1, q2, q3 = (cubic[:, k] for k in range(4))
+    by_last = x * q3
+    second = q2 + by_last + by_last + by_last
+    return q0 + x * (q1 + x * (q2 + by_last)), rate(cubic, x), second
 
 
-def expansion(slabs: Slabs) -> Expansion:
-    """The cubics of slabs about their middles, by middle and radius.
-
-    Parameters
-    ----------
-    slabs : Slabs
-        With middles of at most 2.
-    """
-    cells, m = slabs.cells, slabs.middle[:, None]
-    # From the nearer end, where the cubic is that node, and round-off of the other one does not count.
-    later = m > 0.5
-    t = np.where(later, m - 1.0, m)  # exact, as 1/2 < m <= 2 (Sterbenz)
-    base, slope = np.where(later, cells.end, cells.begin), np.where(later, cells.slope_end, cells.slope_begin)
-    other, chord = np.where(later, cells.slope_begin, cells.slope_end), cells.end - cells.begin
-    bend = (3.0 * chord - 2.0 * slope - other) * np.where(later, -1.0, 1.0)
-    last = slope + other - 2.0 * chord
-    by_last = t * last
-    inner = slope + t * (bend + by_last)
-    middle = np.stack([base + t * inner, slope + t * (2.0 * bend + 3.0 * by_last), bend + 3.0 * by_last, last], axis=1)
-    # None of these, but for the last sum and product of the first, is of terms with more than eight roundings each:
-    # they are off by gamma_8 < 8.1 / 2 EPS times the same of sizes (Higham, Section 3.1), of which there are twice as
-    # many, for the rounding of these sizes.
-    size_t, first, second = np.abs(t), np.abs(slope), np.abs(other)
-    third = first + second + 2.0 * np.abs(chord)
-    second = third + first + np.abs(chord)
-    third_by = size_t * third
-    size = first + size_t * (second + third_by)
-    room = np.empty_like(middle)
-    room[:, 0] = size_t * size
-    room[:, 1] = first + size_t * (2.0 * second + 3.0 * third_by)
-    room[:, 2] = second + 3.0 * third_by
-    room[:, 3] = third
-    room *= 8.0 * EPS
-    room[:, 0] += EPS * (size_t * np.abs(inner) + np.abs(middle[:, 0]))
-    # Where all is zero nothing underflows; elsewhere a few products may, each by half of the tiniest number.
-    room += ((second > 0.0) * (32.0 * TINIEST))[:, None]
-    return Expansion(Ends(-up_sum(room - middle), up_sum(middle + room)))
+def rate(cubic: Ends, x: Ends) -> Ends:
+    """Their derivative alone."""
+    q2, by_last = cubic[:, 2], x * cubic[:, 3]
+    return cubic[:, 1] + x * (q2 + q2 + by_last + by_last + by_last)
 
 
 def advance(slabs: Slabs) -> Array:

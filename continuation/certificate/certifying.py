@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -12,9 +11,10 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
 from continuation.certificate.cells import Cells, between, joined, sizes
-from continuation.certificate.engine import Engine, SupportsProofEngine
+from continuation.certificate.closing import made
+from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
-from continuation.certificate.krawczyk import ByIntervals
+from continuation.certificate.krawczyk import engine_of
 from continuation.certificate.lifting import lifted
 from continuation.certificate.links import Nodes
 from continuation.certificate.links import nodes as ends_of
@@ -29,7 +29,7 @@ from continuation.homotopy import SupportsPieces
 from continuation.linear.threads import one_thread
 from continuation.metric import Automatic, Metric, norm
 from continuation.numbers.ends import Mask
-from continuation.path import Path, Step
+from continuation.path import Path
 from continuation.path.path import require_path
 from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
@@ -39,35 +39,8 @@ CELL_HALVINGS = 8
 """How often a cell is halved: its error, of fourth order, is then below round-off."""
 
 
-STANDS_STILL = 1e-10
-"""Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
-
 LARGE_NUMBERS = 4_000_000
 """Numbers of an array of 32 MB, the largest that has this effect."""
-
-
-def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
-    """What bounds derivatives for this homotopy: by products where it is quadratic, else by intervals.
-
-    Parameters
-    ----------
-    homotopy : Homotopy
-    points : ndarray, shape (m, N + 1), optional
-        Of the path.
-
-    Raises
-    ------
-    TypeError
-        If the residual does not run on interval arrays; the message names the operation.
-    """
-    if isinstance(homotopy, SupportsProofEngine):
-        return homotopy.proof_engine()
-    y, lam = homotopy.start()
-    start = np.append(np.asarray(y, dtype=float), float(lam))
-    still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
-    engine = ByIntervals(homotopy.residual, len(start) - 1, still)
-    engine.probe(start)
-    return engine
 
 
 @one_thread
@@ -210,30 +183,37 @@ class Search:
         """Whether tubes are thin enough to tell the turning points (or need not be), and the pieces of those."""
         if not len(cells):
             return np.zeros(0, bool), []
-        by_cell: list[list[Piece]] = [[] for _ in range(len(cells))]
-        for piece in pieces(self.engine, cells, known, last):
-            by_cell[piece.cell].append(piece)
+        by_cell: list[list[Piece]] = known
+        if not known:
+            by_cell = [[] for _ in range(len(cells))]
+            for piece in pieces(self.engine, cells, last):
+                by_cell[piece.cell].append(piece)
         good = np.array([last or all(piece.sign or piece.bend for piece in part) for part in by_cell])
         return good, [part for part, kept in zip(by_cell, good) if kept]
 
     def _nodes(self, evaluator: Evaluator) -> list[Node]:
         """The stored points; tangents that are not stored, or are those of a chord, computed."""
-        weights = _weights(self.homotopy, self.path)
-        out: list[Node] = []
-        for k, step in enumerate(self.path.steps):
+        u, out = self.path.u, list[Node]()
+        for k, (step, weights) in enumerate(zip(self.path.steps, _weights(self.homotopy, self.path))):
             tangent = step.tangent
-            if not np.isfinite(tangent).all() or _made(step):
-                tangent = self._tangent(evaluator, step.u, weights[k], out[-1].u if out else None)
-            out.append(Node(step.u, tangent, weights[k], step.arclength))
+            if not np.isfinite(tangent).all() or made(step):
+                border = weights * (u[k] - u[k - 1] if k else u[1] - u[0])
+                try:
+                    tangent = linearize(evaluator, step.u, weights, border).tangent
+                except EvaluationError:
+                    tangent = np.full_like(step.u, np.nan)
+            out.append(Node(step.u, tangent, weights, step.arclength))
         return out
 
     def _to_end(self, solver: PathSolver, nodes: list[Node]) -> list[Node]:
         """The nodes, with others in place of an end that was found otherwise than by a step, unless a tube holds it."""
         before, end = nodes[-2:]
-        if not _made(self.path.steps[-1]):
+        if not made(self.path.steps[-1]):
             return nodes
-        regular = self._regular(_cell(before, end))
-        if regular and search(self.engine, _cell(before, end)).proved.all():
+        cell = _cell(before, end)
+        # Whether the end can be proved to be a point of the curve: where it cannot, no tube reaches it.
+        regular = bool(ends_of(self.engine, cell.with_tubes(sizes(cell), cell.slabs), np.ones(1)).proved.all())
+        if regular and search(self.engine, cell).proved.all():
             return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])
         near = goal + NEXT_TO_END * (float(nodes[0].u[-1]) - goal)
@@ -241,58 +221,25 @@ class Search:
             return nodes
         before = evolve(before, weights=_by_extent(np.ptp(self.path.u, axis=0)))
         found = tail(solver, before, end, near)
-        if not found:
-            return nodes
         for k, a in enumerate(found if regular else []):
             if search(self.engine, _cell(a, end)).proved.all():
                 found = [*found[: k + 1], end]
                 break
-        return [*nodes[:-2], before, *found]
-
-    def _regular(self, cell: Cells) -> bool:
-        """Whether the end of a cell can be proved to be a point of the curve: where it cannot, no tube reaches it."""
-        return bool(ends_of(self.engine, cell.with_tubes(sizes(cell), cell.slabs), np.ones(1)).proved.all())
-
-    def _tangent(self, evaluator: Evaluator, u: Array, weights: Array, before: Array | None) -> Array:
-        border = weights * (u - before) if before is not None else weights * (self.path.steps[1].u - u)
-        try:
-            return linearize(evaluator, u, weights, border).tangent
-        except EvaluationError:
-            return np.full_like(u, np.nan)
+        return [*nodes[:-2], before, *found] if found else nodes
 
     def _middle(self, solver: PathSolver, a: Node, b: Node) -> Node | str:
         """A point of the path between two nodes, or why there is none."""
-        chart, lost = _cell(a, b).chart[0], ""
-        for bulge in _bulges(a, b):
-            guess = 0.5 * (a.u + b.u) + bulge
-            try:
-                near = linearize(solver.evaluator, guess, a.weights, chart)
-                found: Linearization = solver.project_and_linearize(near, guess, chart)
-            except EvaluationError as error:
-                lost = str(error)
-            else:
-                return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
-        return f"no point of the path was found between its ends ({lost})"
-
-
-def _bulges(a: Node, b: Node) -> Iterator[Array]:
-    """How far the middle of the cubic between two nodes is from that of the chord.
-
-    Where a tangent is nearly across the chord its slope in the chart is out of all proportion, and the corrector may
-    not come back from there: the second slopes are as long as the chord.
-    """
-    cell = _cell(a, b)
-    yield 0.125 * (cell.slope_begin[0] - cell.slope_end[0])
-    slopes = cell.slope_begin[0], cell.slope_end[0]
-    lengths = [norm(a.weights, slope) for slope in slopes]
-    if all(lengths):
-        first, last = (slope / length for slope, length in zip(slopes, lengths))
-        yield 0.125 * norm(a.weights, b.u - a.u) * (first - last)
-
-
-def _made(step: Step) -> bool:
-    """Whether a point was not stepped to, but is an end that was found otherwise: its tangent is a chord."""
-    return step.index > 0 and step.segment is None and step.corrector_iterations == 0
+        cell = _cell(a, b)
+        # The cubic's middle, but for slopes as long as the chord: where a tangent is nearly across the chord its slope
+        # in the chart is out of all proportion, and the corrector may not come back from there.
+        first, last = (x[0] / (norm(a.weights, x[0]) or 1.0) for x in (cell.slope_begin, cell.slope_end))
+        guess = 0.5 * (a.u + b.u) + 0.125 * norm(a.weights, b.u - a.u) * (first - last)
+        try:
+            near = linearize(solver.evaluator, guess, a.weights, cell.chart[0])
+            found: Linearization = solver.project_and_linearize(near, guess, cell.chart[0])
+        except EvaluationError as error:
+            return f"no point of the path was found between its ends ({error})"
+        return Node(found.u, found.tangent, a.weights, 0.5 * (a.place + b.place))
 
 
 def _cell(a: Node, b: Node) -> Cells:

@@ -9,8 +9,8 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells
 from continuation.certificate.links import Nodes, reach
-from continuation.certificate.proof import Gap
-from continuation.path import Path
+from continuation.numbers.ends import Ends
+from continuation.path import Path, Step
 from continuation.status import Status
 
 NO_CURVE = "no point of the curve was found at the end"
@@ -38,45 +38,30 @@ class SupportsEndCertificate(Protocol):
         ...
 
 
-def certificate_of(cells: Cells, at: Nodes, path: Path, homotopy: Any) -> str:
-    """What is said of an end that the tubes do not reach, or not at the target, where the homotopy can prove it."""
-    last, end = float(cells.end[-1, -1]), path.steps[-1]
-    if path.status is not Status.REACHED_TARGET or not isinstance(homotopy, SupportsEndCertificate):
-        return ""
-    if not at.proved[-1]:
-        return ""
-    if not abs(last - end.lam) <= NEAR_END * abs(path.steps[0].lam - end.lam):
-        return ""
-    sentence = homotopy.certify_end(end.y)
-    return f"Proved to lam = {last:.1e}. {sentence}" if sentence else ""
+def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> tuple[str, Array | None, str]:
+    """What is proved of the end, how far the curve there is from the stored one, and what is missing.
 
-
-def series_of(cells: Cells, at: Nodes, path: Path) -> str:
-    """What is said of tubes up to next to an end to which no step leads, but a series."""
-    last, end = float(cells.end[-1, -1]), path.steps[-1]
-    made = end.index > 0 and end.segment is None and end.corrector_iterations == 0
-    near = 0.0 < abs(last - end.lam) <= NEAR_END * abs(path.steps[0].lam - end.lam)
-    if path.status is not Status.REACHED_TARGET or not at.proved[-1] or not made or not near:
-        return ""
-    return f"Proved to lam = {last:.1e}; from there a series leads to the end, which is not proved."
-
-
-def at_target(cells: Cells, ends: Nodes, path: Path) -> bool:
-    """Whether the last tube has a point of the curve exactly at the parameter of the end of a path to its target."""
+    Tubes that end next to the target of a path, where it was reached otherwise than by a step, are followed by what the
+    homotopy can prove of the end, or by a series.
+    """
+    end, last = path.steps[-1], float(cells.end[-1, -1])
     if path.status is not Status.REACHED_TARGET:
-        return False
-    last, there = cells.take(slice(-1, None)), ends.take(slice(1, 2))
-    whole = last.place[0, 1] == path.arclength[-1] and bool((last.end[0] == path.steps[-1].u).all())
-    held = reach(last, np.ones(1), there.radius) <= last.radius
-    return bool(whole and there.proved.all() and held.all())
+        return ("The end is a point of the curve.", None, "") if at.proved[-1] else ("", None, NO_CURVE)
+    tube, there = cells.take(slice(-1, None)), ends.take(slice(1, 2))
+    whole = tube.place[0, 1] == path.arclength[-1] and bool((tube.end[0] == end.u).all())
+    held = reach(tube, np.ones(1), Ends(-there.radius, there.radius)) <= tube.radius
+    if whole and there.proved.all() and held.all():
+        return f"The end lies on it, exactly at lam = {end.lam:g}.", there.radius[0], ""
+    off = abs(last - end.lam)
+    if at.proved[-1] and off <= NEAR_END * abs(path.steps[0].lam - end.lam):
+        proved = f"Proved to lam = {last:.1e}"
+        if isinstance(homotopy, SupportsEndCertificate) and (sentence := homotopy.certify_end(end.y)):
+            return f"{proved}. {sentence}", None, ""
+        if off and made(end):
+            return f"{proved}; from there a series leads to the end, which is not proved.", None, LIMIT
+    return "", None, "no point of the curve was found at the target"
 
 
-def at_end(at: Nodes, ends: Nodes, path: Path, there: bool) -> tuple[str, Array | None, list[Gap]]:
-    """What is proved of the end: where the path reached its target, a point of the curve exactly `there`, or not."""
-    s = float(path.arclength[-1])
-    if path.status is not Status.REACHED_TARGET:
-        found = bool(at.proved[-1])
-        return ("The end is a point of the curve.", None, []) if found else ("", None, [Gap(s, s, NO_CURVE)])
-    if there:
-        return f"The end lies on it, exactly at lam = {path.steps[-1].lam:g}.", ends.radius[1], []
-    return "", None, [Gap(s, s, "no point of the curve was found at the target")]
+def made(step: Step) -> bool:
+    """Whether a point was not stepped to, but is an end that was found otherwise: its tangent is a chord."""
+    return step.index > 0 and step.segment is None and step.corrector_iterations == 0

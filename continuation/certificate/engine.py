@@ -7,7 +7,7 @@ from typing import ClassVar, Protocol, runtime_checkable
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Slabs
+from continuation.certificate.cells import Cells, Index, Slabs
 from continuation.numbers.ends import EPS, TINIEST, Ends, accumulated, bilinear, thin
 
 
@@ -142,6 +142,13 @@ class SupportsProofEngine(Protocol):
         Engine
         """
         ...
+
+
+def together(engine: Engine, cells: Cells) -> list[Index]:
+    """Places of cells to be judged together, by the number of their slabs."""
+    most = engine.together(cells.radius.shape[1])
+    groups = (np.cumsum(cells.slabs) - cells.slabs) // most
+    return np.split(np.arange(len(cells)), np.flatnonzero(np.diff(groups)) + 1)
 
 
 def up_by(x: Array, count: int) -> Array:

@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 
 import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, slabs_of
-from continuation.certificate.engine import Engine, Judged, solved
+from continuation.certificate.engine import Engine, Judged, solved, together
 from continuation.numbers.ends import EPS, Ends
 
-FOLD_PARTS = {1: 4, 2: 2, 3: 2}
-"""Into how many parts a slab is cut, by the engine's order: what it leaves of the derivative is a quarter at most."""
-
-SLAB_CUTS, LAST_CUTS = 3, {1: 3, 2: 6, 3: 6}
-"""A slab without a sign is cut so often at most, as a shorter cell tells more; and one of a cell that is not halved any
-more, by the engine's order: two turning points within 3e-8 of the parameter, on a way of 1, took five."""
+SLAB_CUTS, LAST_CUTS = 3, 6
+"""A slab without a sign is halved so often at most, as a shorter cell tells more; and one of a cell that is not halved
+any more: two turning points within 3e-8 of the parameter, on a way of 1, took five."""
 
 HOPE, HOPE_CUTS, LAST_HOPE_CUTS = 0.3, 2, 4
 """A cell of whose parts fewer than that are told after so many cuts is not cut further: its tube is too wide."""
 
-NARROWINGS = 2
-"""How often radii are replaced by those of the image: each time those of a wide tube fall to a tenth."""
+Look = Callable[[Judged, Slabs, Array], tuple[Index, Index]]
+"""Signs of some numbers on slabs, and of their derivatives along the curve where they have none, shape (slabs, k)."""
 
 NEAR_LISTED = (1e-3, 1e-2, 0.1)
 """Before and behind a listed turning point the sign is asked there, in lengths of the cell: it is off by its tolerance,
@@ -68,45 +65,61 @@ class Turn:
     bend: int
 
 
-def pieces(engine: Engine, cells: Cells, known: Sequence[list[Piece]] = (), last: bool = True) -> list[Piece]:
-    """Pieces of all cells in order, cut until the sign of the tangent, or of its derivative, is known.
+def scanned(engine: Engine, cells: Cells, look: Look, last: bool = True) -> list[list[Piece]]:
+    """Of each number pieces of all cells in order, cut until its sign, or that of its derivative, is known.
 
     Parameters
     ----------
     engine : Engine
     cells : Cells
         Proved ones.
-    known : sequence of list of Piece, optional
-        Of each cell, as `told` gives them, where the bounds of its test told them.
+    look : callable
     last : bool
         Whether cells are not to be halved instead, where many cuts do not tell it.
     """
-    if known:
-        return [evolve(piece, cell=k) for k, part in enumerate(known) for piece in part]
-    slabs = slabs_of(cells)
-    radius = slabs.cells.radius
-    found: list[Piece] = []
-    parts = FOLD_PARTS[engine.order]
-    cuts, patient = (LAST_CUTS[engine.order], LAST_HOPE_CUTS) if last else (SLAB_CUTS, HOPE_CUTS)
-    for depth in range(cuts + 1):
-        judged, tube = engine.judge(slabs, radius), slabs.cells.radius
-        if engine.exact:
-            return told(judged, slabs, radius)
-        if depth:
-            radius = _narrowed(judged, radius)
-            judged = engine.judge(slabs, radius)
-        sign = _sign(judged.tangent(radius, tube))
-        bend = _bends(engine, judged, slabs, radius, tube, sign)
-        clear = (sign != 0) | (bend != 0)
-        share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
-        # A shorter cell tells more than parts of a slab: its cubic is nearer, and it has a smaller tube.
-        keep = clear | (depth == cuts) | (depth >= patient) & (share[slabs.owner] < HOPE)
-        found += _rows(slabs.take(keep), sign[keep], bend[keep])
-        if keep.all():
-            break
-        # The curve in a part lies where that in the whole does: radii that were found are kept.
-        slabs, radius = slabs.take(~keep).halved(parts), np.repeat(radius[~keep], parts, axis=0)
-    return sorted(found, key=_where)
+    found: list[list[Piece]] = []
+    cuts, patient = (LAST_CUTS, LAST_HOPE_CUTS) if last else (SLAB_CUTS, HOPE_CUTS)
+    for place in together(engine, cells):
+        slabs = slabs_of(cells.take(place))
+        slabs, radius = evolve(slabs, owner=place[slabs.owner]), slabs.cells.radius
+        for depth in range(cuts + 1):
+            judged, radius = narrowed(engine, slabs, radius, min(depth, 1))
+            sign, bend = look(judged, slabs, radius)
+            clear = np.asarray(((sign != 0) | (bend != 0)).all(axis=1))
+            share = np.bincount(slabs.owner, clear) / np.maximum(np.bincount(slabs.owner), 1)
+            # A shorter cell tells more than parts of a slab: its cubic is nearer, and it has a smaller tube.
+            keep = clear | (depth == cuts) | (depth >= patient) & (share[slabs.owner] < HOPE)
+            rows = [_rows(slabs.take(keep), a[keep], b[keep]) for a, b in zip(sign.T, bend.T)]
+            found = [old + new for old, new in zip(found, rows)] if found else rows
+            if keep.all():
+                break
+            # The curve in a part lies where that in the whole does: radii that were found are kept.
+            slabs, radius = slabs.take(~keep).halved(2), np.repeat(radius[~keep], 2, axis=0)
+    return [sorted(one, key=_where) for one in found]
+
+
+def pieces(engine: Engine, cells: Cells, last: bool = True) -> list[Piece]:
+    """Those of the parameter's component of the tangent.
+
+    Parameters
+    ----------
+    engine, cells, last
+        As in `scanned`.
+    """
+    if engine.exact:
+        found = []
+        for place in together(engine, cells):
+            slabs = slabs_of(cells.take(place))
+            slabs = evolve(slabs, owner=place[slabs.owner])
+            found += told(engine.judge(slabs, slabs.cells.radius), slabs, slabs.cells.radius)
+        return found
+
+    def look(judged: Judged, slabs: Slabs, radius: Array) -> tuple[Index, Index]:
+        sign = _sign(judged.tangent(radius, slabs.cells.radius))
+        bend = _bends(engine, judged, slabs, radius, slabs.cells.radius, sign)
+        return sign[:, None], bend[:, None]
+
+    return scanned(engine, cells, look, last)[0]
 
 
 def told(judged: Judged, slabs: Slabs, tube: Array) -> list[Piece]:
@@ -124,7 +137,7 @@ def told(judged: Judged, slabs: Slabs, tube: Array) -> list[Piece]:
     if pace is None:
         sign = _sign(judged.tangent(tube, tube))
         return _rows(slabs, sign, np.zeros_like(sign))
-    slope, bend = (_sign_of(one) for one in pace)
+    slope, bend = (signs(one) for one in pace)
     same = np.asarray((slope != 0).all(axis=1) & (slope == slope[:, :1]).all(axis=1))
     parts = slabs.take(~same).halved(slope.shape[1])
     turned = np.where(slope == 0, bend, 0)
@@ -148,8 +161,10 @@ def _narrowed(judged: Judged, radius: Array) -> Array:
         return np.where(inner < radius, np.maximum(inner, 1e-9 * radius), radius)
 
 
-def narrowed(engine: Engine, slabs: Slabs, radius: Array) -> tuple[Judged, Array]:
+def narrowed(engine: Engine, slabs: Slabs, radius: Array, times: int) -> tuple[Judged, Array]:
     """Radii of parts of tubes within which the curve lies, and what is known of them there.
+
+    Each time those of a wide tube fall to a tenth.
 
     Parameters
     ----------
@@ -157,9 +172,11 @@ def narrowed(engine: Engine, slabs: Slabs, radius: Array) -> tuple[Judged, Array
     slabs : Slabs
     radius : ndarray, shape (slabs, N + 1)
         Within which it lies.
+    times : int
+        How often radii are replaced by those of the image.
     """
     judged = engine.judge(slabs, radius)
-    for _ in range(NARROWINGS):
+    for _ in range(times):
         radius = _narrowed(judged, radius)
         judged = engine.judge(slabs, radius)
     return judged, radius
@@ -167,10 +184,11 @@ def narrowed(engine: Engine, slabs: Slabs, radius: Array) -> tuple[Judged, Array
 
 def _sign(t: Ends) -> Index:
     """That of the last component."""
-    return _sign_of(t[:, -1])
+    return signs(t[:, -1])
 
 
-def _sign_of(x: Ends) -> Index:
+def signs(x: Ends) -> Index:
+    """Of intervals; 0 where there is none."""
     return np.where(x.lo > 0.0, 1, np.where(x.hi < 0.0, -1, 0))
 
 
@@ -182,9 +200,7 @@ def _bends(engine: Engine, judged: Judged, slabs: Slabs, radius: Array, tube: Ar
     """
     if sign.all():
         return np.zeros_like(sign)
-    x = slabs.offset[:, None]
-    t = judged.tangent(radius, tube)
-    box = slabs.expansion.over(Ends(-x, x))[0] + Ends(-radius, radius)
+    t, box = judged.tangent(radius, tube), slabs.box(radius)
     with np.errstate(all="ignore"):
         second = engine.bent(box, t)
         if second is None:  # no derivative has a sign
@@ -260,7 +276,7 @@ def located(engine: Engine, cells: Cells, found: list[Turn], places: list[float]
     x = np.array([place for _, place in asked])
     owner = np.clip(x.astype(np.intp), 0, len(cells) - 1)
     own = cells.take(owner)
-    judged, radius = narrowed(engine, at_node(own, x - owner), own.radius)
+    judged, radius = narrowed(engine, at_node(own, x - owner), own.radius, 2)
     sign = _sign(judged.tangent(radius, own.radius))
     out = list(found)
     for (k, place), told in zip(asked, sign.tolist()):

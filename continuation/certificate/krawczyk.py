@@ -18,8 +18,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Index, Slabs, expansion, sizes
-from continuation.certificate.engine import Judged, applied, solved, up_by
+from continuation.certificate.cells import Slabs, sizes
+from continuation.certificate.engine import Engine, Judged, SupportsProofEngine, applied, solved, up_by
 from continuation.certificate.inverse import inverses, times
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
@@ -27,12 +27,15 @@ from continuation.numbers.boxes import along_curve, derivatives, with_gradient
 from continuation.numbers.ends import Ends, accumulated, moved, thin
 from continuation.numbers.truncated import wrap
 
-RESIDUAL_NUMBERS = 2_000_000
-"""Numbers of one array while many slabs go through a residual together: 16 MB."""
+RESIDUAL_NUMBERS = 500_000
+"""Numbers of one array while many slabs go through a residual together: 4 MB, and 64 where each is cut into `most`."""
 
 DIRECTIONS_THAT_PAY = 16
 """Second derivatives in so many directions pay: of exponential-cosine with 10 unknowns they save nine boxes of ten, of
 Bratu's equation with 30 none, and its proof took eight times as long."""
+
+STANDS_STILL = 1e-10
+"""Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
 
 PARTS = 4
 """Into so many parts a slab is cut to bound H along the cubic: what Taylor's formula leaves of it is of third order."""
@@ -96,8 +99,8 @@ class ByIntervals:
         self.image(with_gradient(u[None], u[None]))
 
     def together(self, m: int) -> int:
-        """All of them: `judge` parts them itself."""
-        return RESIDUAL_NUMBERS
+        """As their boxes go through the residual together."""
+        return max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
 
     def bent(self, box: Ends, t: Ends) -> Ends | None:
         """See `Engine`."""
@@ -105,45 +108,30 @@ class ByIntervals:
         return image[2] if len(image.lo) == 3 else None  # constant along every line
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
-        """As `Engine.judge`."""
-        m = radius.shape[1]
-        size = max(1, RESIDUAL_NUMBERS // (6 * m * (m + 1)))
-        places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // size))
-        return Several.of([part for place in places for part in self._judge(slabs, radius, place)])
+        """As `Engine.judge`; with a preconditioner that stands still where H' has no derivative, at kinks."""
+        if not (self.moving and slabs.half.any()):
+            return self._still(slabs, radius)
+        found = self._moving(slabs, radius)
+        rough = ~np.isfinite(found.off).all(axis=(1, 2))
+        if rough.any():
+            found.put(rough, self._still(slabs.take(rough), radius[rough]))
+        return found
 
-    def _judge(self, slabs: Slabs, radius: Array, place: Index) -> list[tuple[Index, Any]]:
-        """With a preconditioner that follows the path; one that stands still where H' has no derivative, at kinks."""
-        some, tube = slabs.take(place), radius[place]
-        x = some.offset[:, None]
-        over = expansion(some).over(Ends(-x, x))
-        if not (self.moving and x.any()):
-            return [(place, self._still(some, tube, over))]
-        moving = self._moving(some, tube, over)
-        smooth = np.isfinite(moving.off).all(axis=(1, 2))
-        if smooth.all():
-            return [(place, moving)]
-        rough = np.flatnonzero(~smooth)
-        still = self._still(some.take(rough), tube[rough], tuple(u[rough] for u in over))
-        if not smooth.any():
-            return [(place, still)]
-        return [(place[smooth], moving.take(smooth)), (place[rough], still)]
-
-    def _still(self, slabs: Slabs, radius: Array, over: Any) -> Bounded:
-        Y, off = self._inverse(slabs, over[0] + Ends(-radius, radius))
+    def _still(self, slabs: Slabs, radius: Array) -> Bounded:
+        Y, off = self._inverse(slabs, slabs.box(radius))
         return Bounded(self._misfit(slabs, Y), Y, up_by(off, 1), radius, np.zeros_like(Y), slabs.offset[:, None])
 
-    def _moving(self, slabs: Slabs, radius: Array, over: Any) -> Bounded:
+    def _moving(self, slabs: Slabs, radius: Array) -> Bounded:
         """With Y(s) = (I - x E) Y_0, E about Y_0 W, where G'(p(s) + d) lies in G_0 + x W for x = s - middle.
 
         G_0 is the range of G' over the box around the middle alone, W that of H''(p'(s), .) over the whole. With
         R = I - Y_0 G_0 and D = Y_0 W - E, I - Y(s) G' is R - x (D + E R) + x^2 (E E + E D).
         """
-        q, m, x = expansion(slabs).q, radius.shape[1], slabs.offset[:, None, None]
-        room = Ends(-radius, radius)
-        Y, R = self._inverse(slabs, q[0] + room)
+        m, x = radius.shape[1], slabs.offset[:, None, None]
+        Y, R = self._inverse(slabs, slabs.cubic[:, 0] + Ends(-radius, radius))
         left = Y[:, :, :-1]
         with np.errstate(all="ignore"):
-            W = self._change(over[0] + room, over[1], sizes(slabs.cells))
+            W = self._change(slabs.box(radius), slabs.velocity, sizes(slabs.cells))
             middle = W.middle()
             E = np.matmul(left, middle)
             size_E = np.abs(E)
@@ -193,9 +181,8 @@ class ByIntervals:
         """|Y H(p(s))| by Taylor's formula about the middle of each part, to second order; to first at kinks."""
         parts = PARTS if self.moving and slabs.half.any() else 1
         fine = slabs.halved(parts)
-        curve, x, left = expansion(fine), fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0)
-        over, count = curve.over(Ends(-x, x)), len(fine)
-        both = [Ends(np.concatenate([p.lo, q.lo]), np.concatenate([p.hi, q.hi])) for p, q in zip(curve.q, over)]
+        x, left, count = fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0), len(fine)
+        both = [moved(lambda *ends: np.concatenate(ends), fine.cubic[:, k], fine.over[k]) for k in range(3)]
         image = self.image(along_curve(*both)).c
         if len(image.lo) == 1:  # constant along the curve
             image = Ends(*(np.concatenate([e, np.zeros((2, *e.shape[1:]))]) for e in (image.lo, image.hi)))
@@ -205,6 +192,30 @@ class ByIntervals:
             blunt = size_of(left, along[1]) * x
             bound = up_by(size_of(left, at[0]) + np.fmin(linear, blunt), 4)
             return np.asarray(bound.reshape(len(slabs), parts, -1).max(axis=1))
+
+
+def engine_of(homotopy: Any, points: Array | None = None) -> Engine:
+    """What bounds derivatives for this homotopy: by products where it is quadratic, else by intervals.
+
+    Parameters
+    ----------
+    homotopy : Homotopy
+    points : ndarray, shape (m, N + 1), optional
+        Of the path.
+
+    Raises
+    ------
+    TypeError
+        If the residual does not run on interval arrays; the message names the operation.
+    """
+    if isinstance(homotopy, SupportsProofEngine):
+        return homotopy.proof_engine()
+    y, lam = homotopy.start()
+    start = np.append(np.asarray(y, dtype=float), float(lam))
+    still = points is not None and bool((np.ptp(points, axis=0) <= STANDS_STILL * np.abs(points).max(axis=0)).any())
+    engine = ByIntervals(homotopy.residual, len(start) - 1, still)
+    engine.probe(start)
+    return engine
 
 
 def size_of(Y: Array, v: Ends) -> Array:
@@ -224,9 +235,10 @@ class Bounded:
     E: Array
     offset: Array
 
-    def take(self, index: Any) -> Bounded:
-        """Those of some slabs."""
-        return Bounded(*(x[index] for x in (self.misfit, self.Y, self.off, self.largest, self.E, self.offset)))
+    def put(self, index: Any, some: Bounded) -> None:
+        """Replace those of some slabs."""
+        for name in Bounded.__annotations__:
+            getattr(self, name)[index] = getattr(some, name)
 
     def tangent(self, radius: Array, tube: Array) -> Ends:
         """See `Judged.tangent`; c . t = 1."""
@@ -252,59 +264,6 @@ class Bounded:
         bound = up_by(times(self.off, x), x.shape[1])
         known = (radius <= self.largest).all(axis=1, keepdims=True)
         return np.where(known, bound, np.nan)
-
-
-@frozen(eq=False)
-class Several:
-    """Bounds of slabs that were judged in parts, each with the places of its slabs."""
-
-    parts: list[tuple[Index, Any]]
-
-    @classmethod
-    def of(cls, parts: list[tuple[Index, Any]]) -> Judged:
-        """One part is what it is."""
-        whole: Judged = cls(parts) if len(parts) > 1 else parts[0][1]
-        return whole
-
-    def _gathered(self, rows: list[Array]) -> Array:
-        out = np.empty((sum(map(len, rows)), rows[0].shape[1]))
-        for (place, _), some in zip(self.parts, rows):
-            out[place] = some
-        return out
-
-    @property
-    def misfit(self) -> Array:
-        """Part by part."""
-        return self._gathered([part.misfit for _, part in self.parts])
-
-    def spread(self, x: Array, radius: Array) -> Array:
-        """Part by part."""
-        return self._gathered([part.spread(x[k], radius[k]) for k, part in self.parts])
-
-    def tangent(self, radius: Array, tube: Array) -> Ends:
-        """Part by part."""
-        return self._both([part.tangent(radius[k], tube[k]) for k, part in self.parts])
-
-    def closed(self, tube: Array) -> tuple[Array, Ends] | None:
-        """Part by part."""
-        found = [part.closed(tube[k]) for k, part in self.parts]
-        if any(one is None for one in found):
-            return None
-        return self._gathered([one[0] for one in found]), self._both([one[1] for one in found])
-
-    def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends] | None:
-        """Part by part."""
-        found = [part.pace(radius[k], tube[k]) for k, part in self.parts]
-        if any(one is None for one in found):
-            return None
-        return self._both([one[0] for one in found]), self._both([one[1] for one in found])
-
-    def applied(self, v: Ends) -> Ends:
-        """Part by part."""
-        return self._both([part.applied(v[k]) for k, part in self.parts])
-
-    def _both(self, found: list[Ends]) -> Ends:
-        return Ends(self._gathered([u.lo for u in found]), self._gathered([u.hi for u in found]))
 
 
 def _boxes(some: slice, x: Array) -> Array:

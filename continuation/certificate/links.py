@@ -14,12 +14,15 @@ import numpy as np
 from attrs import evolve, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Slabs, along, at_node, expansion
-from continuation.certificate.engine import Engine, up_by
-from continuation.numbers.ends import EPS, Ends, Mask, thin
+from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along, at_node
+from continuation.certificate.engine import Engine, Judged, together, up_by
+from continuation.numbers.ends import EPS, Ends, Mask
 
-NODE_TESTS, NODE_RADII = 4, 8
-"""Tests of a node, with derivatives over ever larger boxes, and radii that are tried with one of them."""
+NODE_TESTS, RADII = 4, 12
+"""Tests of a node, with derivatives over ever larger boxes, and radii that are tried with the bounds of one test."""
+
+INFLATION = 1.1
+"""How much wider than what the test gives the next radii are: a fixed point is approached from above."""
 
 LEAST_BOX, FIRST_BOX = 1e-9, 1e-3
 """Of the radii of the tube: the least box around a node, and the one over which derivatives are bounded first."""
@@ -84,53 +87,78 @@ def nodes(engine: Engine, cells: Cells, s: Array, half: float = 0.0) -> Nodes:
     half : float
         Half the length of the range.
     """
+    parts = together(engine, cells)
+    return Nodes.joined([_nodes(engine, cells.take(place), s[place], half) for place in parts])
+
+
+def _nodes(engine: Engine, cells: Cells, s: Array, half: float) -> Nodes:
     slabs = evolve(at_node(cells, s), half=np.full(len(s), half))
     u = np.where((s == 0.0)[:, None], cells.begin, cells.end)
     least = NODE_ULPS * EPS * np.abs(u) + LEAST_BOX * cells.radius
-    largest, done = FIRST_BOX * cells.radius + 4.0 * least, np.zeros(len(cells), bool)
-    judged = engine.judge(slabs, largest)
+    bounded = FIRST_BOX * cells.radius + 4.0 * least
+    judged = engine.judge(slabs, bounded)
     for k in range(NODE_TESTS):
         if k and not engine.exact:
-            judged = engine.judge(slabs, largest)
-        with np.errstate(all="ignore"):
-            radius = np.fmin(np.maximum(2.0 * judged.misfit, least), largest)
-            for _ in range(NODE_RADII):
-                total = (judged.misfit + judged.spread(radius, radius)) * (1.0 + 4.0 * EPS)
-                done = np.asarray((total < radius).all(axis=1))
-                if done.all():
-                    break
-                radius = np.where(done[:, None], radius, np.fmin(np.maximum(1.5 * total, least), largest))
+            judged = engine.judge(slabs, bounded)
+        radius, _, done = settled(judged, slabs.owner, least, bounded, bounded)
+        done &= (radius <= bounded).all(axis=1)
         if done.all():
             break
-        largest = np.where(done[:, None], largest, 8.0 * largest)
+        bounded = np.where(done[:, None], bounded, 8.0 * bounded)
     return Nodes(np.where(done[:, None], radius, np.nan), judged.tangent(radius, radius))
 
 
-def reach(cells: Cells, s: Array, radius: Array) -> Array:
-    """How wide a tube has to be at one end to hold every point within `radius` of the node; nan where it ends before.
+def settled(judged: Judged, owner: Index, least: Array, bounded: Array, wide: Array) -> tuple[Array, Array, Mask]:
+    """Radii a little above what the test gives back, the bound of the contraction, and whether it holds; a cell.
+
+    Parameters
+    ----------
+    judged : Judged
+    owner : ndarray of int, shape (slabs,)
+        The cell of each slab.
+    least, bounded, wide : ndarray, shape (cells, N + 1)
+        Radii to begin with, those for which bounds are valid, and those that are given up.
+    """
+    with np.errstate(all="ignore"):
+        off = largest(judged.misfit, owner, len(least))
+        radius = np.minimum(np.maximum(2.0 * off, least), bounded)
+        radius = np.where(np.isfinite(radius), radius, least)
+        for _ in range(RADII):
+            image = largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, len(least))
+            kappa, total = (image / radius).max(axis=1), off + image
+            inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
+            if (inside | ~(radius <= wide).all(axis=1)).all():
+                break
+            radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
+    return radius, kappa, inside
+
+
+def largest(values: Array, owner: Index, count: int) -> Array:
+    """The largest of each cell's slabs, of which it has one at least; nan where one is."""
+    if len(values) == count:
+        return values
+    out = np.zeros((count, values.shape[1]))
+    np.maximum.at(out, owner, values)
+    return out
+
+
+def reach(cells: Cells, s: Array, off: Ends) -> Array:
+    """How wide a tube has to be at a parameter to hold what is `off` the cubic there; nan where the tube ends before.
 
     Parameters
     ----------
     cells : Cells
     s : ndarray, shape (cells,)
-        0 or 1.
-    radius : ndarray, shape (cells, N + 1)
+        From 0 to 1.
+    off : Ends, shape (cells, N + 1)
     """
     count = len(cells)
-    room = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells)
-    speed = room.velocity
-    least, _ = along(cells.chart, speed)
+    speed = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells).velocity
     with np.errstate(all="ignore"):
-        off = up_by((np.abs(cells.chart) * radius).sum(axis=1), radius.shape[1])
-        away = np.where(least > 0.0, off / least, np.nan) * (1.0 + 4.0 * EPS)
-        wide = up_by(radius + away[:, None] * speed.magnitude(), 2)
+        least, (lo, hi) = along(cells.chart, speed)[0], along(cells.chart, off)
+        away = np.where(least > 0.0, np.maximum(np.abs(lo), np.abs(hi)) / least, np.nan) * (1.0 + 4.0 * EPS)
+        wide = up_by(off.magnitude() + away[:, None] * speed.magnitude(), 2)
     return np.where((away <= 0.9 * OVERHANG)[:, None], wide, np.nan)
-
-
-def distance(slabs: Slabs, u: Array) -> Array:
-    """A bound of |p(s) - u| over each slab."""
-    x = slabs.offset[:, None]
-    return (expansion(slabs).over(Ends(-x, x))[0] - thin(u)).magnitude()
 
 
 def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
@@ -149,6 +177,6 @@ def linked(left: Cells, at: Nodes, right: Cells) -> Mask:
     with np.errstate(all="ignore"):
         same = (left.end == right.begin).all(axis=1)
         inside = (at.radius <= left.radius).all(axis=1)
-        held = (reach(right, np.zeros(len(right)), at.radius) <= right.radius).all(axis=1)
+        held = (reach(right, np.zeros(len(right)), Ends(-at.radius, at.radius)) <= right.radius).all(axis=1)
         onward, _ = along(right.chart, at.tangent)
         return np.asarray(same & inside & held & (onward > 0.0))

@@ -167,6 +167,6 @@ class Proof:
         -------
         matplotlib axes
         """
-        from continuation.certificate.picture import draw
+        from continuation.plot.tube import plot_tube
 
-        return draw(self.shadow, [(gap.begin, gap.end) for gap in self.gaps], component, axes)
+        return plot_tube(self.shadow, [(gap.begin, gap.end) for gap in self.gaps], component, axes)

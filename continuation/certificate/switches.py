@@ -5,19 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Slabs, at_node, expansion, slabs_of
-from continuation.certificate.engine import Engine
-from continuation.certificate.folds import Piece, narrowed, turns
+from continuation.certificate.cells import Cells, Index, Slabs, at_node
+from continuation.certificate.engine import Engine, Judged
+from continuation.certificate.folds import Piece, scanned, signs, turns
 from continuation.certificate.krawczyk import ByIntervals
 from continuation.certificate.links import nodes
 from continuation.numbers.boxes import derivatives, with_gradient
-from continuation.numbers.ends import Ends, bilinear, thin
+from continuation.numbers.ends import Ends, bilinear
 
 ARC_PARTS = 4
-"""Parts of an arc of few slabs: a switch that vanishes at both ends has its sign in between."""
-
-SLAB_HALVINGS = 5
-"""A slab on which neither a switch nor its derivative along the curve has a sign is halved so often at most."""
+"""Parts of an arc at least: a switch that vanishes at both ends has its sign in between."""
 
 
 def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[list[Piece]]:
@@ -34,33 +31,19 @@ def signs_along(engine: Engine, switches: ByIntervals, cells: Cells) -> list[lis
     cells : Cells
         Proved ones.
     """
-    slabs = slabs_of(cells)
-    if len(slabs) < ARC_PARTS:
-        slabs = slabs.halved(ARC_PARTS)
-    radius = slabs.cells.radius
-    found: list[list[Piece]] = []
-    for depth in range(SLAB_HALVINGS + 1):
-        x, m = slabs.offset[:, None], radius.shape[1]
-        known, radius = narrowed(engine, slabs, radius)
-        box = expansion(slabs).over(Ends(-x, x))[0] + Ends(-radius, radius)
+
+    def look(judged: Judged, slabs: Slabs, radius: Array) -> tuple[Index, Index]:
+        box, t = slabs.box(radius), judged.tangent(radius, slabs.cells.radius)
         image = switches.image(with_gradient(box.lo, box.hi))
-        sign = _signs(image.c[0])
-        t = known.tangent(radius, slabs.cells.radius)
+        sign = signs(image.c[0])
         with np.errstate(all="ignore"):
-            slope = bilinear(np.matmul, Ends(*derivatives(image, m)), Ends(t.lo[..., None], t.hi[..., None]))
-        bend = np.where(sign == 0, _signs(Ends(slope.lo[..., 0], slope.hi[..., 0])), 0)
-        keep = ((sign != 0) | (bend != 0)).all(axis=1) | (depth == SLAB_HALVINGS)
-        found = found or [[] for _ in range(sign.shape[1])]
-        for k in np.flatnonzero(keep).tolist():
-            cell, lo, hi = int(slabs.owner[k]), slabs.middle[k] - slabs.half[k], slabs.middle[k] + slabs.half[k]
-            for one, a, b in zip(found, sign[k].tolist(), bend[k].tolist()):
-                one.append(Piece(cell, float(lo), float(hi), a, b))
-        if keep.all():
-            break
-        slabs, radius = slabs.take(~keep).halved(2), np.repeat(radius[~keep], 2, axis=0)
-    at_ends = _at_ends(engine, switches, cells)
-    ordered = [sorted(one, key=lambda piece: (piece.cell, piece.lo)) for one in found]
-    return [[first, *one, last] for one, (first, last) in zip(ordered, at_ends)]
+            gradient = Ends(*derivatives(image, radius.shape[1]))
+            slope = bilinear(np.matmul, gradient, Ends(t.lo[..., None], t.hi[..., None]))
+        return sign, np.where(sign == 0, signs(slope[..., 0]), 0)
+
+    many = -(-ARC_PARTS // int(cells.slabs.sum()))
+    found = scanned(engine, cells.with_tubes(cells.radius, cells.slabs * many), look)
+    return [[first, *one, last] for one, (first, last) in zip(found, _at_ends(engine, switches, cells))]
 
 
 def _at_ends(engine: Engine, switches: ByIntervals, cells: Cells) -> list[tuple[Piece, Piece]]:
@@ -105,12 +88,7 @@ def judged(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> 
     return lo, hi
 
 
-def value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Array:
+def value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Index:
     """Signs of the switches within radii of the middles of slabs, shape (slabs, m); 0 where there is none."""
-    zero = thin(np.zeros((len(slabs), 1)))
-    box = expansion(slabs).over(zero)[0] + Ends(-radius, radius)
-    return _signs(switches.image(with_gradient(box.lo, box.hi)).c[0])
-
-
-def _signs(value: Ends) -> Array:
-    return np.where(value.lo > 0.0, 1, np.where(value.hi < 0.0, -1, 0))
+    box = slabs.cubic[:, 0] + Ends(-radius, radius)
+    return signs(switches.image(with_gradient(box.lo, box.hi)).c[0])

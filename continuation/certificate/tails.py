@@ -8,13 +8,12 @@ tangent, and through the end says where the next one is about, and the corrector
 from __future__ import annotations
 
 from math import sqrt
-from typing import Any
 
 from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.evaluation.errors import EvaluationError
-from continuation.point.linearization import linearize
+from continuation.point.linearization import Linearization, linearize
 from continuation.point.projection import PathSolver
 
 NEXT_TO_END = 1e-6
@@ -55,14 +54,11 @@ def tail(solver: PathSolver, before: Node, end: Node, near: float) -> list[Node]
         Empty where the corrector does not find them.
     """
     out: list[Node] = []
-    a, goal = before, float(end.u[-1])
-    while abs(float(a.u[-1]) - goal) > abs(near - goal) and len(out) < TAIL_NODES:
-        found = _nearer(solver, a, end)
-        if found is None:
-            return []
-        a = found
-        out.append(a)
-    return out
+    a: Node | None = before
+    while a is not None and abs(a.u[-1] - end.u[-1]) > abs(near - end.u[-1]) and len(out) < TAIL_NODES:
+        a = _nearer(solver, a, end)
+        out += [a] if a is not None else []
+    return out if a is not None else []
 
 
 def _nearer(solver: PathSolver, a: Node, end: Node) -> Node | None:
@@ -76,11 +72,11 @@ def _nearer(solver: PathSolver, a: Node, end: Node) -> Node | None:
         x = 1.0 - share
         guess = a.u + x * slope + x * x * (chord - slope)
         try:
-            point: Any = linearize(solver.evaluator, guess, a.weights, chart)
-            point = solver.project_and_linearize(point, guess, chart)
+            near: Linearization = linearize(solver.evaluator, guess, a.weights, chart)
+            point = solver.project_and_linearize(near, guess, chart)
+            if 0.0 < (end.u[-1] - point.u[-1]) / chord[-1] < 1.0:
+                return Node(point.u, point.tangent, a.weights, a.place + x * (end.place - a.place))
         except EvaluationError:
-            point = None
-        if point is not None and 0.0 < (end.u[-1] - point.u[-1]) / chord[-1] < 1.0:
-            return Node(point.u, point.tangent, a.weights, a.place + x * (end.place - a.place))
+            pass  # a longer share is tried
         share = sqrt(share)
     return None

@@ -7,9 +7,9 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Cells, Index, Slabs, advance, joined, sizes, slabs_of
-from continuation.certificate.engine import Engine, Judged
+from continuation.certificate.engine import Engine, Judged, together
 from continuation.certificate.folds import Piece, told
-from continuation.certificate.links import Nodes
+from continuation.certificate.links import INFLATION, Nodes, largest, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
@@ -22,17 +22,11 @@ STILL_ULPS = 1024.0
 FIRST_RADII = 0.1
 """The radii that a test begins with, in half widths of a slab: they widen the derivatives by so much."""
 
-INFLATION = 1.1
-"""How much wider than what the test gives the next radii are: a fixed point is approached from above."""
-
 WIDE = 10.0
 """Radii of so many sizes of the cell are given up: they grow from one trial to the next."""
 
-CELL_TESTS, RADII = 6, 12
-"""Tests of a cell, and radii that are tried with the bounds of one of them."""
-
-SOON, HOPELESS = 3, 1.3
-"""After so many radii their shape has settled; where the image is then wider than they are by so much, it stays so."""
+CELL_TESTS = 6
+"""Tests of a cell, with more slabs or other radii each time."""
 
 CONTRACTING = 0.6
 """A bound of |I - Y G'| above this, in the norm of the radii, calls for more slabs: it falls with their length, to the
@@ -91,7 +85,7 @@ def search(engine: Engine, cells: Cells) -> Found:
     cells : Cells
         With lengths of components that stand still for radii.
     """
-    found = [_search(engine, cells.take(place)) for place in _together(engine, cells)]
+    found = [_search(engine, cells.take(place)) for place in together(engine, cells)]
     return Found(
         joined([one.cells for one in found]),
         np.concatenate([one.proved for one in found]),
@@ -101,21 +95,12 @@ def search(engine: Engine, cells: Cells) -> Found:
     )
 
 
-def _together(engine: Engine, cells: Cells) -> list[Index]:
-    """Places of cells to be judged together, by the number of their slabs."""
-    most = engine.together(cells.radius.shape[1])
-    groups = (np.cumsum(cells.slabs) - cells.slabs) // most
-    return np.split(np.arange(len(cells)), np.flatnonzero(np.diff(groups)) + 1)
-
-
 def _search(engine: Engine, cells: Cells) -> Found:
     count, scale = len(cells), sizes(cells, cells.radius)
-    ends = Nodes.unknown(count, scale.shape[1])
-    radius = np.zeros_like(scale)
-    slabs = cells.slabs.copy()
+    ends, slabs = Nodes.unknown(count, scale.shape[1]), cells.slabs.copy()
+    radius = FIRST_RADII * scale / (2.0 * slabs[:, None])
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
     known: list[list[Piece]] = [[] for _ in range(count)]
-    radius[:] = FIRST_RADII * scale / (2.0 * slabs[:, None])
     pending = np.arange(count)
     for _ in range(CELL_TESTS):
         if not len(pending):
@@ -125,7 +110,8 @@ def _search(engine: Engine, cells: Cells) -> Found:
         judged = engine.judge(parts, tried.radius[parts.owner])
         # Exact bounds hold for all radii, others for those that they were made with.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
-        wanted, kappa, off = _fixed_point(parts, judged, tried, scale[pending], bounded)
+        least = LEAST_RADIUS * scale[pending] + STILL_ULPS * EPS * np.maximum(np.abs(tried.begin), np.abs(tried.end))
+        wanted, kappa, _ = settled(judged, parts.owner, least, bounded, WIDE * scale[pending])
         good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             tube = wanted[parts.owner]
@@ -133,24 +119,18 @@ def _search(engine: Engine, cells: Cells) -> Found:
                 if good[piece.cell]:
                     known[pending[piece.cell]].append(piece)
             ends.put(pending[good], _ends(parts, judged, tube).take(good))
-        undefined[pending] = ~np.isfinite(off)
-        with np.errstate(all="ignore"):
-            radius[pending] = np.where(good[:, None], wanted, INFLATION * wanted)
         proved[pending] = good
+        undefined[pending] = ~np.isfinite(largest(judged.misfit, parts.owner, len(tried))).all(axis=1)
         # Bounds that hold for all radii are the same again; the others are not.
         more = ~good & (engine.exact | ~(kappa < CONTRACTING))
-        if engine.exact and more.any():
-            kappa, wide = _without_tube(parts, judged, tried, wanted)
-            slabs[pending[more & (wide | (kappa < CONTRACTING))]] = engine.most + 1
         with np.errstate(all="ignore"):
-            least = np.ceil(np.minimum(2.0 * kappa / CONTRACTING, 8.0) ** (1.0 / engine.order))
-            factor = np.where(np.isfinite(kappa), least, 4.0)
-        grown = np.where(more, np.maximum(2, factor) * slabs[pending], slabs[pending]).astype(np.intp)
-        slabs[pending] = np.minimum(grown, engine.most + 1)
-        again = more | ~np.asarray(np.isfinite(wanted).all(axis=1))
-        radius[pending] = np.where(
-            (again & ~good)[:, None], FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None]), radius[pending]
-        )
+            factor = np.ceil(np.clip(2.0 * kappa / CONTRACTING, 2.0**engine.order, 8.0) ** (1.0 / engine.order))
+            cut = np.where(more, np.where(np.isfinite(kappa), factor, 4.0), 1.0) * slabs[pending]
+            wider = np.where(good[:, None], wanted, INFLATION * wanted)
+        slabs[pending] = np.minimum(cut, engine.most + 1).astype(np.intp)
+        first = FIRST_RADII * scale[pending] / (2.0 * slabs[pending][:, None])
+        again = ~good & (more | ~np.isfinite(wanted).all(axis=1))
+        radius[pending] = np.where(again[:, None], first, wider)
         pending = pending[~good & (slabs[pending] <= engine.most)]
     return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known, ends)
 
@@ -160,57 +140,6 @@ def _ends(slabs: Slabs, judged: Judged, tube: Array) -> Nodes:
     last = np.flatnonzero(np.append(np.diff(slabs.owner) != 0, True))
     found = judged.closed(tube)
     return Nodes.unknown(len(last), tube.shape[1]) if found is None else Nodes(found[0][last], found[1][last])
-
-
-def _fixed_point(
-    slabs: Slabs, judged: Judged, cells: Cells, scale: Array, bounded: Array
-) -> tuple[Array, Array, Array]:
-    """Radii a little above what the test gives back, the bound of the contraction, and the misfit in sizes; a cell."""
-    count, owner = len(cells), slabs.owner
-    least = LEAST_RADIUS * scale + STILL_ULPS * EPS * np.maximum(np.abs(cells.begin), np.abs(cells.end))
-    with np.errstate(all="ignore"):
-        off = _largest(judged.misfit, owner, count)
-        radius = np.minimum(np.maximum(2.0 * off, least), bounded)
-        radius = np.where(np.isfinite(radius), radius, cells.radius)
-        kappa = np.full(count, np.inf)
-        for k in range(RADII):
-            image = _largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, count)
-            kappa = (image / radius).max(axis=1)
-            total = off + image
-            inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
-            hopeless = ~(radius <= WIDE * scale).all(axis=1) | (k >= SOON) & (kappa > HOPELESS)
-            if (inside | hopeless).all():
-                break
-            radius = np.where(inside[:, None], radius, np.maximum(INFLATION * total, least))
-        return radius, kappa, (off / scale).max(axis=1)
-
-
-def _without_tube(slabs: Slabs, judged: Judged, cells: Cells, radius: Array) -> tuple[Array, Mask]:
-    """The contraction along the cubics alone, and whether tubes are too wide however short the slabs are; a cell.
-
-    What the width of a tube adds to the derivative is not less over a shorter slab, nor is the misfit: where their
-    equation alone has no fixed point, more slabs are in vain.
-    """
-    count, owner = len(cells), slabs.owner
-    with np.errstate(all="ignore"):
-        kappa = _largest(judged.spread(radius[owner], 0.0 * radius[owner]) / radius[owner], owner, count).max(axis=1)
-        off = _largest(judged.misfit, owner, count)
-        x, narrow = 2.0 * off + np.finfo(float).tiny, np.zeros(count, bool)
-        for _ in range(RADII):
-            own = x[owner]
-            image = off + _largest(judged.spread(own, own) - judged.spread(own, 0.0 * own), owner, count)
-            narrow |= np.asarray((image < x).all(axis=1))
-            if narrow.all():
-                break
-            x = np.where(narrow[:, None], x, INFLATION * image)
-        return kappa, ~narrow
-
-
-def _largest(values: Array, owner: Index, count: int) -> Array:
-    """The largest of each cell's slabs; nan where one is."""
-    out = np.zeros((count, values.shape[1]))
-    np.maximum.at(out, owner, values)
-    return out
 
 
 def _every(values: Mask, owner: Index, count: int) -> Mask:
@@ -235,7 +164,7 @@ def check(engine: Engine, cells: Cells) -> tuple[Mask, Nodes]:
         Where the bounds tell it.
     """
     good, ends = [], []
-    for place in _together(engine, cells):
+    for place in together(engine, cells):
         some = cells.take(place)
         parts = slabs_of(some)
         radius = some.radius[parts.owner]

@@ -10,17 +10,16 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, along, expansion, joined, sizes
-from continuation.certificate.closing import LIMIT, NO_CURVE, at_end, at_target, certificate_of, series_of
+from continuation.certificate.cells import OVERHANG, Cells, Index, at_node, joined, sizes
+from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
-from continuation.certificate.folds import RANGE, Piece, Turn, located, pieces, turns
+from continuation.certificate.folds import RANGE, Piece, located, pieces, turns
 from continuation.certificate.links import NODE_ULPS, Nodes, linked, nodes, reach
 from continuation.certificate.proof import Gap, Proof, merged
 from continuation.certificate.tubes import check
 from continuation.numbers.ends import EPS, Ends, Mask, thin
 from continuation.path import LocatedEvent, Path
-from continuation.point.segment import HermiteSegment
-from continuation.status import Kind
+from continuation.status import Kind, Status
 
 NOT_A_NODE = "a point of the path is no node of the proof"
 OFF_CURVE = "a point of the path does not lie on the curve"
@@ -31,8 +30,8 @@ POINT_DISTANCE = 1e-4
 """How far a point or an event may be from the curve, in sizes of its step: located ones are off by their tolerance, of
 1e-6."""
 
-LINK_TRIALS = 3
-"""Looks at the links: with what tubes tell of their ends, with tests of these alone, and with wider tubes."""
+PARAMETER_STEPS = 30
+"""Of Newton's method from the middle of a cell, along which its chart advances."""
 
 WIDER = 1.5
 """A tube that does not hold its neighbour's node is tried with radii that do, and so much more."""
@@ -78,20 +77,18 @@ def verified(
     ]
     gaps += _order(cells, path, ends.take(slice(0, 1)))
     gaps += _beside(engine, cells, at, ends.take(slice(0, 1)), path)
-    there, before = at_target(cells, ends, path), float(cells.place[-1, 1])
-    certificate = "" if there else certificate_of(cells, at, path, homotopy)
-    series = "" if certificate else series_of(cells, at, path)
-    if certificate or series:
-        gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END, NO_CURVE)]
+    end, radius, missing = ending(cells, at, ends, path, homotopy)
+    before, last = float(cells.place[-1, 1]), float(path.arclength[-1])
+    if end and radius is None and path.status is Status.REACHED_TARGET:
+        # What is said of the end takes the place of the rest.
+        gaps = [gap for gap in gaps if gap.begin < before or gap.reason not in (NOT_A_NODE, NO_END)]
     places = [_place(cells, event, path.arclength) for event in path.events]
-    places = _on_curve(engine, cells, path, places)
+    _leave_out(engine, cells, path, places)
     told = _between_nodes(known or pieces(engine, cells), cells, ends, at)
     turning, more = _turning(engine, cells, told, path, places)
     gaps += more + _events(path, places)
-    end, radius, missing = (certificate, None, []) if certificate else at_end(at, ends, path, there)
-    if series:
-        end, missing = series, [Gap(before, float(path.arclength[-1]), LIMIT)]
-    gaps += missing
+    if missing:
+        gaps.append(Gap(before if missing == LIMIT else last, last, missing))
     return Proof(cells, at.radius, merged(gaps), turning, end, radius)
 
 
@@ -113,16 +110,13 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
     every = nodes(engine, joined([cells.take(ask), first, last]), s)
     at.put(ask, every.take(slice(0, -2)))
     joints = linked(cells.take(slice(None, -1)), at.take(slice(0, -1)), cells.take(slice(1, None)))
-    asked = ask
-    for _ in range(LINK_TRIALS - 1):
+    # What the bounds of a tube tell of its end may be wide: that alone is looked at, and then with wider tubes.
+    for wider in (False, True):
         left = np.flatnonzero(~joints)
         if not len(left):
             break
-        ask = np.append(~joints, False) & ~asked
-        asked = asked | ask
-        if not ask.any():
-            cells = _widened(engine, cells, at, left)
-            ask = ~at.proved
+        cells = _widened(engine, cells, at, left) if wider else cells
+        ask = ~at.proved if wider else np.append(~joints, False)
         if ask.any():
             at.put(ask, nodes(engine, cells.take(ask), np.ones(ask.sum())))
         # Links that hold do so between wider tubes as well.
@@ -132,12 +126,10 @@ def _joined_up(engine: Engine, cells: Cells, known: Nodes) -> tuple[Cells, Nodes
 
 def _widened(engine: Engine, cells: Cells, at: Nodes, left: Index) -> Cells:
     """The cells, those to the left and to the right of links that fail with wider tubes, where these are proved."""
-    wanted = cells.radius.copy()
-    for k, least in (
-        (left, at.radius[left]),
-        (left + 1, reach(cells.take(left + 1), np.zeros(len(left)), at.radius[left])),
-    ):
-        wanted[k] = np.maximum(wanted[k], np.where(np.isfinite(least), WIDER * least, 0.0))
+    wanted, off = cells.radius.copy(), at.radius[left]
+    wanted[left] = np.fmax(wanted[left], WIDER * off)
+    least = reach(cells.take(left + 1), np.zeros(len(left)), Ends(-off, off))
+    wanted[left + 1] = np.fmax(wanted[left + 1], WIDER * least)
     changed = np.flatnonzero((wanted > cells.radius).any(axis=1))
     if not len(changed):
         return cells
@@ -151,16 +143,16 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
     """That the points of the path are nodes, in order, and that nothing is between cells; and the start."""
     gaps = []
     arclength, points = path.arclength, path.u
+    places = cells.place.ravel().tolist()
+    corners = np.stack([cells.begin, cells.end], axis=1).reshape(-1, points.shape[1])
     k = 0
     for j, (s, u) in enumerate(zip(arclength.tolist(), points)):
-        while k < len(cells) and not (cells.place[k, 0] == s and (cells.begin[k] == u).all()):
-            if cells.place[k, 1] == s and (cells.end[k] == u).all():
-                break
+        while k < len(places) and not (places[k] == s and (corners[k] == u).all()):
             k += 1
-        if k == len(cells):
+        if k == len(places):
             before = float(arclength[max(j - 1, 0)])
-            at_end = bool(j == len(points) - 1 and before < cells.place[-1, 1])
-            gaps.append(Gap(float(cells.place[-1, 1]) if at_end else before, float(s), NOT_A_NODE))
+            at_end = j == len(points) - 1 and before < places[-1]
+            gaps.append(Gap(places[-1] if at_end else before, s, NOT_A_NODE))
             break
     for (_, before), (after, _) in pairwise(cells.place.tolist()):
         if before != after:
@@ -219,57 +211,42 @@ def _turning(
     """Ranges of arclength with one turning point each, and where they are not those of the path."""
     understood, unknown = turns(found)
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
-    turning = {id(event) for event in path.turning_points}
-    listed = [(p, event.arclength) for p, event in zip(places, path.events) if id(event) in turning]
-    understood = located(engine, cells, understood, [place for place, _ in listed if place is not None])
-    wide = [turn for turn in understood if turn.hi - turn.lo > RANGE and _counts(turn, listed)]
-    gaps += [Gap(*_range(cells, turn.lo, turn.hi), NOWHERE) for turn in wide]
-    gaps += _unlike(cells, understood, listed, "turning point")
-    return tuple(_range(cells, turn.lo, turn.hi) for turn in understood if _counts(turn, listed)), gaps
-
-
-def _unlike(
-    cells: Cells, found: list[Turn], listed: list[tuple[float | None, float]], name: str, shared: bool = False
-) -> list[Gap]:
-    """Where what was found is not what is listed."""
-    gaps: list[Gap] = []
-    used: set[int] = set()
-    for turn in found:
-        slack = 2.0 * OVERHANG
-        inside = [
+    listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.turns]
+    ranges, taken, slack = [], set(), 2.0 * OVERHANG
+    for turn in located(engine, cells, understood, [place for place, _ in listed if place is not None]):
+        inside = {
             k
             for k, (place, _) in enumerate(listed)
-            if place is not None and (shared or k not in used) and turn.lo - slack <= place <= turn.hi + slack
-        ]
-        most = sum(other.lo <= turn.hi and turn.lo <= other.hi for other in found) if shared else 1
-        if (turn.certain and not inside) or len(inside) > most:
-            reason = f"a {name} that the path does not list" if not inside else f"more {name}s are listed"
-            gaps.append(Gap(*_range(cells, turn.lo, turn.hi), reason))
-        used.update(inside)
-    gaps += [Gap(s, s, f"a {name} is listed where there is none") for k, (_, s) in enumerate(listed) if k not in used]
-    return gaps
-
-
-def _counts(turn: Turn, listed: list[tuple[float | None, float]]) -> bool:
-    slack = 2.0 * OVERHANG
-    return turn.certain or any(p is not None and turn.lo - slack <= p <= turn.hi + slack for p, _ in listed)
+            if place is not None and k not in taken and turn.lo - slack <= place <= turn.hi + slack
+        }
+        if not turn.certain and not inside:
+            continue  # beyond an end of the path
+        where = _range(cells, turn.lo, turn.hi)
+        ranges.append(where)
+        taken |= inside
+        if turn.hi - turn.lo > RANGE:
+            gaps.append(Gap(*where, NOWHERE))
+        if len(inside) != 1:
+            more = "more turning points are listed" if inside else "a turning point that the path does not list"
+            gaps.append(Gap(*where, more))
+    gaps += [
+        Gap(s, s, "a turning point is listed where there is none") for k, (_, s) in enumerate(listed) if k not in taken
+    ]
+    return tuple(ranges), gaps
 
 
 def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
     """Places in cells as arclengths."""
-    out = []
-    for place in (lo, hi):
-        k = min(max(int(place), 0), len(cells) - 1)
-        begin, end = cells.place[k].tolist()
-        out.append(begin + min(max(place - k, 0.0), 1.0) * (end - begin))
-    return out[0], out[1]
+    k = np.clip(np.array([lo, hi]).astype(int), 0, len(cells) - 1)
+    begin, end = cells.place[k].T
+    first, last = (begin + np.clip([lo, hi] - k, 0.0, 1.0) * (end - begin)).tolist()
+    return first, last
 
 
 def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> float | None:
     """Cell and parameter of a point that lies in the tube; None where it lies in none.
 
-    With c . (u - p(s - e)) > 0 > c . (u - p(s + e)) it belongs to a parameter in between, and is to be within the
-    radius of all that the cubic is there. Arclengths of cells are shares of those of a step between two of `knots`,
+    Arclengths of cells are shares of those of a step between two of `knots`,
     which tell little more than which step it is.
     """
     s = event.arclength
@@ -279,11 +256,10 @@ def _place(cells: Cells, event: LocatedEvent, knots: Array | None = None) -> flo
         k = int(_later(knots, np.array(s)))
         near |= (knots[k - 1] <= cells.place[:, 0]) & (cells.place[:, 1] <= knots[k])
     for k in np.flatnonzero(near).tolist():
-        cell = cells.take(np.array([k]))
+        cell = cells.take(slice(k, k + 1))
         t = _parameter(cell, event.u)
-        for width in (1e-9, 1e-6, 0.5 * OVERHANG):
-            if -OVERHANG + width <= t <= 1.0 + OVERHANG - width and _inside(cell, t, width, event.u):
-                return float(k + t)
+        if (reach(cell, t, thin(event.u) - at_node(cell, t).over[0]) <= cell.radius).all():
+            return float(k + t[0])
     return None
 
 
@@ -292,45 +268,28 @@ def _later(knots: Array, s: Array) -> NDArray[np.intp]:
     return np.clip(np.searchsorted(knots, s), 1, len(knots) - 1)
 
 
-def _on_curve(engine: Engine, cells: Cells, path: Path, places: list[float | None]) -> list[float | None]:
-    """The places of events next to which there is a point of the curve; None for others, in a wide tube."""
-    known = [k for k, place in enumerate(places) if place is not None]
+def _leave_out(engine: Engine, cells: Cells, path: Path, places: list[float | None]) -> None:
+    """Make None of the places of events next to which there is no point of the curve, in a wide tube."""
+    known = {k: place for k, place in enumerate(places) if place is not None}
     if not known:
-        return places
-    owner = np.clip(np.array([int(places[k] or 0.0) for k in known]), 0, len(cells) - 1)
-    own, u = cells.take(owner), np.array([path.events[k].u for k in known])
-    at = nodes(engine, evolve(own, begin=u), np.zeros(len(known)))
-    allowed = _allowed(own, u, np.array([path.events[k].arclength for k in known]), path)
-    near = np.asarray((at.radius <= allowed).all(axis=1))
-    lost = {k for k, good in zip(known, near) if not good}
-    return [None if k in lost else place for k, place in enumerate(places)]
+        return
+    own = cells.take(np.clip(np.array([*known.values()]).astype(int), 0, len(cells) - 1))
+    u, s = (np.array([getattr(path.events[k], name) for k in known]) for name in ("u", "arclength"))
+    near = nodes(engine, evolve(own, begin=u), np.zeros(len(u))).radius <= _allowed(own, u, s, path)
+    for k in np.flatnonzero(~near.all(axis=1)):
+        places[[*known][k]] = None
 
 
-def _parameter(cell: Cells, u: Array) -> float:
-    """Newton's method for c . (p(t) - u) = 0, in floats."""
-    c = cell.chart[0]
-    cubic = HermiteSegment(cell.begin[0], cell.end[0], cell.slope_begin[0], cell.slope_end[0])
+def _parameter(cell: Cells, u: Array) -> Array:
+    """About where c . (p(t) - u) = 0 in a cell, by Newton's method."""
+    chord = cell.end - cell.begin
+    bend = 3.0 * chord - 2.0 * cell.slope_begin - cell.slope_end
+    rows = cell.begin - u, cell.slope_begin, bend, cell.slope_begin + cell.slope_end - 2.0 * chord
+    a, b, c, d = (float(cell.chart[0] @ row[0]) for row in rows)
     t = 0.5
-    for _ in range(30):
-        slope, before = float(c @ cubic.derivative(t)), t
-        if not slope > 0.0:
-            return np.nan
-        t = min(max(t + float(c @ (u - cubic.at(t))) / slope, -OVERHANG), 1.0 + OVERHANG)
-        if abs(t - before) < 1e-12:
-            break
-    return t
-
-
-def _inside(cell: Cells, t: float, width: float, u: Array) -> bool:
-    signs = []
-    for s, side in ((t - width, 1.0), (t + width, -1.0)):
-        q0 = expansion(Slabs(np.zeros(1, int), np.array([s]), np.zeros(1), cell)).q[0]
-        lo, hi = along(cell.chart, thin(u[None]) - q0)
-        signs.append(lo[0] > 0.0 if side > 0.0 else hi[0] < 0.0)
-    room = Slabs(np.zeros(1, int), np.array([t]), np.array([width]), cell)
-    x = room.offset[:, None]
-    off = thin(u[None]) - expansion(room).over(Ends(-x, x))[0]
-    return bool(all(signs) and (off.magnitude() <= cell.radius).all())
+    for _ in range(PARAMETER_STEPS):
+        t = min(max(t - (a + t * (b + t * (c + t * d))) / (b + t * (2.0 * c + 3.0 * t * d)), 0.0), 1.0)
+    return np.array([t])
 
 
 def _events(path: Path, places: list[float | None]) -> list[Gap]:

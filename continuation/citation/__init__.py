@@ -8,6 +8,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from continuation.arguments.checks import complain
 from continuation.citation.bibliography import ALLGOWER_GEORG, GOVAERTS, MORGAN_SOMMESE_WAMPLER, SOFTWARE
+from continuation.homotopy import Homotopy, SupportsReferences, offers
 from continuation.status import Kind
 
 _KEY = re.compile(r"@\w+\s*\{\s*([^,\s]+)\s*,")
@@ -46,7 +47,7 @@ def cite(source: Any) -> str:
         ends = (MORGAN_SOMMESE_WAMPLER,) if source.winding_number is not None else ()
         crossed = (GOVAERTS,) if any(event.kind == Kind.BRANCH_POINT for event in source.events) else ()
         return "\n\n".join(unique((SOFTWARE, ALLGOWER_GEORG, *ends, *crossed, *source.references)))
-    if not hasattr(source, "references") and not callable(getattr(source, "residual", None)):
+    if not offers(source, SupportsReferences) and not offers(source, Homotopy):
         raise TypeError(f"source: expected a path or a homotopy, found {type(source).__name__}")
     return "\n\n".join(unique((SOFTWARE, *references_of(source))))
 

@@ -17,13 +17,15 @@ class Eliminated:
     border are m + 1 equations in sigma and p, and det = det F times the determinant of these.
 
     `base`: F. `solved`, of shape (N + 1, m + 1): (y, s) that follow from sigma = 1, and from each of p. `rows`, of
-    shape (m, N + m): The conditions and the border. `small`: The m + 1 equations.
+    shape (m, N + m): The conditions and the border. `small`: The m + 1 equations. `hidden`: Whether the unknown beside
+    follows from the others and is not asked for, nor the condition that it follows from.
     """
 
     base: BorderedSystem
     solved: Array
     rows: Array
     small: BorderedSystem
+    hidden: bool
 
     @property
     def sign(self) -> int:
@@ -31,35 +33,21 @@ class Eliminated:
         return self.base.sign * self.small.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution z, shape (N + m,)."""
-        n = len(self.solved) - 1
+        """The solution z, shape (N + m,), or (N + m - 1,) without what is hidden."""
+        n, r = len(self.solved) - 1, np.append(r, 0.0) if self.hidden else r
         x = self.base.solve(r[:n], 0.0)
         left = np.append(r[n:], rho) - self.rows[:, :n] @ x[:n]
         q = self.small.solve(np.append(-x[n], left[:-1]), float(left[-1]))
         y = x[:n] + self.solved[:n] @ q
-        return np.concatenate([y, q[1:]])
+        z = np.concatenate([y, q[1:]])
+        return np.delete(z, -2) if self.hidden else z
 
 
-@frozen(eq=False)
-class Hiding:
-    """The same where the unknown beside follows from the others, and is not asked for."""
-
-    whole: Eliminated
-
-    @property
-    def sign(self) -> int:
-        """Sign of the determinant."""
-        return self.whole.sign
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The solution without that unknown."""
-        return np.delete(self.whole.solve(np.append(r, 0.0), rho), -2)
-
-
-def eliminated(base: BorderedSystem, columns: Array, rows: Array) -> Eliminated:
+def eliminated(base: BorderedSystem, columns: Array, rows: Array, hidden: bool = False) -> Eliminated:
     """Eliminate y.
 
-    `columns` of shape (N, m). `rows` of shape (m, N + m). Raises `SingularError` if the whole is singular.
+    `columns` of shape (N, m). `rows` of shape (m, N + m). `hidden`: As of `Eliminated`. Raises `SingularError` if the
+    whole is singular.
     """
     n = len(columns)
     first = base.solve(np.zeros(n), 1.0)
@@ -69,4 +57,4 @@ def eliminated(base: BorderedSystem, columns: Array, rows: Array) -> Eliminated:
     matrix = np.vstack([solved[n], below])
     if not np.isfinite(matrix).all():
         raise SingularError("the bordered solution is not finite")
-    return Eliminated(base, solved, rows, factor_bordered(matrix[:-1, :-1], matrix[:-1, -1], matrix[-1]))
+    return Eliminated(base, solved, rows, factor_bordered(matrix[:-1, :-1], matrix[:-1, -1], matrix[-1]), hidden)

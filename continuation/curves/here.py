@@ -12,7 +12,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from continuation.arrays import Array, Matrix
 from continuation.curves.calculus import Calculus
-from continuation.curves.elimination import Hiding, eliminated
+from continuation.curves.elimination import eliminated
 from continuation.curves.local import Local
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
@@ -93,6 +93,6 @@ class Here:
         """The derivative with a border, factored by elimination."""
         local, n = self.local, self.u.size
         columns = np.column_stack([self.apply(np.append(np.zeros(n - 1), 1.0)), local.column, self.by_parameter])
-        if local.hidden is None:
-            return eliminated(local.base, columns, np.vstack([local.rows, border]))
-        return Hiding(eliminated(local.base, columns, np.vstack([local.rows, np.insert(border, n, 0.0)])))
+        hidden = local.hidden is not None
+        last = np.insert(border, n, 0.0) if hidden else border
+        return eliminated(local.base, columns, np.vstack([local.rows, last]), hidden)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import dis
 import os
+from traceback import walk_tb
 from typing import ClassVar
 
 from continuation.rejection import Rejection
@@ -33,18 +33,17 @@ class SingularPointError(EvaluationError):
     rejection = Rejection.SINGULAR
 
 
+MATHS_OWN = ("math domain error", "expected a")
+"""How `math` begins to say that an argument lies outside a function's domain: up to Python 3.13, and from 3.14 on."""
+
+
 def unevaluated(what: str, error: BaseException) -> EvaluationError:
     """The error for a function that raised: of `math`, numpy and scipy it is the domain's edge, else its author's."""
     if isinstance(error, EvaluationError):
         # Of a homotopy that evaluates others, which has said it.
         return error
-    place = error.__traceback__
-    while place is not None and place.tb_next is not None:
-        place = place.tb_next
-    if type(error) is not ValueError or place is None:
+    *_, (frame, line) = walk_tb(error.__traceback__)
+    module = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+    if type(error) is not ValueError or module in ("numpy", "scipy") or str(error).startswith(MATHS_OWN):
         return NotFiniteError(f"the {what} could not be evaluated: {error}")
-    code, module = place.tb_frame.f_code, str(place.tb_frame.f_globals.get("__name__", ""))
-    written = code.co_code[place.tb_lasti] == dis.opmap["RAISE_VARARGS"]
-    if not written or module.partition(".")[0] in ("numpy", "scipy"):
-        return NotFiniteError(f"the {what} could not be evaluated: {error}")
-    return RaisedError(f"ValueError: {error} ({os.path.basename(code.co_filename)}, line {place.tb_lineno})")
+    return RaisedError(f"ValueError: {error} ({os.path.basename(frame.f_code.co_filename)}, line {line})")

@@ -2,35 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear.look import Look
-
-
-@frozen(eq=False)
-class Cholmod:
-    """``P A P' = L L'``."""
-
-    name: ClassVar[str] = "CHOLMOD"
-    sign: ClassVar[int] = 1
-    factors: Any
-
-    @property
-    def fill(self) -> int:
-        """Zero: cvxopt does not say it."""
-        return 0
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        from cvxopt import cholmod, matrix
-
-        x = matrix(rhs)
-        cholmod.solve(self.factors, x)
-        return np.array(x).ravel()
+from continuation.linear.superlu import SparseFactor
 
 
 @frozen
@@ -53,9 +32,10 @@ class CholmodMethod:
         """Whether the matrix may be symmetric and positive definite."""
         return look.definite_perhaps
 
-    def factor(self, look: Look) -> Cholmod | None:
+    def factor(self, look: Look) -> SparseFactor | None:
         """The factors; None where a pivot is not positive."""
         from cvxopt import cholmod, spmatrix
+        from cvxopt import matrix as column
 
         entries = look.matrix.tocoo()
         lower = entries.row >= entries.col
@@ -67,4 +47,11 @@ class CholmodMethod:
             cholmod.numeric(matrix, factors)
         except ArithmeticError:
             return None
-        return Cholmod(factors)
+
+        def solve(rhs: Array) -> Array:
+            x = column(rhs)
+            cholmod.solve(factors, x)
+            return np.array(x).ravel()
+
+        # How many numbers they are cvxopt does not say.
+        return SparseFactor("CHOLMOD", solve, 0, lambda: 1)

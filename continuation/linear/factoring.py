@@ -5,29 +5,14 @@ from __future__ import annotations
 from importlib.util import find_spec
 from typing import Protocol
 
-from attrs import define, field, frozen
+from attrs import define, field
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Matrix
 from continuation.linear.cholmod import CholmodMethod
 from continuation.linear.look import Look
 from continuation.linear.multigrid import MultigridMethod
 from continuation.linear.pardiso import PardisoMethod
-from continuation.linear.refine import Factored
-from continuation.linear.superlu import SuperLUMethod
-
-
-class SparseFactor(Factored, Protocol):
-    """A sparse matrix made ready for solves; its `sign` is 0 where that is not known."""
-
-    @property
-    def name(self) -> str:
-        """Of what made it, as a message has it."""
-        ...
-
-    @property
-    def fill(self) -> int:
-        """How many numbers it holds; 0 where that is not told."""
-        ...
+from continuation.linear.superlu import SparseFactor, SuperLUMethod
 
 
 class SparseMethod(Protocol):
@@ -89,34 +74,10 @@ def installed(method: SparseMethod) -> bool:
     return find_spec(method.needs) is not None
 
 
-@frozen(eq=False)
-class Negative:
-    """A matrix of which the negative was factored.
-
-    `n`: The order.
-    """
-
-    factor: SparseFactor
-    n: int
-
-    @property
-    def name(self) -> str:
-        """As of the factors."""
-        return self.factor.name
-
-    @property
-    def fill(self) -> int:
-        """As of the factors."""
-        return self.factor.fill
-
-    @property
-    def sign(self) -> int:
-        """Of det A = (-1)^n det(-A)."""
-        return -self.factor.sign if self.n % 2 else self.factor.sign
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        return -self.factor.solve(rhs)
+def negated(factor: SparseFactor, n: int) -> SparseFactor:
+    """Factors of -A, of order n, as those of A; det A = (-1)^n det(-A)."""
+    solve, sign = factor.solve, factor.tell_sign
+    return SparseFactor(factor.name, lambda rhs: -solve(rhs), factor.fill, lambda: -sign() if n % 2 else sign())
 
 
 @define(eq=False)
@@ -168,7 +129,7 @@ class Factoring:
         for one in asked:
             factor = one.factor(positive) if one.suits(positive) else None
             if factor is not None:
-                return Negative(factor, look.n) if negative else factor
+                return negated(factor, look.n) if negative else factor
         return None
 
     def _asked(self, one: SparseMethod, n: int) -> bool:

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import cg
 from continuation.arrays import Array
 from continuation.linear.look import Look
 from continuation.linear.refine import BACKWARD_ERROR
-from continuation.linear.superlu import SuperLUMethod
+from continuation.linear.superlu import SparseFactor, SuperLUMethod
 
 GAINED = 1e-7
 """What one run of conjugate gradients leaves of a residual: two or three bring it to round-off. With one alone its
@@ -36,20 +36,8 @@ class Multigrid:
     `levels`: The hierarchy of pyamg.
     """
 
-    name: ClassVar[str] = "multigrid"
     look: Look
     levels: Any
-
-    @property
-    def sign(self) -> int:
-        """+1 where dominance proves it, else 0."""
-        return 1 if self.look.dominant else 0
-
-    @property
-    def fill(self) -> int:
-        """Entries of the matrices of all levels and of the interpolations between them."""
-        levels = self.levels.levels
-        return int(sum(level.A.nnz for level in levels) + sum(level.P.nnz for level in levels[:-1]))
 
     @cached_property
     def _preconditioner(self) -> Any:
@@ -100,8 +88,12 @@ class MultigridMethod:
         """Whether the matrix is of the diffusion kind."""
         return look.diffusion
 
-    def factor(self, look: Look) -> Multigrid:
+    def factor(self, look: Look) -> SparseFactor:
         """The hierarchy."""
         import pyamg
 
-        return Multigrid(look, pyamg.ruge_stuben_solver(csr_matrix(look.matrix)))
+        grids = pyamg.ruge_stuben_solver(csr_matrix(look.matrix))
+        # The matrices of all levels, and the interpolations between them.
+        fill = sum(grid.A.nnz for grid in grids.levels) + sum(grid.P.nnz for grid in grids.levels[:-1])
+        # Dominance proves that the determinant is positive.
+        return SparseFactor("multigrid", Multigrid(look, grids).solve, int(fill), lambda: int(look.dominant))

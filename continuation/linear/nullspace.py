@@ -14,7 +14,7 @@ from scipy.sparse.linalg import splu
 from continuation.arrays import Array, Matrix
 from continuation.linear.dense import lu_sign
 from continuation.linear.entries import extended
-from continuation.linear.superlu import SuperLU
+from continuation.linear.superlu import superlu_sign
 from continuation.linear.system import SingularError
 
 LONG = 10.0
@@ -74,7 +74,7 @@ class Factors:
     def sign(self) -> int:
         """Sign of the determinant of a real matrix."""
         if sp.issparse(self.matrix):
-            return SuperLU(self.lu).sign
+            return superlu_sign(self.lu)
         lu, pivots = self.lu
         return lu_sign(pivots, lu.diagonal())
 

@@ -3,40 +3,21 @@
 from __future__ import annotations
 
 import weakref
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from attrs import frozen
 from scipy.sparse import csr_matrix
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.linear.look import Look
+from continuation.linear.superlu import SparseFactor
 
 UNSYMMETRIC = 11
 """PARDISO's word for real matrices without symmetry, which are all that pypardiso tests."""
 
 ENTRIES, PERTURBED = 18, 14
 """Where PARDISO counts entries of the factors, and pivots that it moved away from zero."""
-
-
-@frozen(eq=False)
-class Pardiso:
-    """Factors with static pivots, whose sign is not told."""
-
-    name: ClassVar[str] = "PARDISO"
-    sign: ClassVar[int] = 0
-    solver: Any
-    matrix: Matrix
-
-    @property
-    def fill(self) -> int:
-        """Entries of the factors."""
-        return int(self.solver.get_iparm(ENTRIES))
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        x: Array = self.solver.solve(self.matrix, rhs)
-        return x.ravel()
 
 
 @frozen
@@ -60,7 +41,7 @@ class PardisoMethod:
         """Whether no diagonal entry is zero: a pivot that is gets another value in place of an exchange."""
         return bool(look.diagonal.all())
 
-    def factor(self, look: Look) -> Pardiso | None:
+    def factor(self, look: Look) -> SparseFactor | None:
         """The factors; None where a pivot was zero, about."""
         from pypardiso import PyPardisoSolver
         from pypardiso.pardiso_wrapper import PyPardisoError
@@ -70,6 +51,12 @@ class PardisoMethod:
             solver.factorize(matrix)
         except PyPardisoError:
             return None
-        factors = Pardiso(solver, matrix)
+
+        def solve(rhs: Array) -> Array:
+            x: Array = solver.solve(matrix, rhs)
+            return x.ravel()
+
+        # Pivots are static, and their signs are not told.
+        factors = SparseFactor("PARDISO", solve, int(solver.get_iparm(ENTRIES)), lambda: 0)
         weakref.finalize(factors, solver.free_memory, everything=True)
         return None if solver.get_iparm(PERTURBED) else factors

@@ -8,8 +8,9 @@ from scipy.sparse import csc_array
 
 from continuation.arrays import Array, Matrix
 from continuation.linear.entries import extended
-from continuation.linear.factoring import Factoring, SparseFactor
+from continuation.linear.factoring import Factoring
 from continuation.linear.refine import BorderedMatrix, eliminate, join, refined
+from continuation.linear.superlu import SparseFactor
 from continuation.linear.system import BorderedSystem, SingularError
 
 

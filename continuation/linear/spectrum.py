@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 from scipy.linalg import eigvals, lu_factor, lu_solve
-from scipy.linalg.lapack import dsytrf, dsytrf_lwork
 from scipy.sparse import csc_array, eye_array, issparse
 
 from continuation.arrays import Array, Matrix, generic_vector
 from continuation.linear.banded import Banded
 from continuation.linear.sparse import factor_square
-from continuation.linear.symmetric import Symmetric
+from continuation.linear.symmetric import Symmetric, factor_ldl
 
 ALL_OF_DENSE = 100
 """Up to this order all eigenvalues of a dense matrix are computed: 8 ms there, and 80 ms at twice the order."""
@@ -109,7 +108,7 @@ def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
         If Arnoldi's method does not converge.
     """
     if isinstance(matrix, Symmetric):
-        return _of_signs(matrix, side)
+        return Spectrum(np.empty(0, dtype=complex), factor_ldl(matrix.matrix)[0].count(side))
     matrix = plain(matrix)
     if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
         raise TypeError(f"stability: expected H_y as a matrix, found {type(matrix).__name__}")
@@ -129,15 +128,6 @@ def _counted(values: Any, covered: bool = True) -> Spectrum:
     found = found[np.lexsort((-found.imag, -found.real))]
     size = float(np.abs(found).max())
     return Spectrum(found, int(np.count_nonzero(found.real > OFF_AXIS * size)), covered)
-
-
-def _of_signs(symmetric: Symmetric, side: int) -> Spectrum:
-    work, _ = dsytrf_lwork(symmetric.shape[0], lower=1)
-    ldu, pivots, _ = dsytrf(symmetric.matrix.T, lower=1, lwork=int(work))
-    # As LAPACK has it: pivots are negative in both rows of a block of order two, which has one eigenvalue of each sign.
-    single = ldu.diagonal()[pivots > 0]
-    pairs = (symmetric.shape[0] - single.size) // 2
-    return Spectrum(np.empty(0, dtype=complex), pairs + int(np.count_nonzero(side * single > 0.0)))
 
 
 def bounds(matrix: Matrix) -> tuple[float, float]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -31,31 +33,40 @@ def permutation_sign(permutation: NDArray[np.integer]) -> int:
 
 
 @frozen(eq=False)
-class SuperLU:
-    """``P_r A P_c = L U``, by SuperLU with partial pivoting."""
+class SparseFactor:
+    """A sparse matrix made ready for solves.
 
-    name: ClassVar[str] = "SuperLU"
-    lu: Matrix
+    Attributes
+    ----------
+    name : str
+        Of what made it, as a message has it.
+    solve : callable
+        The solution of A x = rhs, shape (N,); `rhs` is not modified.
+    fill : int
+        How many numbers it holds; 0 where that is not told.
+    tell_sign : callable
+        The sign of det A, 0 where that is not known.
+    """
+
+    name: str
+    solve: Callable[[Array], Array]
+    fill: int
+    tell_sign: Callable[[], int]
 
     @property
     def sign(self) -> int:
-        """Sign of det A, from the pivots and the parity of both permutations."""
-        negative = np.count_nonzero(self.lu.U.diagonal() < 0)
-        exchanges = permutation_sign(self.lu.perm_r) * permutation_sign(self.lu.perm_c)
-        return -exchanges if negative % 2 else exchanges
-
-    @property
-    def fill(self) -> int:
-        """Entries of L and U."""
-        return int(self.lu.nnz)
-
-    def solve(self, rhs: Array) -> Array:
-        """The solution of A x = rhs, shape (N,)."""
-        x: Array = self.lu.solve(rhs)
-        return x
+        """Sign of det A, worked out when it is asked for."""
+        return self.tell_sign()
 
 
-def factor_superlu(matrix: Matrix, **how: Any) -> SuperLU | None:
+def superlu_sign(lu: Any) -> int:
+    """Sign of the determinant of what SuperLU factored: from the pivots and the parity of both permutations."""
+    negative = np.count_nonzero(lu.U.diagonal() < 0)
+    exchanges = permutation_sign(lu.perm_r) * permutation_sign(lu.perm_c)
+    return -exchanges if negative % 2 else exchanges
+
+
+def factor_superlu(matrix: Matrix, **how: Any) -> SparseFactor | None:
     """Factors of a sparse (CSC) matrix by itself, with SuperLU's options; None where a pivot is exactly zero.
 
     Parameters
@@ -65,11 +76,12 @@ def factor_superlu(matrix: Matrix, **how: Any) -> SuperLU | None:
         As for `scipy.sparse.linalg.splu`.
     """
     try:
-        return SuperLU(splu(matrix, **how))
+        lu = splu(matrix, **how)
     except RuntimeError as error:
         if "singular" not in str(error):
             raise
         return None
+    return SparseFactor("SuperLU", lu.solve, int(lu.nnz), partial(superlu_sign, lu))
 
 
 @frozen
@@ -90,7 +102,7 @@ class SuperLUMethod:
         """Always."""
         return True
 
-    def factor(self, look: Look) -> SuperLU | None:
+    def factor(self, look: Look) -> SparseFactor | None:
         """The factors; None where a pivot is exactly zero."""
         if not self.weak_pivots:
             # On a face of a symmetric pattern this ordering fills half as much as the default one.

@@ -89,13 +89,15 @@ class LDL:
     pivots: NDArray[np.int32]
     """As LAPACK gives them: from one, and negative in both rows of a block of order two."""
 
+    def count(self, side: int) -> int:
+        """How many eigenvalues of A have a sign, by the inertia of D: each block of order two has one of either."""
+        single = self.ldu.diagonal()[self.pivots > 0]
+        return (len(self.pivots) - single.size) // 2 + int(np.count_nonzero(side * single > 0.0))
+
     @property
     def sign(self) -> int:
-        """Sign of det A, from the inertia of D: every block of order two has one negative eigenvalue."""
-        single = self.pivots > 0
-        pairs = np.count_nonzero(~single) // 2
-        negative = np.count_nonzero(self.ldu.diagonal()[single] < 0)
-        return -1 if (pairs + negative) % 2 else 1
+        """Sign of det A."""
+        return -1 if self.count(-1) % 2 else 1
 
     def solve(self, rhs: Array) -> Array:
         """The solution of A x = rhs, shape (N,)."""
@@ -123,9 +125,15 @@ def _factor(symmetric: Symmetric) -> Factored | None:
     positive = symmetric.definite is not False and bool((matrix.diagonal() > 0).all())
     if positive and (factor := factor_cholesky(matrix.T)) is not None:
         return factor
+    factors, whole = factor_ldl(matrix)
+    return factors if whole else None
+
+
+def factor_ldl(matrix: Array) -> tuple[LDL, bool]:
+    """L D L' of a symmetric matrix by itself, and whether no pivot is zero."""
     work, _ = dsytrf_lwork(len(matrix), lower=1)
     ldu, pivots, info = dsytrf(matrix.T, lower=1, lwork=int(work))
-    return LDL(ldu, pivots) if info == 0 else None
+    return LDL(ldu, pivots), info == 0
 
 
 def factor_cholesky(matrix: Array) -> Cholesky | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from math import factorial
 from typing import Any
 
@@ -133,11 +133,7 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
     x = _numbers(x, "x")
     if x.ndim != 1 or len(x) == 0:
         raise ValueError(f"x has shape {x.shape}; expected (m,) with m >= 1")
-    columns = []
-    for directions in _directions(len(x)):
-        line = wrap(np.vstack([x, directions]), GRADIENT)
-        columns.append(np.moveaxis(_image(f, line)[1:], 0, -1))
-    return np.concatenate(columns, axis=-1)
+    return _columns(f, len(x), lambda directions: wrap(np.vstack([x, directions]), GRADIENT))
 
 
 def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
@@ -159,10 +155,19 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
         As in `taylor`.
     """
     x, v = _numbers(x, "x"), _numbers(v, "v")
+
+    def line(directions: Array) -> Any:
+        return wrap(np.vstack([x, directions, v, np.zeros_like(directions)]), Beside(GRADIENT))
+
+    return _columns(f, len(x), line)
+
+
+def _columns(f: Callable[[Any], Any], m: int, line: Callable[[Array], Any]) -> Array:
+    """The last coefficients of f on lines with these directions, the unit vectors, a block at a time."""
     columns = []
-    for directions in _directions(len(x)):
-        line = wrap(np.vstack([x, directions, v, np.zeros_like(directions)]), Beside(GRADIENT))
-        columns.append(np.moveaxis(_image(f, line)[2 + len(directions) :], 0, -1))
+    for begin in range(0, m, _BLOCK):
+        directions = np.eye(min(_BLOCK, m - begin), m, begin)
+        columns.append(np.moveaxis(_image(f, line(directions))[-len(directions) :], 0, -1))
     return np.concatenate(columns, axis=-1)
 
 
@@ -246,11 +251,6 @@ def derivative_along(f: Callable[[Any], Any], x: Any, v: Any) -> tuple[Any, Any]
 
 def _image(f: Callable[[Any], Any], line: Any) -> Store:
     return lengthened(line.lifted(f(line)).c, len(line.c))
-
-
-def _directions(m: int) -> Iterator[Array]:
-    """The unit vectors, a block at a time."""
-    return (np.eye(min(_BLOCK, m - begin), m, begin) for begin in range(0, m, _BLOCK))
 
 
 def _numbers(x: Any, name: str) -> Array:

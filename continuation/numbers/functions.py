@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from string import ascii_letters
 from typing import Any
 
@@ -86,11 +87,6 @@ def _dot(a: Any, b: Any) -> Any:
     return a @ b if b.ndim <= 2 else _tensordot(a, b, axes=(-1, -2))
 
 
-def _inner(a: Any, b: Any) -> Any:
-    a, b = gather(a), gather(b)
-    return a * b if a.ndim == 0 or b.ndim == 0 else _tensordot(a, b, axes=(-1, -1))
-
-
 def _tensordot(a: Any, b: Any, axes: Any = 2) -> Any:
     a, b = gather(a), gather(b)
     if isinstance(axes, int):
@@ -98,10 +94,11 @@ def _tensordot(a: Any, b: Any, axes: Any = 2) -> Any:
     left, right = normalize_axis_tuple(axes[0], a.ndim), normalize_axis_tuple(axes[1], b.ndim)
     if [a.shape[k] for k in left] != [b.shape[k] for k in right]:
         raise ValueError(f"numpy.tensordot: axes {axes} of shapes {a.shape} and {b.shape} do not pair")
-    rows, columns = ([k for k in range(x.ndim) if k not in used] for x, used in ((a, left), (b, right)))
-    length = int(np.prod([a.shape[k] for k in left]))
-    first, second = a.transpose(*rows, *left).reshape(-1, length), b.transpose(*right, *columns).reshape(length, -1)
-    return (first @ second).reshape(*(a.shape[k] for k in rows), *(b.shape[k] for k in columns))
+    rows, columns = ascii_letters[: a.ndim], list(ascii_letters[a.ndim : a.ndim + b.ndim])
+    for k, j in zip(left, right):
+        columns[j] = rows[k]
+    free = [x for x in (*rows, *columns) if (x in rows) != (x in columns)]
+    return _einsum(f"{rows},{''.join(columns)}->{''.join(free)}", a, b)
 
 
 def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
@@ -135,7 +132,7 @@ def _einsum(subscripts: Any, *operands: Any, optimize: Any = False) -> Any:
 
 def _contracted(spec: str, a: Any, b: Any) -> Any:
     algebra = common((a, b))
-    return wrap(product(algebra, sums_of_products(lambda x, y: np.einsum(spec, x, y)), a.c, b.c), algebra)
+    return wrap(product(algebra, sums_of_products(partial(np.einsum, spec)), a.c, b.c), algebra)
 
 
 # --- assembly ---------------------------------------------------------------------------------------------
@@ -189,30 +186,11 @@ def _broadcast_to(array: Any, shape: Any) -> Any:
     return aligned.moved(lambda x: np.broadcast_to(x, (*x.shape[:own], *shape)))
 
 
-def _reshaped(function: Any) -> Callable[..., Any]:
-    """The rule of a function that keeps the order of entries: it is asked for the shape."""
-
-    def rule(a: Any, *args: Any, **keywords: Any) -> Any:
-        a = gather(a)
-        if keywords.get("order", "C") != "C":
-            raise a.unknown(f"numpy.{function.__name__} with order={keywords['order']!r}")
-        return a.reshape(function(np.broadcast_to(0.0, a.shape), *args, **keywords).shape)
-
-    return rule
-
-
-def _at_least(function: Any) -> Callable[..., Any]:
-    def rule(*arys: Any) -> Any:
-        parts = [_reshaped(function)(x) if isinstance(x, Truncated) else function(x) for x in map(gather, arys)]
-        return parts[0] if len(parts) == 1 else tuple(parts)
-
-    return rule
-
-
 def _moved(function: Any) -> Callable[..., Any]:
     """The rule of a function that only selects entries or zeros, found by applying it to the indices of the entries."""
 
     def rule(a: Any, *args: Any, **keywords: Any) -> Any:
+        a = gather(a)
         if not isinstance(a, Truncated):
             (like,) = [x for x in (*args, *keywords.values()) if isinstance(x, Truncated)][:1]
             raise like.unknown(f"numpy.{function.__name__} with {like.ONE} for any argument but the first")
@@ -228,6 +206,14 @@ def _moved(function: Any) -> Callable[..., Any]:
     return rule
 
 
+def _at_least(function: Any) -> Callable[..., Any]:
+    def rule(*arys: Any) -> Any:
+        parts = [_moved(function)(x) if isinstance(x, Truncated) else function(x) for x in map(gather, arys)]
+        return parts[0] if len(parts) == 1 else tuple(parts)
+
+    return rule
+
+
 def _pad(array: Any, pad_width: Any, mode: str = "constant", **keywords: Any) -> Any:
     if mode not in ("constant", "edge", "wrap", "reflect", "symmetric"):
         raise array.unknown(f"numpy.pad with mode={mode!r}")
@@ -239,9 +225,7 @@ def _pad(array: Any, pad_width: Any, mode: str = "constant", **keywords: Any) ->
 
 
 def _split(ary: Any, indices_or_sections: Any, axis: int = 0) -> list[Any]:
-    places = np.array_split(np.arange(ary.shape[axis]), indices_or_sections)
-    if isinstance(indices_or_sections, int) and ary.shape[axis] % indices_or_sections:
-        raise ValueError(f"numpy.split: {ary.shape[axis]} entries do not divide into {indices_or_sections} equal parts")
+    places = np.split(np.arange(ary.shape[axis]), indices_or_sections)
     return [_moved(np.take)(ary, part, axis) for part in places]
 
 
@@ -255,7 +239,7 @@ RULES: dict[Any, Callable[..., Any]] = {
     np.diff: _diff,
     np.bincount: _bincount,
     np.dot: _dot,
-    np.inner: _inner,
+    np.inner: lambda a, b: a * b if np.ndim(a) == 0 or np.ndim(b) == 0 else _tensordot(a, b, axes=(-1, -1)),
     np.vdot: lambda a, b: gather(a).reshape(-1) @ gather(b).reshape(-1),
     np.outer: lambda a, b: gather(a).reshape(-1, 1) * gather(b).reshape(1, -1),
     np.tensordot: _tensordot,
@@ -277,16 +261,18 @@ RULES: dict[Any, Callable[..., Any]] = {
     np.ndim: lambda a: a.ndim,
     np.size: lambda a, axis=None: a.size if axis is None else a.shape[axis],
     np.transpose: lambda a, axes=None: a.transpose(*(axes or ())),
+    np.reshape: lambda a, shape: gather(a).reshape(shape),
+    np.ravel: lambda a: gather(a).reshape(-1),
     np.broadcast_to: _broadcast_to,
     np.pad: _pad,
     np.split: _split,
     **{f: _at_least(f) for f in (np.atleast_1d, np.atleast_2d)},
-    **{f: _reshaped(f) for f in (np.reshape, np.ravel, np.squeeze, np.expand_dims)},
     **{
         f: _moved(f)
         for f in (
             *(np.roll, np.flip, np.flipud, np.fliplr, np.rot90, np.take, np.tile, np.repeat, np.delete),
             *(np.diag, np.diagonal, np.tril, np.triu, np.moveaxis, np.swapaxes),
+            *(np.squeeze, np.expand_dims),
         )
     },
 }

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from os import PathLike
-from typing import Any, overload
+from typing import Any, Protocol, overload, runtime_checkable
 
 import numpy as np
 from attrs import define, evolve, field
@@ -129,7 +129,7 @@ class Path:
     @property
     def turning_points(self) -> list[LocatedEvent]:
         """The located turning points of the parameter."""
-        return [event for event in self.events if event.kind == Kind.TURNING_POINT and event.name == "turning point"]
+        return [event for event in self.events if event.turns]
 
     @property
     def branch_points(self) -> list[LocatedEvent]:
@@ -305,6 +305,15 @@ class Path:
         return {"status": self.status.name, "points": len(self), "events": len(self.events), **self.counts.as_dict()}
 
 
+@runtime_checkable
+class SupportsColumn(Protocol):
+    """Steps that stay in an archive, which has each of their numbers in one place."""
+
+    def column(self, name: str) -> Array:
+        """A number or vector of all steps, by its name."""
+        ...
+
+
 def _off(place: float, curve: Callable[[float], Array], t: float) -> float:
     return float(curve(place)[-1]) - t
 
@@ -317,9 +326,8 @@ def _curve(before: Step, after: Step) -> Callable[[float], Array]:
 
 
 def _column(steps: Any, name: str) -> Array:
-    """A number or vector of all steps; steps that stay in an archive know a way of their own."""
-    column: Array = steps.column(name) if hasattr(steps, "column") else np.array([getattr(s, name) for s in steps])
-    return column
+    """A number or vector of all steps."""
+    return steps.column(name) if isinstance(steps, SupportsColumn) else np.array([getattr(s, name) for s in steps])
 
 
 def require_path(path: Any) -> None:

@@ -143,6 +143,11 @@ class LocatedEvent:
         return self.u[:-1]
 
     @property
+    def turns(self) -> bool:
+        """Whether it is a turning point of the parameter: of another number's, as of a curve's, it has another name."""
+        return self.kind is Kind.TURNING_POINT and self.name == "turning point"
+
+    @property
     def lam(self) -> float:
         """The parameter."""
         return float(self.u[-1])

@@ -194,19 +194,8 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
     lengths = np.diff(s)
     # An event stored with the points may lie on one of them; a length of zero has no logarithm.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
-    _label_decades(axes, lengths[lengths > 0])
     for event in path.events:
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)
     label_axis(axes, "arclength", [path])
     axes.set_ylabel("step in $s$")
     return tidy(axes)
-
-
-def _label_decades(axes: Axes, values: Array) -> None:
-    """Ticks of a logarithmic axis: decades, or 1, 2 and 5 where decades would leave one label or two."""
-    from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
-
-    if values.size and values.max() < 100.0 * values.min():
-        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
-    axes.yaxis.set_minor_formatter(NullFormatter())

@@ -14,6 +14,7 @@ from continuation.plot.drawing import (
     Drawn,
     across,
     axes_or_new,
+    between,
     check_path,
     chosen_components,
     height,
@@ -99,41 +100,8 @@ def plot_bifurcation(
 
 def values_along(path: Drawn, drawing: Drawing, value: Value) -> Array:
     """A number of each point that is drawn."""
-    if value is None:
-        return height(drawing.u[:, :-1])
-    if callable(value):
-        return np.array([float(value(u[:-1], float(u[-1]))) for u in drawing.u])
-    if isinstance(value, str):
-        if value in path.steps[0].observed:
-            return _observed(path, drawing, value)
-        value = _component(path, value)
-    found: Array = drawing.u[:, chosen_components([value], drawing.u[:, :-1])[0]]
-    return found
-
-
-def _component(path: Drawn, name: str) -> int:
-    try:
-        i = path.labels.index(name)
-    except ValueError:
-        i = -1
-    if i < 0:
-        known = ", ".join((*path.labels.names, *path.steps[0].observed)) or "no names"
-        raise ValueError(f"value: expected one of {known}, found {name!r}")
-    return i
-
-
-def _observed(path: Drawn, drawing: Drawing, name: str) -> Array:
-    """An observed scalar between the points: monotone cubics, which have no extremum that the points have not."""
-    from scipy.interpolate import PchipInterpolator
-
-    known = [*((step.arclength, step.observed[name]) for step in path.steps)]
-    known += [(event.arclength, event.observed[name]) for event in path.events if name in event.observed]
-    s, values = np.array(sorted(known)).T
-    s, first = np.unique(s, return_index=True)
-    if s.size < 2:
-        return np.full(drawing.s.shape, values[0])
-    found: Array = PchipInterpolator(s, values[first])(drawing.s)
-    return found
+    measured = _measured(path, value)
+    return _observed(path, drawing, str(value)) if measured is None else np.array([*map(measured, drawing.u)])
 
 
 def at_event(event: Any, path: Drawn, value: Value) -> float:
@@ -141,15 +109,34 @@ def at_event(event: Any, path: Drawn, value: Value) -> float:
 
     `path`: On which it lies.
     """
+    measured = _measured(path, value)
+    return float(event.observed.get(value, np.nan)) if measured is None else measured(event.u)
+
+
+def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
+    """The number of a point (y, lam); None for a scalar that was observed along the path."""
     if value is None:
-        return float(height(event.y))
-    if callable(value):
-        return float(value(event.y, event.lam))
+        return lambda u: float(height(u[:-1]))
+    if not isinstance(value, int | str):
+        function = value
+        return lambda u: float(function(u[:-1], float(u[-1])))
     if isinstance(value, str):
         if value in path.steps[0].observed:
-            return float(event.observed.get(value, np.nan))
-        value = _component(path, value)
-    return float(event.y[value])
+            return None
+        if value not in path.labels.names:
+            known = ", ".join((*path.labels.names, *path.steps[0].observed)) or "no names"
+            raise ValueError(f"value: expected one of {known}, found {value!r}")
+        value = int(path.labels.index(value))
+    (component,) = chosen_components([value], path.u[:, :-1])
+    return lambda u: float(u[component])
+
+
+def _observed(path: Drawn, drawing: Drawing, name: str) -> Array:
+    """An observed scalar between the points."""
+    known = [(step.arclength, step.observed[name]) for step in path.steps]
+    known += [(event.arclength, event.observed[name]) for event in path.events if name in event.observed]
+    s, values = np.array(known).T
+    return between(s, values, drawing.s)
 
 
 def _parts(path: Drawn, drawing: Drawing, stable: Stable) -> list[Stretch] | None:
@@ -170,6 +157,6 @@ def _named(path: Drawn, value: Value) -> str:
     if callable(value):
         return str(getattr(value, "__name__", "")).replace("<lambda>", "")
     if isinstance(value, str):
-        return path.labels.with_unit(value)
+        return str(path.labels.with_unit(value))
     name = path.labels.unknown(value)
-    return path.labels.with_unit(name) if name else f"$y_{{{value}}}$"
+    return str(path.labels.with_unit(name)) if name else f"$y_{{{value}}}$"

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any, TypeAlias
 
 import numpy as np
 from attrs import frozen
 
-from continuation.arguments.labels import Labels
 from continuation.arrays import Array
 from continuation.status import Kind
 
@@ -47,38 +46,8 @@ MOST_COMPONENTS = 12
 
 Axes = Any
 
-
-class Drawn(Protocol):
-    """A path as pictures need it: `continuation.Path`."""
-
-    steps: list[Any]
-    events: list[Any]
-    labels: Labels
-
-    @property
-    def u(self) -> Array:
-        """All points, shape (m, N + 1)."""
-
-    @property
-    def lam(self) -> Array:
-        """The parameter at each."""
-
-    @property
-    def arclength(self) -> Array:
-        """Their arclengths."""
-
-    @property
-    def turning_points(self) -> list[Any]:
-        """The located turning points."""
-
-    @property
-    def kinks(self) -> list[Any]:
-        """The located kinks."""
-
-    def __len__(self) -> int: ...
-
-    def __call__(self, s: float, /) -> Array:
-        """The point at an arclength."""
+Drawn: TypeAlias = Any
+"""A path with its steps, events and labels: `continuation.Path`, whose `plot` is what imports this."""
 
 
 @frozen(eq=False)
@@ -95,7 +64,7 @@ class Drawing:
             return cls(path.arclength, path.u)
         if all(step.segment is not None for step in path.steps[1:]):
             return cls._along(path.steps)
-        return cls._through(*_with_turns(path.arclength, path.u, path.turning_points))
+        return cls._through(path)
 
     @classmethod
     def _along(cls, steps: Sequence[Any]) -> Drawing:
@@ -117,37 +86,37 @@ class Drawing:
         return cls(np.append(np.concatenate(s), steps[-1].arclength), np.vstack([*u, steps[-1].u]))
 
     @classmethod
-    def _through(cls, s: Array, u: Array) -> Drawing:
-        """Through points without tangents, by monotone cubics: they have no extremum that the points have not."""
-        from scipy.interpolate import PchipInterpolator
-
-        fine = _between(s)
+    def _through(cls, path: Drawn) -> Drawing:
+        """Through points without tangents and turning points, by `between`."""
+        points = [(s.arclength, *s.u) for s in path.steps] + [(t.arclength, *t.u) for t in path.turning_points]
+        s, u = (part for part in np.split(np.array(points), [1], axis=1))
+        knots = path.arclength
+        inner = np.linspace(0.0, 1.0, _count(len(knots)), endpoint=False)
+        fine = np.append((knots[:-1, None] + np.diff(knots)[:, None] * inner).ravel(), knots[-1])
+        fine = np.unique(np.append(fine, s))
         drawn = np.full((fine.size, u.shape[1]), np.nan)
         known = np.isfinite(u).all(axis=0)
-        drawn[:, known] = PchipInterpolator(s, u[:, known])(fine)
+        drawn[:, known] = between(s[:, 0], u[:, known], fine)
         return cls(fine, drawn)
+
+
+def between(s: Array, values: Array, wanted: Array) -> Array:
+    """Values given at some arclengths, elsewhere: by monotone cubics, which have no extremum that the points have not.
+
+    `s`: In any order; of two that are one, the first counts.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    order = np.argsort(s, kind="stable")
+    order = order[np.append(True, np.diff(s[order]) > 1e-9 * s.max())]
+    if order.size < 2:
+        return np.broadcast_to(values[order[0]], (wanted.size, *values.shape[1:]))
+    return np.asarray(PchipInterpolator(s[order], values[order])(wanted))
 
 
 def _count(points: int) -> int:
     """How many points to draw for a step of a path of so many points."""
     return int(np.clip(SAMPLES // (points - 1), 1, SMOOTHNESS))
-
-
-def _between(knots: Array) -> Array:
-    """The knots, and places between them."""
-    pieces = [np.linspace(a, b, _count(len(knots)), endpoint=False) for a, b in pairwise(knots)]
-    return np.append(np.concatenate(pieces), knots[-1])
-
-
-def _with_turns(s: Array, u: Array, turns: Sequence[Any]) -> tuple[Array, Array]:
-    """The points with the located turning points among them; of points in one place, the first."""
-    located = [np.append(turn.y, turn.lam) for turn in turns]
-    every = np.concatenate([s, [turn.arclength for turn in turns]])
-    points = np.vstack([u, *located])
-    order = np.argsort(every, kind="stable")
-    every, points = every[order], points[order]
-    apart = np.append(True, np.diff(every) > 1e-9 * every[-1])
-    return every[apart], points[apart]
 
 
 def require_matplotlib() -> None:
@@ -226,14 +195,9 @@ def label_axis(axes: Axes, against: str, paths: Sequence[Drawn]) -> None:
         axes.set_xlabel("arclength $s$")
         return
     axes.set_xlabel(paths[0].labels.parameter(r"$\lambda$"))
-    if all(falls(path) for path in paths) and not axes.xaxis_inverted():
+    falling = [len(path) > 1 and (np.diff(path.lam) <= 0.0).all() and path.lam[-1] < path.lam[0] for path in paths]
+    if all(falling) and not axes.xaxis_inverted():
         axes.invert_xaxis()
-
-
-def falls(path: Drawn) -> bool:
-    """Whether the parameter never grows along the path, as from 1 to 0."""
-    lam = path.lam
-    return len(lam) > 1 and bool((np.diff(lam) <= 0.0).all()) and bool(lam[-1] < lam[0])
 
 
 def sign(event: Any) -> dict[str, Any]:

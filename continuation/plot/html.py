@@ -32,9 +32,7 @@ def archive_page(archive: Any) -> str:
     """What an archive holds, path by path."""
     shown = range(min(len(archive), TABLE_ROWS))
     lengths, messages = archive.paths["n_points"], archive.paths["message"]
-    rows = [
-        (k, archive.status(k).name, int(lengths[k]), messages[k].decode(errors="replace")) for k in shown
-    ]
+    rows = [(k, archive.status(k).name, int(lengths[k]), messages[k].decode(errors="replace")) for k in shown]
     more = len(archive) - len(rows)
     caption = f"{archive.file.name}: {len(archive)} paths" + (f", {more} not shown" if more > 0 else "")
     return table(caption, rows, ("path", "status", "points", "message"))

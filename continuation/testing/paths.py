@@ -6,15 +6,14 @@ import json
 import math
 import sys
 import tempfile
-from collections.abc import Iterator
-from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 
-from continuation.archive import ArchiveError, open_archive, resume
+from continuation.archive import ArchiveError, resume
+from continuation.archive.codec import problem_data
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
@@ -29,43 +28,25 @@ MAX_STEP_ERROR = 1e-6
 """Relative error of `max_step` that is let pass."""
 
 
-def max_step_positive(subject: Subject) -> None:
-    """From a point inside one may go some way in every direction."""
+def max_step(subject: Subject) -> None:
+    """One may go some way from a point inside, and half-way to the boundary the other half is left, in units of v."""
     for place in subject.places:
-        for v in _ways(place):
-            _longest(subject, place.where, place.u, v)
+        # In units of the point, since interior points live in orders of magnitude.
+        size = np.where(place.u == 0.0, 1.0, np.abs(place.u))
+        for v in size * np.array(directions(place.u.size, 4, 19)):
+            whole = _longest(subject, place.where, place.u, v)
+            for share, factor in () if math.isinf(whole) else ((0.0, 2.0), (0.5, 1.0), (0.999, 1.0)):
+                rest = (1.0 - share) / factor * whole
+                left = _longest(subject, place.where, place.u + share * whole * v, factor * v)
+                if abs(left - rest) > MAX_STEP_ERROR * whole:
+                    fail(f"max_step: {place.where} it is {whole:.6g} along v; after {share:g} of that {rest:.6g} along "
+                         f"{factor:g} v should be left, found {left:.6g}")  # fmt: skip
+            if math.isfinite(whole) and not subject.finite(Place("", place.u + 0.999 * whole * v)):
+                fail(f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that")
         with called("max_step", place.where):
             still = float(subject.homotopy.max_step(place.u.copy(), np.zeros_like(place.u)))
         if not still > 1.0:
             fail(f"max_step: {place.where} it is {still:g} along v = 0, expected inf: staying is always admissible")
-
-
-def max_step_sharp(subject: Subject) -> None:
-    """`max_step` ends exactly on the boundary: half-way there the other half is left, along 2 v it is half as long."""
-    for place in subject.places:
-        for v in _ways(place):
-            whole = _longest(subject, place.where, place.u, v)
-            if math.isinf(whole):
-                continue
-            doubled = _longest(subject, place.where, place.u, 2.0 * v)
-            if abs(2.0 * doubled - whole) > MAX_STEP_ERROR * whole:
-                fail(f"max_step: {place.where} it is {whole:.6g} along v and {doubled:.6g} along 2 v, expected half")
-            for share in (0.5, 0.999):
-                rest = (1.0 - share) * whole
-                left = _longest(subject, f"{place.where}, {share:g} of the way", place.u + share * whole * v, v)
-                if abs(left - rest) > MAX_STEP_ERROR * whole:
-                    fail(f"max_step: {place.where} it is {whole:.6g}; after {share:g} of that {rest:.6g} should be "
-                         f"left, found {left:.6g}")  # fmt: skip
-            inside = Place("", place.u + 0.999 * whole * v)
-            if not subject.finite(inside):
-                fail(f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that")
-
-
-def _ways(place: Place) -> Iterator[Array]:
-    """Random directions, in units of the point, since interior points live in orders of magnitude."""
-    size = np.where(place.u == 0.0, 1.0, np.abs(place.u))
-    for v in directions(place.u.size, 4, 19):
-        yield size * v
 
 
 def _longest(subject: Subject, where: str, u: Array, v: Array) -> float:
@@ -77,49 +58,33 @@ def _longest(subject: Subject, where: str, u: Array, v: Array) -> float:
 
 
 def trace(subject: Subject) -> None:
-    """The path can be followed, and stays inside."""
-    path = subject.path
-    if not subject.has("max_step"):
-        return
-    for before, after in pairwise(subject.regular.steps):
-        if after.index < path.endpoint.index:
-            longest = _longest(subject, f"at step {before.index}", before.u, after.u - before.u)
-            if longest <= 1.0:
-                fail(f"max_step: step {after.index} lies outside: only {longest:.6g} of the way there is admissible")
+    """The path can be followed."""
+    _ = subject.path  # Traced when it is first asked for.
 
 
 def refinement(subject: Subject) -> None:
     """A retrace with half the steps finds the same points, the same end and the same turning points."""
-    _audited(subject, False, "step refinement")
+    audited(subject, False, "step refinement")
 
 
 def reversal(subject: Subject) -> None:
     """A retrace from the end comes back to the start through the same points."""
-    _audited(subject, True, "reversal")
+    audited(subject, True, "reversal")
 
 
-def _audited(subject: Subject, backwards: bool, name: str) -> None:
-    path = subject.regular
-    if len(path) < 2:
+def audited(subject: Subject, backwards: bool, name: str) -> None:
+    """A retrace is the same path."""
+    if len(subject.regular) < 2:
         return
     with called(name, "along the path"):
-        report = audit(subject.homotopy, path, backwards=backwards)
+        report = audit(subject.homotopy, subject.regular, backwards=backwards)
     if not report.same:
         fail(f"{name}: {report.sentence}")
 
 
 def archive(subject: Subject) -> None:
-    """A path comes out of its archive as it went in, and so does the homotopy if the archive can hold it."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = File(folder) / "path.h5"
-        with called("archive", "while the path is written"):
-            path = subject.traced(observers=(PathLog(file),))
-        with open_archive(file) as stored:
-            again = stored.path(0)
-            text, arrays = stored.problem()
-    _same_path("archive", path, again)
-    if again.status is not path.status:
-        fail(f"archive: the path ended as {path.status.name}, the archive says {again.status.name}")
+    """The homotopy comes out of an archive as it went in, if an archive can hold it."""
+    text, arrays = problem_data(subject.homotopy)
     tree = json.loads(text)
     if "unstorable" in tree:
         # Said in the archive; such a homotopy is handed to `resume` by its owner.

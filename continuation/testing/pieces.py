@@ -11,7 +11,7 @@ from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.testing import derivatives
-from continuation.testing.protocol import difference
+from continuation.testing.protocol import answers, difference
 from continuation.testing.subject import Place, Subject, called, directions, fail
 
 SAME_VALUE = 1e4
@@ -25,23 +25,23 @@ SMOOTH = 1e-4
 
 
 def switches(subject: Subject) -> None:
-    """`switches` gives as many finite real numbers everywhere, is smooth, and depends on its arguments alone."""
-    count: int | None = None
+    """`switches` gives as many finite real numbers everywhere, and is smooth."""
+    _vectors(subject)
     for place in subject.places:
-        y = place.y
-        with called("switches", place.where):
-            found = np.asarray(subject.homotopy.switches(y, place.lam))
-            again = np.asarray(subject.homotopy.switches(place.y, place.lam))
-        if not np.array_equal(y, place.y):
-            fail(f"switches: {place.where} it changes its argument")
-        if found.ndim != 1 or found.dtype.kind not in "fiu" or not np.isfinite(found).all():
-            fail(f"switches: {place.where} expected a vector of finite real numbers, found {found!r:.80}")
-        if not np.array_equal(found, again):
-            fail(f"switches: {place.where} a second call differs from the first by {difference(found, again):.3g}")
-        if count is not None and found.size != count:
-            fail(f"switches: {place.where} expected {count}, as at the start, found {found.size}")
-        count = found.size
         _smooth(subject, place)
+
+
+_vectors = answers(
+    "switches",
+    lambda h, place: [np.asarray(h.switches(u[:-1].copy(), float(u[-1]))) for u in (place.u, np.append(*h.start()))],
+    lambda pair, _: (
+        pair[0].ndim == 1
+        and pair[0].size == pair[1].size
+        and pair[0].dtype.kind in "fiu"
+        and bool(np.isfinite(pair[0]).all())
+    ),
+    "as many finite real numbers as at the start",
+)
 
 
 def _smooth(subject: Subject, place: Place) -> None:

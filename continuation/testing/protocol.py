@@ -16,8 +16,6 @@ from continuation.testing.subject import Place, Subject, called, dense, directio
 
 _ENTRY = re.compile(r"\s*@\w+\s*\{\s*[^,\s]+\s*,", re.ASCII)
 
-Call = Callable[..., Any]
-
 
 def start(subject: Subject) -> None:
     """`start` gives a finite vector and a number, and the residual fits it."""
@@ -29,25 +27,87 @@ def start_on_path(subject: Subject) -> None:
     _ = subject.first  # Computed when it is first asked for, as a trace begins.
 
 
-def residual(subject: Subject) -> None:
-    """The residual is a float64 vector of shape (N,), finite on the path."""
-    for place in subject.places:
-        with called("residual", place.where):
-            value = np.asarray(subject.homotopy.residual(place.y, place.lam))
-        if value.shape != (place.u.size - 1,):
-            fail(f"residual: {place.where} expected shape {(place.u.size - 1,)}, found {value.shape}")
-        if value.dtype.kind not in "fiu" or (value.dtype.kind == "f" and value.dtype.itemsize < 8):
-            fail(f"residual: {place.where} expected float64, found {value.dtype}")
-        if not np.isfinite(value).all():
-            i = int(np.argmin(np.isfinite(value)))
-            fail(f"residual: {place.where} component {i} is {value[i]}, expected a finite number")
+def answers(
+    name: str, ask: Callable[[Any, Place], Any], good: Callable[[Any, int], bool], wanted: str
+) -> Callable[[Subject], None]:
+    """A check that an answer is good at every place, N unknowns given: of `wanted` form."""
+
+    def examine(subject: Subject) -> None:
+        for place in subject.places:
+            with called(name, place.where):
+                found = ask(subject.homotopy, place)
+                well = good(found, place.u.size - 1)
+            if not well:
+                fail(f"{name}: {place.where} expected {wanted}, found {found!r:.80}")
+
+    return examine
 
 
-def target(subject: Subject) -> None:
-    """The target is a finite number or None."""
-    value = subject.homotopy.target
-    if not isinstance(value, (int, float, np.integer, np.floating)) or not math.isfinite(value):
-        fail(f"target: expected a finite number or None, found {value!r}")
+def _number(x: Any) -> bool:
+    return isinstance(x, int | float | np.integer | np.floating)
+
+
+def _double(x: Any, n: int) -> bool:
+    kinds = x.dtype.kind in "iu" or x.dtype == np.float64
+    return x.shape == (n,) and kinds and bool(np.isfinite(x).all())
+
+
+def _weights(homotopy: Any, place: Place) -> tuple[Any, Any]:
+    """At a start, and after it."""
+    v = directions(place.u.size, 1, 2)[0]
+    first = homotopy.metric.weights(place.u.copy(), v, None)
+    return first, homotopy.metric.weights(place.u.copy(), v, first)
+
+
+def _observed(homotopy: Any, place: Place) -> tuple[Any, Any]:
+    """There, and at the start."""
+    y, lam = homotopy.start()
+    return homotopy.observe(place.y, place.lam), homotopy.observe(np.array(y, dtype=float), float(lam))
+
+
+def _monitored(homotopy: Any, place: Place) -> list[float]:
+    """What the monitors of the homotopy's events give."""
+    v = directions(place.u.size, 1, 3)[0]
+    return [float(event.monitor(place.u.copy(), v)) for event in homotopy.events]
+
+
+def _entries(found: Any, n: int) -> bool:
+    entries = [] if isinstance(found, str) else [str(entry) for entry in found]
+    whole = all(_ENTRY.match(entry) and entry.count("{") == entry.count("}") for entry in entries)
+    return whole and not isinstance(found, str)
+
+
+residual = answers(
+    "residual",
+    lambda h, place: np.asarray(h.residual(place.y, place.lam)),
+    _double,
+    "one finite number of float64 for each unknown",
+)
+target = answers(
+    "target", lambda h, _: h.target, lambda x, _: _number(x) and math.isfinite(x), "a finite number or None"
+)
+metric = answers(
+    "metric",
+    _weights,
+    lambda pair, n: all(np.shape(w) == (n + 1,) and np.isfinite(w).all() and (w > 0.0).all() for w in pair),
+    "one positive finite weight for each component",
+)
+observe = answers(
+    "observe",
+    _observed,
+    lambda pair, _: isinstance(pair[0], Mapping) and [*pair[0]] == [*pair[1]] and all(map(_number, pair[0].values())),
+    "a dictionary of real numbers with names that are the same everywhere",
+)
+finish = answers(
+    "finish",
+    lambda h, place: h.finish(place.y, place.lam),
+    lambda y, n: y is None or (np.shape(y) == (n,) and bool(np.isfinite(y).all())),
+    "None or one finite number for each unknown",
+)
+events = answers("events", _monitored, lambda x, _: bool(np.isfinite(x).all()), "a finite number of every monitor")
+references = answers(
+    "references", lambda h, _: h.references, _entries, "a sequence of BibTeX entries (@kind{key, ...})"
+)
 
 
 def jacobian_types(subject: Subject) -> None:
@@ -71,112 +131,23 @@ def jacobian_types(subject: Subject) -> None:
             fail(f"jacobian: {place.where} {error}")
 
 
-def inputs_not_modified(subject: Subject) -> None:
-    """No method changes an array that it is given."""
-    for place in subject.places:
-        for name, method, arguments in _calls(subject, place):
-            given = [np.array(a) if isinstance(a, np.ndarray) else a for a in arguments]
-            with called(name, place.where):
-                method(*given)
-            for number, (before, after) in enumerate(zip(arguments, given)):
-                if isinstance(before, np.ndarray) and not np.array_equal(before, after, equal_nan=True):
-                    change = float(np.abs(after - before).max())
-                    fail(f"{name}: {place.where} it changes its argument number {number + 1}, by up to {change:.3g}")
-
-
 def repeatable(subject: Subject) -> None:
-    """The same arguments give the same bits after other calls, and no later call changes an earlier answer."""
-    _check_start_is_new(subject)
+    """The same arguments give the same bits after other calls; no call changes its arguments or an earlier answer."""
+    first, second = (subject.homotopy.start()[0] for _ in range(2))
+    if isinstance(first, np.ndarray) and first.flags.writeable and np.shares_memory(first, second):
+        fail("start: it returns its own array; changing y0 in place changes the homotopy (return a copy)")
     for place in subject.places:
-        for name, method, arguments in _calls(subject, place):
-            with called(name, place.where):
-                kept = method(*arguments)
-                before = _numbers(kept, place)
+        for name in _METHODS:
+            if not subject.has(name):
+                continue
+            kept = _asked(subject, place, name)
+            before = _numbers(kept, place)
             for elsewhere in subject.places:
                 if elsewhere is not place:
-                    for other, ask, values in _calls(subject, elsewhere):
-                        if other == name:
-                            with called(name, elsewhere.where):
-                                ask(*values)
-            with called(name, place.where):
-                now, again = _numbers(kept, place), _numbers(method(*arguments), place)
-            _same(name, place, before, again, "a second call with the same arguments differs from the first")
+                    _asked(subject, elsewhere, name)
+            now, again = _numbers(kept, place), _numbers(_asked(subject, place, name), place)
             _same(name, place, before, now, "an answer changes when the method is called again: return new arrays")
-
-
-def _check_start_is_new(subject: Subject) -> None:
-    y0, _ = subject.homotopy.start()
-    if isinstance(y0, np.ndarray) and y0.flags.writeable:
-        kept = y0.copy()
-        y0 += np.ones_like(y0)
-        again = np.array(subject.homotopy.start()[0])
-        y0[...] = kept
-        if not np.array_equal(again, kept):
-            fail("start: it returns its own array; changing y0 in place changes the homotopy (return a copy)")
-
-
-def metric(subject: Subject) -> None:
-    """The weights are positive and finite, one a component, at the start and after it."""
-    for place in subject.places:
-        v = directions(place.u.size, 1, 2)[0]
-        with called("metric.weights", place.where):
-            first = subject.homotopy.metric.weights(place.u.copy(), v, None)
-            second = subject.homotopy.metric.weights(place.u.copy(), v, first)
-        for weights in (first, second):
-            if not isinstance(weights, np.ndarray) or weights.shape != place.u.shape:
-                fail(f"metric: {place.where} expected weights of shape {place.u.shape}, found {np.shape(weights)}")
-            good = np.isfinite(weights) & (weights > 0.0)
-            if not good.all():
-                i = int(np.argmin(good))
-                fail(f"metric: {place.where} weight {i} is {weights[i]}, expected a positive finite number")
-
-
-def observe(subject: Subject) -> None:
-    """`observe` gives the same names everywhere, and numbers."""
-    names: list[str] | None = None
-    for place in subject.places:
-        with called("observe", place.where):
-            found = subject.homotopy.observe(place.y, place.lam)
-        if not isinstance(found, Mapping):
-            fail(f"observe: {place.where} expected a dictionary of numbers, found {type(found).__name__}")
-        for name, value in found.items():
-            if not isinstance(name, str) or not isinstance(value, (int, float, np.integer, np.floating)):
-                fail(f"observe: {place.where} expected names and real numbers, found {name!r}: {value!r}")
-        if names is not None and list(found) != names:
-            fail(f"observe: {place.where} the names are {list(found)}, at the start {names}")
-        names = list(found)
-
-
-def finish(subject: Subject) -> None:
-    """`finish` gives None, or the unknowns of an end."""
-    for place in subject.places:
-        with called("finish", place.where):
-            y = subject.homotopy.finish(place.y, place.lam)
-        if y is not None and (np.shape(y) != place.y.shape or not np.isfinite(y).all()):
-            fail(f"finish: {place.where} expected None or {place.u.size - 1} finite numbers, found {y!r}")
-
-
-def events(subject: Subject) -> None:
-    """Each event has a name, a kind, when it ends the path, and a monitor that gives a number."""
-    for event in subject.homotopy.events:
-        for name in ("name", "kind", "terminal", "direction", "monitor"):
-            if not hasattr(event, name):
-                fail(f"events: expected `{name}` on {event!r}, found none")
-        for place in subject.places:
-            with called(f"monitor of event {event.name!r}", place.where):
-                value = float(event.monitor(place.u.copy(), directions(place.u.size, 1, 3)[0]))
-            if not math.isfinite(value):
-                fail(f"events: {place.where} the monitor of {event.name!r} is {value}, expected a finite number")
-
-
-def references(subject: Subject) -> None:
-    """Each reference is a BibTeX entry."""
-    found = subject.homotopy.references
-    if isinstance(found, str):
-        fail("references: expected a sequence of BibTeX entries, found one string")
-    for k, entry in enumerate(found):
-        if not isinstance(entry, str) or not _ENTRY.match(entry) or entry.count("{") != entry.count("}"):
-            fail(f"references: number {k} is no BibTeX entry (@kind{{key, ...}}), found {str(entry)[:40]!r}")
+            _same(name, place, before, again, "a second call with the same arguments differs from the first")
 
 
 def picklable(subject: Subject) -> None:
@@ -195,21 +166,20 @@ def picklable(subject: Subject) -> None:
             fail(f"picklable: {place.where} the copy's residual differs by {difference(found, wanted):.3g}")
 
 
-def _calls(subject: Subject, place: Place) -> list[tuple[str, Call, tuple[Any, ...]]]:
-    """Every method that the homotopy has, with arguments at a place."""
-    h, y, lam, u = subject.homotopy, place.y, place.lam, place.u
-    v, border = directions(u.size, 2, 1)
-    found: list[tuple[str, Call, tuple[Any, ...]]] = [("residual", h.residual, (y, lam))]
-    for name, arguments in (
-        ("jacobian", (y, lam)),
-        ("bordered", (y, lam, border)),
-        ("differential", (y, lam, v)),
-        ("max_step", (u, v)),
-        ("observe", (y, lam)),
-    ):
-        if subject.has(name):
-            found.append((name, getattr(h, name), arguments))
-    return found
+_METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "observe", "switches")
+
+
+def _asked(subject: Subject, place: Place, name: str) -> Any:
+    """What a method answers at a place, which has left its arguments alone."""
+    v, border = directions(place.u.size, 2, 1)
+    more = {"bordered": (border,), "differential": (v,)}.get(name, ())
+    arguments = (place.u, v) if name == "max_step" else (place.y, place.lam, *more)
+    given = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
+    with called(name, place.where):
+        answer = getattr(subject.homotopy, name)(*given)
+    before, after = ([np.asarray(x) for x in some] for some in (arguments, given))
+    _same(name, place, before, after, "it changes its arguments")
+    return answer
 
 
 def _numbers(answer: Any, place: Place) -> list[Array]:

@@ -115,7 +115,10 @@ class Subject:
         generator = np.random.default_rng(8)
         aside = 1e-2 * (1.0 + np.abs(start.u)) * generator.uniform(0.5, 1.0, start.u.size)
         aside *= generator.choice((-1.0, 1.0), start.u.size)
-        beside = Place("beside the start", start.u + aside * self.room(start.u, aside))
+        if self.has("max_step"):
+            with called("max_step", "near the start"):
+                aside *= np.clip(0.5 * float(self.homotopy.max_step(start.u.copy(), aside.copy())), 0.0, 1.0)
+        beside = Place("beside the start", start.u + aside)
         return (start, *([beside] if self.finite(beside) else []), *map(self._at, self._sampled()))
 
     def _at(self, k: int) -> Place:
@@ -129,14 +132,6 @@ class Subject:
         except CheckFailure:
             return []
         return sorted({k for k in (last // 2, last - 1) if k > 0})
-
-    def room(self, u: Array, v: Array) -> float:
-        """A factor that keeps u + v well inside the domain."""
-        if not self.has("max_step"):
-            return 1.0
-        with called("max_step", "near the start"):
-            longest = float(self.homotopy.max_step(u.copy(), v.copy()))
-        return min(1.0, 0.5 * longest) if longest > 0.0 else 0.0
 
     def finite(self, place: Place) -> bool:
         """Whether the residual can be evaluated there."""

@@ -5,55 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 
 from continuation.testing import derivatives, paths, pieces, protocol
 from continuation.testing.subject import CheckFailure, Examination, Subject
 
 PASSED, FAILED, EXPECTED, NOT_RUN = "passed", "failed", "failed as expected", "not run"
 """Outcomes of a check."""
-
-
-@frozen
-class Rule:
-    """A check, the capability that calls for it ("" for all homotopies), and the check that must have passed first."""
-
-    name: str
-    examine: Examination
-    capability: str = ""
-    after: str = "start"
-
-
-RULES = (
-    Rule("start", protocol.start, after=""),
-    Rule("residual", protocol.residual),
-    Rule("inputs_not_modified", protocol.inputs_not_modified),
-    Rule("repeatable", protocol.repeatable),
-    Rule("target", protocol.target, "target"),
-    Rule("jacobian_types", protocol.jacobian_types, "jacobian"),
-    Rule("jacobian", derivatives.jacobian, "jacobian", "jacobian_types"),
-    Rule("differential", derivatives.differential, "differential"),
-    Rule("bordered", derivatives.bordered, "bordered"),
-    Rule("start_on_path", protocol.start_on_path),
-    Rule("metric", protocol.metric, "metric"),
-    Rule("max_step_positive", paths.max_step_positive, "max_step"),
-    Rule("max_step_sharp", paths.max_step_sharp, "max_step", "max_step_positive"),
-    Rule("observe", protocol.observe, "observe"),
-    Rule("finish", protocol.finish, "finish"),
-    Rule("events", protocol.events, "events"),
-    Rule("references", protocol.references, "references"),
-    Rule("picklable", protocol.picklable),
-    Rule("switches", pieces.switches, "switches"),
-    Rule("pieces", pieces.pieces, "piece", "switches"),
-    Rule("derivatives_of_pieces", pieces.derivatives_of_pieces, "piece", "pieces"),
-    Rule("taylor", derivatives.taylor, "taylor", "start_on_path"),
-    Rule("trace", paths.trace, after="start_on_path"),
-    Rule("refinement", paths.refinement, after="trace"),
-    Rule("reversal", paths.reversal, after="trace"),
-    Rule("archive", paths.archive, after="trace"),
-    Rule("resume", paths.resumed, after="trace"),
-)
-"""The basic and cheap ones first: correct the first failure first."""
 
 
 @frozen(eq=False)
@@ -63,14 +21,17 @@ class Check:
     Attributes
     ----------
     name : str
+    capability : str
+        What a homotopy has that is checked; empty for what all have.
     after : str
         The check without which this one says nothing; empty for the first.
     """
 
     name: str
-    after: str
-    _subject: Subject = field(repr=False)
     _examine: Examination = field(repr=False)
+    capability: str = ""
+    after: str = "start"
+    _subject: Subject | None = field(default=None, repr=False)
 
     def __call__(self) -> None:
         """Run it.
@@ -80,10 +41,41 @@ class Check:
         CheckFailure
             An AssertionError: what was wrong, where, and by how much.
         """
-        self._examine(self._subject)
+        if self._subject is not None:
+            self._examine(self._subject)
 
     def __str__(self) -> str:
         return self.name
+
+
+RULES = (
+    Check("start", protocol.start, after=""),
+    Check("residual", protocol.residual),
+    Check("repeatable", protocol.repeatable),
+    Check("target", protocol.target, "target"),
+    Check("jacobian_types", protocol.jacobian_types, "jacobian"),
+    Check("jacobian", derivatives.jacobian, "jacobian", "jacobian_types"),
+    Check("differential", derivatives.differential, "differential"),
+    Check("bordered", derivatives.bordered, "bordered"),
+    Check("start_on_path", protocol.start_on_path),
+    Check("metric", protocol.metric, "metric"),
+    Check("max_step", paths.max_step, "max_step"),
+    Check("observe", protocol.observe, "observe"),
+    Check("finish", protocol.finish, "finish"),
+    Check("events", protocol.events, "events"),
+    Check("references", protocol.references, "references"),
+    Check("picklable", protocol.picklable),
+    Check("switches", pieces.switches, "switches"),
+    Check("pieces", pieces.pieces, "piece", "switches"),
+    Check("derivatives_of_pieces", pieces.derivatives_of_pieces, "piece", "pieces"),
+    Check("taylor", derivatives.taylor, "taylor", "start_on_path"),
+    Check("trace", paths.trace, after="start_on_path"),
+    Check("refinement", paths.refinement, after="trace"),
+    Check("reversal", paths.reversal, after="trace"),
+    Check("archive", paths.archive, after="trace"),
+    Check("resume", paths.resumed, after="trace"),
+)
+"""The basic and cheap ones first: correct the first failure first."""
 
 
 @frozen
@@ -113,7 +105,7 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
     """
     subject = Subject(homotopy, steps)
     called_for = (rule for rule in RULES if not rule.capability or subject.has(rule.capability))
-    return tuple(Check(rule.name, rule.after, subject, rule.examine) for rule in called_for)
+    return tuple(evolve(rule, subject=subject) for rule in called_for)
 
 
 def run_checks(
@@ -145,25 +137,21 @@ def run_checks(
         raise ValueError(f"expected_failed_checks: expected names among {', '.join(known)}, found {unknown[0]!r}")
     results: dict[str, Result] = {}
     for check in homotopy_checks(homotopy, steps=steps):
+        name, reason = check.name, expected.get(check.name)
         before = results.get(check.after)
         if before is not None and before.outcome != PASSED:
-            results[check.name] = Result(check.name, NOT_RUN, f"it needs {check.after}, which did not pass")
+            results[name] = Result(name, NOT_RUN, f"it needs {check.after}, which did not pass")
             continue
-        results[check.name] = _run(check, expected)
+        try:
+            check()
+        except CheckFailure as failure:
+            outcome, message = (EXPECTED, f"{failure} ({reason})") if reason is not None else (FAILED, str(failure))
+        else:
+            outcome, message = PASSED, ""
+            if reason is not None:
+                outcome, message = FAILED, f"expected to fail ({reason}), but it passes: take it off the list"
+        results[name] = Result(name, outcome, message)
     return tuple(results.values())
-
-
-def _run(check: Check, expected: Mapping[str, str]) -> Result:
-    try:
-        check()
-    except CheckFailure as failure:
-        if check.name in expected:
-            return Result(check.name, EXPECTED, f"{failure} ({expected[check.name]})")
-        return Result(check.name, FAILED, str(failure))
-    if check.name in expected:
-        message = f"expected to fail ({expected[check.name]}), but it passes: take it off the list"
-        return Result(check.name, FAILED, message)
-    return Result(check.name, PASSED)
 
 
 def check_homotopy(

@@ -37,10 +37,6 @@ def plot_orbits(
     of : int, default 1
         The vertical one.
 
-    Returns
-    -------
-    Axes
-
     Raises
     ------
     ImportError

@@ -205,6 +205,10 @@ def renamed(path: Path, proof: Proof, rng: np.random.Generator) -> Path:
     """A kink in which another switch is said to vanish, or one more, or the parameter to turn where it does not."""
     kink = drawn(path, rng)
     count = path.u.shape[1] - 1
+    if rng.random() < 0.2:  # of a path that ends there
+        known = [event for event in path.events if event.step <= kink.step]
+        steps = path.steps[: kink.step + 1]
+        path = evolve(path, steps=steps, events=known, status=Status.STOPPED_AT_EVENT)
     if rng.random() < 0.4:
         return changed(path, kink, evolve(kink, name="kink" if kink.name == "turning kink" else "turning kink"))
     other = int(rng.choice([j for j in range(count) if j not in kink.switches]))

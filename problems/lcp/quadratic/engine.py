@@ -15,7 +15,6 @@ from attrs import frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs
 from continuation.certificate.engine import Judged
-from continuation.certificate.krawczyk import Several
 from continuation.numbers.ends import Ends
 from problems.lcp.quadratic.derivative import Derivative
 from problems.lcp.quadratic.form import Quadratic
@@ -50,11 +49,5 @@ class ByProducts:
 
     def judge(self, slabs: Slabs, radius: Array) -> Judged:
         """As `Engine.judge`; valid for all radii."""
-        places = np.array_split(np.arange(len(slabs)), -(-len(slabs) // self.together(radius.shape[1])))
         with np.errstate(all="ignore"):
-            if len(places) == 1:
-                return self._judge(slabs, radius)
-            return Several.of([(place, self._judge(slabs.take(place), radius[place])) for place in places])
-
-    def _judge(self, slabs: Slabs, radius: Array) -> Polynomial:
-        return Polynomial.of(slabs, Derivative.of(self.form, slabs.expansion.coefficients), radius)
+            return Polynomial.of(slabs, Derivative.of(self.form, slabs.cubic), radius)

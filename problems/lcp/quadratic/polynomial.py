@@ -15,7 +15,7 @@ import numpy as np
 from attrs import field, frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Slabs
+from continuation.certificate.cells import Slabs, evaluated
 from continuation.certificate.engine import up_by
 from continuation.certificate.inverse import times
 from continuation.numbers.ends import EPS, Ends, accumulated, thin
@@ -264,7 +264,7 @@ class Polynomial:
         t = self.slabs.offset[:, None]
         middle, half = (2.0 * np.arange(STRETCHES) + 1.0) / STRETCHES - 1.0, (1.0 + 1e-9) / STRETCHES
         over = Ends(t * (middle - half), t * (middle + half))
-        _, first, second = self.slabs.expansion.last.over(over)
+        _, first, second = evaluated(self.slabs.cubic[:, :, -1:], over)
         with np.errstate(all="ignore"):
             drift = self._drift(radius, tube, 0)
             room = Ends(-drift[:, -1:], drift[:, -1:])
@@ -274,7 +274,7 @@ class Polynomial:
             drift = self._drift(radius, tube, TERMS)
             room = Ends(-drift[:, -1:], drift[:, -1:])
             two = thin(np.full((1, 1), 2.0))
-            bend = (two * self.slabs.expansion.over(Ends(-t, t))[2]).magnitude()
+            bend = (two * self.slabs.over[2]).magnitude()
             more = self.derivative.products(drift, drift) + self.derivative.products(bend, radius)
             v = up_by(self._along(2) + self.d * (2.0 * self._turned(drift) + self._pushed(more)), 8)
             again = self._solved(v, radius, tube, TERMS)[:, -1:]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from continuation import certify, trace
-from continuation.certificate.cells import Cells, Slabs, expansion, slabs_of
+from continuation.certificate.cells import Cells, Slabs, evaluated, slabs_of
 from continuation.certificate.certifying import engine_of
 from continuation.numbers.ends import thin
 from problems.lcp import LCP
@@ -26,7 +26,7 @@ def test_the_coefficients_of_a_cubic_are_enclosed(scale):
     cells = Cells(begin, begin + off, first, last, nothing, nothing, one, nothing[:, :2])
     middle = np.where(np.arange(40) % 5, rng.uniform(-1e-3, 1.001, 40), np.arange(40) % 2)
     slabs = Slabs(np.arange(40), middle, rng.uniform(0.0, 0.5, 40), cells)
-    q, rate = expansion(slabs).q, slabs.velocity
+    q, rate = [slabs.cubic[:, k] for k in range(4)], slabs.over[1]
     for k, j in np.ndindex(40, 3):
         m = Fraction(float(middle[k]))
         a, b, c, d = (Fraction(float(x[k, j])) for x in (cells.begin, cells.end, first, last))
@@ -57,7 +57,7 @@ def test_what_is_bounded_is_smaller(Homotopy, n):
     shares = []
     for _ in range(20):
         x = slabs.offset * rng.uniform(-1.0, 1.0, len(slabs))
-        p = expansion(slabs).over(thin(x[:, None]))[0].middle()
+        p = evaluated(slabs.cubic, thin(x[:, None]))[0].middle()
         for k, (at, d) in enumerate(zip(p, rng.choice([-1.0, 1.0], p.shape) * radius)):
             Y = judged.d[k][:, None] * (
                 (np.eye(p.shape[1]) - x[k] * judged.E[k] + x[k] ** 2 * judged.C[k]) @ judged.Y[k]
@@ -83,7 +83,7 @@ def test_the_parameter_moves_along_the_curve_as_is_bounded():
     first, second = judged.pace(slabs.cells.radius, slabs.cells.radius)
     parts = first.lo.shape[1]
     share = rng.uniform(-1.0, 1.0, len(slabs))
-    value, slope, bend = (u.middle() for u in expansion(slabs).over(thin((slabs.half * share)[:, None])))
+    value, slope, bend = (u.middle() for u in evaluated(slabs.cubic, thin((slabs.half * share)[:, None])))
     for k, chart in enumerate(slabs.cells.chart):
 
         def matrix(u, chart=chart):

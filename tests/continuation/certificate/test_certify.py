@@ -8,6 +8,7 @@ import continuation
 from continuation import Budget, Path, Status, Step, certify, refine, trace
 from continuation.certificate import folds, links, tubes, verify
 from continuation.certificate.certifying import engine_of
+from continuation.numbers.ends import Ends
 from problems import paper
 from problems.bifurcation import Aircraft, Bratu1D, Circle, Cusp, ExponentialCosine, FreudensteinRoth, Pitchfork
 from problems.lcp import LCP, homotopies
@@ -165,7 +166,7 @@ def test_without_the_direction_at_nodes_a_reversed_run_would_pass(monkeypatch):
     assert not certify(wrong, homotopy).complete
 
     def undirected(left, at, right):
-        held = (links.reach(right, np.zeros(len(right)), at.radius) <= right.radius).all(axis=1)
+        held = (links.reach(right, np.zeros(len(right)), Ends(-at.radius, at.radius)) <= right.radius).all(axis=1)
         return held & (at.radius <= left.radius).all(axis=1)
 
     monkeypatch.setattr(verify, "linked", undirected)

@@ -7,7 +7,7 @@ from attrs import evolve
 
 from continuation import Budget, Path, certify, trace
 from continuation.certificate.certifying import recheck
-from continuation.status import Kind
+from continuation.status import Kind, Status
 from problems.lcp.quadratic.inverse import inverted
 from problems.nonlinear import bratu_under_obstacle
 
@@ -159,3 +159,28 @@ def test_random_paths_with_kinks_are_proved(seed):
     proof = certify(path, homotopy)
     assert proof.complete, str(proof)
     assert len(proof.kinks) == len(path.kinks)
+
+
+def test_a_path_that_ends_in_a_kink_says_truly_whether_the_parameter_turns_there(subjects):
+    # The arc that comes does not tell it: the piece behind the path's last point does.
+    for homotopy, path, _ in subjects:
+        for kink in path.kinks:
+            events = [event for event in path.events if event.step <= kink.step]
+            part = Path(steps=path.steps[: kink.step + 1], events=events, status=Status.STOPPED_AT_EVENT)
+            proof = certify(part, homotopy)
+            assert proof.complete, str(proof)
+            lo, hi = proof.kinks[-1]
+            assert lo <= kink.arclength <= hi
+            for name in {"kink", "turning kink", "dead end"} - {kink.name}:
+                wrong = listing(part, [*events[:-1], evolve(events[-1], name=name)])
+                assert "the parameter does not turn in the kink as the path says" in str(certify(wrong, homotopy))
+
+
+def test_a_kink_in_which_a_path_begins_is_a_gap(subjects):
+    # It would say from where the path came.
+    homotopy, path, _ = subjects[1]
+    kink = path.kinks[0]
+    steps = [evolve(step, index=k) for k, step in enumerate(path.steps[kink.step :])]
+    events = [evolve(event, step=event.step - kink.step) for event in path.events if event.step >= kink.step]
+    proof = certify(Path(steps=steps, events=events, status=path.status), homotopy)
+    assert "a kink is listed where there is none" in str(proof)

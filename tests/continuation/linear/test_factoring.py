@@ -12,26 +12,10 @@ from continuation.linear import factor_bordered
 from continuation.linear.factoring import EXTRAS, Factoring, check_method
 from continuation.linear.look import Look
 from continuation.linear.multigrid import Multigrid
-from continuation.linear.superlu import SuperLUMethod
+from continuation.linear.superlu import SparseFactor, SuperLUMethod
 from continuation.linear.symmetric import factor_cholesky
 
 BY_NAME = {one.name: one for one in EXTRAS}
-
-
-@frozen(eq=False)
-class Dense:
-    """Factors that are not sparse."""
-
-    factor: object
-    fill: int
-    name: str = "dense"
-
-    @property
-    def sign(self):
-        return self.factor.sign
-
-    def solve(self, rhs):
-        return self.factor.solve(rhs)
 
 
 @frozen
@@ -51,7 +35,7 @@ class DenseMethod:
     def factor(self, look):
         self.tried.append(self.name)
         factor = None if self.fails else factor_cholesky(np.asfortranarray(look.matrix.toarray()))
-        return None if factor is None else Dense(factor, look.n**2)
+        return None if factor is None else SparseFactor("dense", factor.solve, look.n**2, lambda: factor.sign)
 
 
 def laplacian(m):

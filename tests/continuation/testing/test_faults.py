@@ -83,12 +83,6 @@ class Wandering(Interior):
         return {"gap": 0.0} if lam == 1.0 else {"distance": 0.0}
 
 
-class WrongSeriesWithoutJets(WrongSeries):
-    def residual(self, y, lam):
-        # `float` is beyond jets, so that the order of the residual along the series has to tell.
-        return np.array([float(y[0]) * float(y[1]) - float(lam), float(y[0]) - float(y[1]) - 1.0])
-
-
 class Unreachable:
     """y = sqrt(lam - 1/2), asked for at lam = 0."""
 
@@ -178,7 +172,12 @@ class Bent:
 
 
 FAULTS = [
-    ("switches", Bent(watched=lambda y: np.multiply(y, 1.5, out=y)), "switches: at the start it changes its argument"),
+    (
+        "repeatable",
+        Bent(watched=lambda y: np.multiply(y, 1.5, out=y)),
+        "switches: at the start it changes its argument",
+    ),
+    ("switches", Bent(watched=lambda y: np.append(y, np.abs(y + 1.0))), "number 1 is not differentiable"),
     ("pieces", Bent(tear=1e-3), "piece: .* differs from the map by 0.001"),
     ("derivatives_of_pieces", Bent(wrong=1e-2), "is -1.01, expected -1"),
     ("start", interior(start=None), "expected a method `start`, found none"),
@@ -187,8 +186,12 @@ FAULTS = [
     ("start", interior(start=lambda self: 1 / 0), "it raises ZeroDivisionError"),
     ("repeatable", OwnArray(), "it returns its own array"),
     ("start", interior(residual=lambda self, y, lam: y[:1]), r"expected shape \(2,\), that of y0, found \(1,\)"),
-    ("residual", interior(residual=lambda self, y, lam: y.astype(np.float32)), "at the start expected float64, found"),
-    ("inputs_not_modified", Spoiling(), r"residual: at the start it changes its argument number 1, by up to 0\.001"),
+    (
+        "residual",
+        interior(residual=lambda self, y, lam: y.astype(np.float32)),
+        "at the start expected one finite number of float64 for each unknown, found",
+    ),
+    ("repeatable", Spoiling(), r"residual: at the start it changes its arguments, by up to 0\.001"),
     ("repeatable", Drifting(), "residual: at the start a second call .* differs from the first, by up to"),
     ("repeatable", Reusing(), "jacobian: .* an answer changes when the method is called again: return new arrays"),
     ("target", interior(target="zero"), "expected a finite number or None, found 'zero'"),
@@ -220,40 +223,51 @@ FAULTS = [
         "differential: at the start component 0 is .*, expected .*, a difference of",
     ),
     ("bordered", Flipped(), r"the sign is [+-]1, but the determinant is"),
-    ("bordered", Deaf(), r"the solution misses the border's equation by .*, relative .*, expected at most 1e-08"),
+    ("bordered", Deaf(), "the solution's equation 2 is .*, expected"),
     ("start_on_path", NoSolution(), "START_NOT_ON_PATH: The start is not on the path"),
     ("start_on_path", Double(), "SINGULAR_START: The Jacobian .* has no full rank at the start"),
     (
         "metric",
         interior(metric=type("Flat", (), {"weights": lambda self, u, v, current: np.array([1.0, 0.0, 1.0])})()),
-        "metric: at the start weight 1 is 0.0, expected a positive finite number",
+        "metric: at the start expected one positive finite weight for each component, found",
     ),
-    ("max_step_positive", interior(max_step=lambda self, u, v: 0.0), "it is 0, expected a positive number"),
-    ("max_step_positive", interior(max_step=lambda self, u, v: 1.0), "it is 1 along v = 0, expected inf"),
+    ("max_step", interior(max_step=lambda self, u, v: 0.0), "it is 0, expected a positive number"),
     (
-        "max_step_sharp",
+        "max_step",
+        interior(max_step=lambda self, u, v: Interior.max_step(self, u, v) if v.any() else 1.0),
+        "it is 1 along v = 0, expected inf",
+    ),
+    (
+        "max_step",
         interior(max_step=lambda self, u, v: 0.9 * Interior.max_step(self, u, v)),
         r"after 0\.5 of that .* should be left, found",
     ),
     (
-        "max_step_sharp",
+        "max_step",
         interior(max_step=lambda self, u, v: float(np.linalg.norm(v)) * Interior.max_step(self, u, v)),
-        "along v and .* along 2 v, expected half",
+        "along 2 v should be left, found",
     ),
-    ("observe", Wandering(), r"beside the start the names are \['distance'\], at the start \['gap'\]"),
-    ("observe", interior(observe=lambda self, y, lam: {"gap": "small"}), "expected names and real numbers"),
-    ("finish", interior(finish=lambda self, y, lam: y[:1]), "expected None or 2 finite numbers"),
-    ("events", interior(events=(object(),)), "expected `name` on"),
+    (
+        "observe",
+        Wandering(),
+        "beside the start expected a dictionary of real numbers with names that are the same everywhere, found",
+    ),
+    ("observe", interior(observe=lambda self, y, lam: {"gap": "small"}), "expected a dictionary of real numbers"),
+    (
+        "finish",
+        interior(finish=lambda self, y, lam: y[:1]),
+        "expected None or one finite number for each unknown, found",
+    ),
+    ("events", interior(events=(object(),)), "it raises AttributeError"),
     (
         "events",
         interior(events=(continuation.Monitor(lambda u, v: math.nan, "nowhere"),)),
-        "the monitor of 'nowhere' is nan",
+        r"expected a finite number of every monitor, found \[nan\]",
     ),
-    ("references", interior(references=("Nobody, On products, 2026",)), "number 0 is no BibTeX entry"),
-    ("references", interior(references=REFERENCE), "expected a sequence of BibTeX entries, found one string"),
+    ("references", interior(references=("Nobody, On products, 2026",)), "expected a sequence of BibTeX entries"),
+    ("references", interior(references=REFERENCE), "expected a sequence of BibTeX entries .*, found '@misc"),
     ("picklable", interior(), "picklable: .*PicklingError"),
-    ("taylor", WrongSeries(), "coefficient 3, component 0 is .*, expected .*, a difference of"),
-    ("taylor", WrongSeriesWithoutJets(), r"the residual along the series falls like h\^[23]\.?\d*, expected h\^7"),
+    ("taylor", WrongSeries(), r"the residual along the series falls like h\^[23]\.?\d*, expected h\^7"),
     ("taylor", interior(taylor=lambda self, point, order: np.zeros((order, 3))), r"expected shape \(7, 3\)"),
     ("trace", Unreachable(), "the path ended after .* steps, (LEFT_DOMAIN|STEP_TOO_SMALL)"),
     ("refinement", Ageing(drift=1e-3), r"step refinement: The retrace does not pass through step \d+ \(arclength"),
