@@ -25,8 +25,9 @@ from attrs import NOTHING, frozen
 
 GROUP = "continuation.homotopies"
 SCENES = "continuation.scenes"
+STUDIES = "continuation.studies"
 
-_KINDS = {GROUP: "homotopy", SCENES: "scene"}
+_KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study"}
 
 Factory = Callable[..., Any]
 """What an entry point names: options to homotopy."""
@@ -116,7 +117,7 @@ def available(group: str = GROUP) -> dict[str, Plugin]:
     Parameters
     ----------
     group : str
-        `GROUP`, or `SCENES`.
+        `GROUP`, `SCENES` or `STUDIES`.
     """
     points = grouped(entry_points(group=group))
     return {name: Plugin(name, tuple(points[name]), _KINDS[group]) for name in sorted(points)}
@@ -130,7 +131,7 @@ def find(name: str, group: str = GROUP) -> Factory:
     name : str
         A registered name, or ``module:object`` for one that is not registered.
     group : str
-        `GROUP`, or `SCENES`.
+        `GROUP`, `SCENES` or `STUDIES`.
 
     Raises
     ------

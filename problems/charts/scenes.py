@@ -9,7 +9,7 @@ from typing import Any
 from attrs import asdict
 
 from continuation.chart import Answer, Dumbbell, Error, Failure, Ladder, Method, Problem, Rung, Study, observed
-from continuation.chart.catalogue import Size
+from continuation.chart.study import Size
 from continuation.counts import Counts
 from problems.charts.rivals import notes
 from problems.scenes import Rival, available, error, make, memory, order, solve
