@@ -281,4 +281,7 @@ def test_matlab_as_scipy_reads_it(tmp_path, packed):
         if sp.issparse(other):
             one, other = one.toarray(), other.toarray()
         assert np.array_equal(one, other), name
-    assert (found["text"], found["cell"]) == ("no matrix of numbers",) * 2
+    for name in ("text", "cell"):
+        scipy.io.savemat(tmp_path / "p.mat", {"A": given[name], "q": Q})
+        with pytest.raises(InputError, match="A: expected real numbers"):
+            read_problem(tmp_path / "p.mat")
