@@ -141,7 +141,8 @@ def _highs(problem: Any) -> Found:
     return _arrived(found.x, found.success, found.message)
 
 
-def _bfgs(problem: Any) -> Found:
+def by_bfgs(problem: Any) -> Found:
+    """A quasi-Newton method for bounds alone."""
     P, c, _, b, _, h, lower, upper = program_of(problem)
     if b.size or h.size:
         raise ArithmeticError("L-BFGS-B takes bounds alone")
@@ -162,7 +163,7 @@ GAUSS_SEIDEL = of_problem("projected Gauss-Seidel (numba)", "numba", _gauss_seid
 PIQP = of_problem("PIQP", "piqp", by_piqp)
 CLARABEL = of_problem("Clarabel", "clarabel", by_clarabel)
 HIGHS = of_problem("HiGHS (scipy)", "", _highs)
-BFGS = of_problem("L-BFGS-B (scipy)", "", _bfgs)
+BFGS = of_problem("L-BFGS-B (scipy)", "", by_bfgs)
 
 QUADRATIC = (PIQP, CLARABEL, BFGS)
 """For symmetric problems with bounds alone."""
