@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from importlib.metadata import EntryPoint, entry_points
 
 from continuation.arguments.plugins import grouped, owners
-from continuation.cli import archives, charts, completion, figures, homotopies
+from continuation.cli import archives, charts, figures, homotopies
 from continuation.cli.parser import Subparsers, UsageError
 
 GROUP = "continuation.commands"
@@ -27,7 +27,6 @@ def register(subparsers: Subparsers) -> None:
     archives.register(subparsers)
     figures.register(subparsers)
     charts.register(subparsers)
-    completion.register(subparsers)
 
 
 def _loaded(name: str, points: Sequence[EntryPoint]) -> Register:
