@@ -9,7 +9,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Index
-from continuation.numbers.ends import EPS, Ends, Mask, thin
+from continuation.numbers.ends import EPS, Ends, thin
 
 
 @frozen(eq=False, slots=False)
@@ -127,21 +127,3 @@ class Quadratic:
         out[0] += left[:, :, -1:] * chart[:, None, :]
         out *= scale[:, None, :]
         return out
-
-    @cached_property
-    def pivots(self) -> tuple[Index, Index]:
-        """Rows and columns of H' where it is diagonal, whatever u is: multipliers, each in an equation of its own."""
-        there: Mask = (self.plain.matrix != 0.0) | (self.first.matrix != 0.0) | (self.second.matrix != 0.0)
-        free_rows, free_columns = np.ones_like(there[:, 0]), np.ones_like(there[0])
-        per_row, found = there.sum(axis=1), []
-        for j in np.argsort(there[:, :-1].sum(axis=0), kind="stable").tolist():
-            rows = np.flatnonzero(there[:, j] & free_rows)
-            i = int(rows[np.argmin(per_row[rows])]) if len(rows) else -1
-            if i < 0 or not free_columns[j]:
-                continue
-            found.append((i, j))
-            # No other pair may have an entry in this row or in this column.
-            free_rows = free_rows & ~there[:, j]
-            free_columns = free_columns & ~there[i]
-        pairs = np.array(found, dtype=np.intp).reshape(-1, 2)
-        return pairs[:, 0], pairs[:, 1]
