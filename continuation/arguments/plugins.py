@@ -26,8 +26,9 @@ from attrs import NOTHING, frozen
 GROUP = "continuation.homotopies"
 SCENES = "continuation.scenes"
 STUDIES = "continuation.studies"
+COMMANDS = "continuation.commands"
 
-_KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study"}
+_KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study", COMMANDS: "command"}
 
 Factory = Callable[..., Any]
 """What an entry point names: options to homotopy."""
@@ -117,7 +118,7 @@ def available(group: str = GROUP) -> dict[str, Plugin]:
     Parameters
     ----------
     group : str
-        `GROUP`, `SCENES` or `STUDIES`.
+        `GROUP`, `SCENES`, `STUDIES` or `COMMANDS`.
     """
     points = grouped(entry_points(group=group))
     return {name: Plugin(name, tuple(points[name]), _KINDS[group]) for name in sorted(points)}
@@ -131,7 +132,7 @@ def find(name: str, group: str = GROUP) -> Factory:
     name : str
         A registered name, or ``module:object`` for one that is not registered.
     group : str
-        `GROUP`, `SCENES` or `STUDIES`.
+        `GROUP`, `SCENES`, `STUDIES` or `COMMANDS`.
 
     Raises
     ------
