@@ -63,7 +63,7 @@ $(VENV)/.dev: pyproject.toml | $(VENV)/bin/python
 # The studies of speed against accuracy, at a moderate size: tables and pictures in build/chart. Other software takes part
 # where it is installed (the names are in problems/charts/rivals.py and problems/scenes).
 # The longest first, so that two processes end together.
-STUDIES := engine lcp robustness scaling order scenes
+STUDIES := engine lcp robustness scaling scenes
 chart: $(VENV)/.chart
 	$(MAKE) -j2 $(STUDIES:%=chart-%)
 $(STUDIES:%=chart-%): chart-%: $(VENV)/.chart

@@ -18,7 +18,7 @@ class Charts:
 
     def __getitem__(self, study):
         if study not in self._read:
-            self._read[study] = chart.read(self.folder / f"{study}.csv")
+            self._read[study] = chart.read(self.folder / f"{study}.json")
         return self._read[study]
 
 
@@ -48,7 +48,7 @@ def solved(results, method, **where):
 def median_excess(results, method, work="factorizations"):
     """Over the runs that succeeded."""
     far = chart.excess(results, next(iter(results.errors)), work)
-    return median(value for (_, name, _), value in far.items() if name == method and math.isfinite(value))
+    return median(v for row, v in zip(results.rows, far) if row.method == method and math.isfinite(v))
 
 
 # -- presets -------------------------------------------------------------------------------------------------------
@@ -189,7 +189,7 @@ def linear_correctors_dislike_tight_tolerances(charts):
 def default_controller_is_on_the_front(charts):
     results = charts["engine-controllers"]
     far = chart.excess(results, "end_point", "factorizations")
-    own = [value for (_, name, _), value in far.items() if name == "Allgower-Georg (DEFAULT)"]
+    own = [value for row, value in zip(results.rows, far) if row.method == "Allgower-Georg (DEFAULT)"]
     least = min(total(results, name) for name in results.methods)
     return median(own) == 1.0 and max(own) <= 1.75 and total(results, "Allgower-Georg (DEFAULT)") == least
 
@@ -226,27 +226,6 @@ def accuracy_is_the_best(charts):
         total(results, own) == min(total(results, method) for method in methods)
         and rejected["Pade, accuracy 0.001"] > 50 + rejected[own]
     )
-
-
-def _relative_cost(results, method, problem):
-    """Order to seconds over the least."""
-    rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
-    least = min(row.seconds for row in rows)
-    return {row.rung: row.seconds / least for row in rows}
-
-
-def orders_from_13_to_20_are_good(charts):
-    results = charts["order"]
-    pade = results.methods[-1]
-    costs = [_relative_cost(results, pade, problem) for problem in results.problems]
-    return max(cost[K] for cost in costs for K in cost if 13 <= K <= 20) < 1.4
-
-
-def chosen_order_is_near_the_best(charts):
-    from problems.charts.order import cost_model
-
-    table = cost_model(charts["order"])
-    return max(line[table.head.index("chosen over fastest")] for line in table.rows) <= 4.0 / 3.0
 
 
 # -- linear complementarity ----------------------------------------------------------------------------------------

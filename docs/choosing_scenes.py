@@ -40,14 +40,6 @@ def brennan_schwartz_is_quicker(charts):
     return ratio(charts["scenes-meshes"], "ours", "Brennan-Schwartz", "seconds") > 2.0
 
 
-def arc_lengths_pay_for_one_unknown(charts):
-    name = "arc length (Crisfield)"
-    one = charts["scenes-exact"]
-    return ratio(charts["scenes-meshes"], name, "ours", "seconds") > 1.4 and (
-        _at(one, "snap-through", name).seconds < _at(one, "snap-through", "ours").seconds
-    )
-
-
 def pooling_is_quicker(charts):
     results = charts["scenes-exact"]
     pooled = _at(results, "isotonic", "pool adjacent violators")

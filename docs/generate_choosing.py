@@ -17,12 +17,11 @@ import choosing_scenes
 from attrs import evolve
 
 from continuation import chart
-from problems.charts import order
 
 PAGES = [Path(__file__).with_name(name) for name in ("choosing.md", "scenes_measured.md")]
 IMAGES = Path(__file__).parent / "images"
 SCENES = ("scenes-meshes", "scenes-exact")
-OURS_AND_THEIRS = ["DEFAULT", "SERIES", "plain scipy loop", "PITCON (dense)", "bice"]
+OURS_AND_THEIRS = ["DEFAULT", "SERIES", "plain scipy loop", "PITCON (dense)"]
 
 
 def shown(results):
@@ -46,7 +45,6 @@ def pictures(charts):
     yield "headline", headline, evolve(presets, title="Error at the end of the path against time")
     yield "presets", chart.Lines("end_point", ("seconds", "factorizations"), shown(presets)), presets
     yield "steps", chart.Lines("curve_distance", "factorizations"), steps
-    yield "order", chart.Lines("rung", "seconds", chosen=order.chosen), charts["order"]
     yield "lcp-paper", chart.Profile("factorizations"), charts["lcp-paper"]
     yield "robustness", chart.Profile("factorizations"), charts["robustness"]
     yield "scaling-curves", chart.Lines("n", "seconds"), charts["scaling-curves"]
@@ -59,7 +57,7 @@ def pictures(charts):
         yield f"scenes-{k + 1}", chart.Dumbbell("answer", "seconds", part, every=True), evolve(every, title="")
 
 
-TABLES = {"cost-model": order.cost_model, "scaling": chart.scaling, "profile": chart.profile}
+TABLES = {"scaling": chart.scaling, "profile": chart.profile}
 
 CLAIMS = {
     name: test

@@ -25,8 +25,10 @@ from attrs import NOTHING, frozen
 
 GROUP = "continuation.homotopies"
 SCENES = "continuation.scenes"
+STUDIES = "continuation.studies"
+COMMANDS = "continuation.commands"
 
-_KINDS = {GROUP: "homotopy", SCENES: "scene"}
+_KINDS = {GROUP: "homotopy", SCENES: "scene", STUDIES: "study", COMMANDS: "command"}
 
 Factory = Callable[..., Any]
 """What an entry point names: options to homotopy."""
@@ -116,7 +118,7 @@ def available(group: str = GROUP) -> dict[str, Plugin]:
     Parameters
     ----------
     group : str
-        `GROUP`, or `SCENES`.
+        `GROUP`, `SCENES`, `STUDIES` or `COMMANDS`.
     """
     points = grouped(entry_points(group=group))
     return {name: Plugin(name, tuple(points[name]), _KINDS[group]) for name in sorted(points)}
@@ -130,7 +132,7 @@ def find(name: str, group: str = GROUP) -> Factory:
     name : str
         A registered name, or ``module:object`` for one that is not registered.
     group : str
-        `GROUP`, or `SCENES`.
+        `GROUP`, `SCENES`, `STUDIES` or `COMMANDS`.
 
     Raises
     ------

@@ -17,28 +17,28 @@ A plug-in author charts a homotopy of their own in ten lines::
     chart.Lines("curve_distance", "factorizations").draw(results).savefig("mine.png")
 """
 
-from continuation.chart.dumbbell import Dumbbell
-from continuation.chart.errors import (
-    ARCLENGTH,
-    CURVE_DISTANCE,
-    END_POINT,
-    NATURAL_RESIDUAL,
-    TURNING_POINTS,
-    Error,
-    observed,
+from continuation.chart.model import (
+    Answer,
+    Failure,
+    Ladder,
+    Method,
+    Problem,
+    Rung,
+    Truth,
+    longest_steps,
+    reference,
+    tolerances,
+    traced,
 )
-from continuation.chart.ladder import Ladder, Rung, longest_steps, orders, tolerances
-from continuation.chart.measures import excess, exponents, on_front, ratios
-from continuation.chart.model import Answer, Failure, Method, Problem, Truth, reference, traced
-from continuation.chart.pictures import Lines, Profile
-from continuation.chart.results import WORK, Results, Row, read, write
+from continuation.chart.pictures import Dumbbell, Lines, Profile
+from continuation.chart.results import WORK, Results, Row, excess, exponents, ratios, read, write
 from continuation.chart.run import run
-from continuation.chart.study import Figure, Study
+from continuation.chart.study import CURVE_DISTANCE, END_POINT, TURNING_POINTS, Error, Study, observed
 from continuation.chart.table import Table, profile, runs, scaling, summary
 
 __all__ = [
-    "ARCLENGTH", "CURVE_DISTANCE", "END_POINT", "NATURAL_RESIDUAL", "TURNING_POINTS", "WORK", "Answer", "Dumbbell",
-    "Error", "Failure", "Figure", "Ladder", "Lines", "Method", "Problem", "Profile", "Results", "Row", "Rung", "Study",
-    "Table", "Truth", "excess", "exponents", "longest_steps", "observed", "on_front", "orders", "profile", "ratios",
-    "read", "reference", "run", "runs", "scaling", "summary", "tolerances", "traced", "write",
+    "CURVE_DISTANCE", "END_POINT", "TURNING_POINTS", "WORK", "Answer", "Dumbbell", "Error", "Failure", "Ladder",
+    "Lines", "Method", "Problem", "Profile", "Results", "Row", "Rung", "Study", "Table", "Truth", "excess", "exponents",
+    "longest_steps", "observed", "profile", "ratios", "read", "reference", "run", "runs", "scaling", "summary",
+    "tolerances", "traced", "write",
 ]  # fmt: skip

@@ -1,24 +1,104 @@
-"""Problems and what is known of them, methods, and what a method answers to a problem."""
+"""What is varied, problems and what is known of them, methods, and what a method answers to a problem."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, Unpack
 
 import numpy as np
-from attrs import Factory, field, frozen
+from attrs import Attribute, Factory, evolve, field, frozen
 
 from continuation.arguments.checks import POSITIVE
 from continuation.arrays import Array
-from continuation.chart.ladder import Rung
 from continuation.counts import Counts
 from continuation.path import Path
 from continuation.step.options import Options, check_names
-from continuation.step.presets import CONSERVATIVE
+from continuation.step.presets import CONSERVATIVE, DEFAULT
 from continuation.tracing import trace
 
-REFERENCE_TOLERANCE = 1e-11
-"""The last Newton increment of a reference: the point after it is exact to round-off."""
+# -- what is varied -----------------------------------------------------------------------------------------------
+
+
+def _positive(instance: Any, attribute: Attribute[Any], values: tuple[Any, ...]) -> None:
+    if not values or not all(isinstance(value, (int, float)) and 0.0 < value < math.inf for value in values):
+        raise ValueError(f"values: expected positive numbers, at least one, found {values}")
+
+
+@frozen
+class Ladder:
+    """The values of one setting, and how a value enters the options of a trace.
+
+    Attributes
+    ----------
+    name : str
+        What is varied, as axes and tables call it.
+    values : tuple of float
+        Positive.
+    change : callable
+        (options, value) to new options.
+    """
+
+    name: str
+    values: tuple[float, ...] = field(validator=_positive)
+    change: Callable[[dict[str, Any], float], dict[str, Any]]
+
+    @property
+    def rungs(self) -> tuple[Rung, ...]:
+        """The values one by one."""
+        return tuple(Rung(self, value) for value in self.values)
+
+
+@frozen
+class Rung:
+    """One value of a ladder."""
+
+    ladder: Ladder
+    value: float
+
+    def apply(self, options: Mapping[str, Any]) -> dict[str, Any]:
+        """The options of a trace with this value set.
+
+        Parameters
+        ----------
+        options : mapping
+            For `continuation.trace`.
+        """
+        return self.ladder.change(dict(options), self.value)
+
+
+def tolerances(*values: float) -> Ladder:
+    """The tolerance of the trace.
+
+    Parameters
+    ----------
+    *values : float
+        Positive.
+    """
+    return Ladder("tolerance", values, lambda options, value: {**options, "tolerance": value})
+
+
+def longest_steps(*values: float) -> Ladder:
+    """The longest step that the controller may take, in arclength of the metric; the first step is no longer.
+
+    Parameters
+    ----------
+    *values : float
+        Positive.
+    """
+    return Ladder("longest step", values, _limited)
+
+
+def _limited(options: dict[str, Any], value: float) -> dict[str, Any]:
+    controller = options.get("controller") or options.get("preset", DEFAULT).controller
+    bounds = controller.bounds
+    # A first step that the controller leaves open, or one that is shorter, stays.
+    first = bounds.initial if bounds.initial is None else min(bounds.initial, value)
+    limited = evolve(bounds, maximum=value, minimum=min(bounds.minimum, value), initial=first)
+    return {**options, "controller": evolve(controller, bounds=limited)}
+
+
+# -- problems, methods, answers -----------------------------------------------------------------------------------
 
 
 class Failure:
@@ -42,19 +122,17 @@ class Truth:
         The end point (y, lam).
     turning_points : ndarray, shape (k, N + 1), or None
         In the order of the path.
-    arclength : float or None
-        In the Euclidean metric of (y, lam).
-    nearest : callable or None
-        Points of shape (m, N + 1) near the curve to points of the curve beside them.
     within : float
         A path whose end is farther from `end` than this, relative to its size, has come to a wrong end.
     """
 
     end: Array | None = None
     turning_points: Array | None = None
-    arclength: float | None = None
-    nearest: Callable[[Array], Array] | None = None
     within: float = field(default=1e-2, validator=POSITIVE)
+
+
+REFERENCE_TOLERANCE = 1e-11
+"""The last Newton increment of a reference: the point after it is exact to round-off."""
 
 
 def reference(homotopy: Any, **options: Any) -> Truth:
@@ -74,8 +152,7 @@ def reference(homotopy: Any, **options: Any) -> Truth:
     path: Path = trace(homotopy, **{"preset": CONSERVATIVE, "tolerance": REFERENCE_TOLERANCE, **options})
     if not path.success:
         raise ArithmeticError(f"the reference path did not arrive: {path.message}")
-    turns = np.array([event.u for event in path.turning_points]).reshape(-1, path.endpoint.u.size)
-    return Truth(end=path.endpoint.u, turning_points=turns)
+    return Truth(path.endpoint.u, np.reshape([event.u for event in path.turning_points], (-1, path.endpoint.u.size)))
 
 
 @frozen(eq=False)
@@ -108,9 +185,7 @@ class Problem:
 
     @n.default
     def _size(self) -> int:
-        if hasattr(self.subject, "start"):
-            return len(self.subject.start()[0])
-        return int(getattr(self.subject, "n", 0))
+        return len(self.subject.start()[0]) if hasattr(self.subject, "start") else int(getattr(self.subject, "n", 0))
 
 
 @frozen(eq=False)
@@ -163,14 +238,12 @@ class Method:
     outside: bool = False
 
 
-def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: Unpack[Options]) -> Method:
+def traced(name: str, **options: Unpack[Options]) -> Method:
     """A method that traces the problem's path.
 
     Parameters
     ----------
     name : str
-    homotopy : callable, optional
-        The problem's subject to a homotopy; made anew for each run, and timed. By default the subject is one.
     **options
         As for `continuation.trace`: preset, predictor, corrector, controller, metric, budget.
 
@@ -180,21 +253,13 @@ def traced(name: str, homotopy: Callable[[Any], Any] | None = None, **options: U
         For an unknown option, at once rather than in every run.
     """
     check_names(options)
-
-    def run(problem: Problem, rung: Rung) -> Answer:
-        followed = problem.subject if homotopy is None else homotopy(problem.subject)
-        return answer_of(trace(followed, **rung.apply({**problem.options, **options})))
-
-    return Method(name, run)
+    return Method(
+        name, lambda problem, rung: answer_of(trace(problem.subject, **rung.apply({**problem.options, **options})))
+    )
 
 
 def answer_of(path: Path) -> Answer:
     """A traced path as an answer."""
-    end = path.endpoint if path.steps else None
-    return Answer(
-        counts=path.counts,
-        path=path,
-        end=None if end is None else end.u,
-        observed={} if end is None else end.observed,
-        message=path.message,
-    )
+    if not path.steps:
+        return Answer(path.counts, path, message=path.message)
+    return Answer(path.counts, path, path.endpoint.u, path.endpoint.observed, message=path.message)

@@ -1,4 +1,4 @@
-"""Two pictures of a study: lines of work against something, and the fraction solved against work.
+"""Three pictures of a study: lines of work, the fraction solved against work, and ours against the best of the others.
 
 Names are written at what they name, so that no legend is searched. Methods of the study are in colours, outside ones in
 grey.
@@ -7,18 +7,16 @@ grey.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from attrs import field, frozen
 
-from continuation.chart.measures import by_size, exponents, ratios
 from continuation.chart.panels import (
     LINE,
     Axes,
     Figure,
-    look_of,
     looks_of,
     name_ends,
     panels,
@@ -27,20 +25,13 @@ from continuation.chart.panels import (
     tidy,
     to_round_off,
 )
-from continuation.chart.results import WORK, Results, Row
+from continuation.chart.results import WORK, Results, Row, by_size, exponents, ratios
 
-Chooser = Callable[[Row], float | None]
-"""The ladder's value that the library chooses for a row's problem; None where it does not choose."""
+Line = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
+"""A line of a panel: its name, how it looks, its points."""
 
-
-@frozen
-class Line:
-    """A line of a panel: its name, how it looks, its points, and a point of it that is to be seen."""
-
-    name: str
-    look: dict[str, Any]
-    points: Sequence[tuple[float, float]]
-    seen: tuple[float, float] | None = None
+Rows = tuple[str, Sequence[Row], str]
+"""A line of a dumbbell: its name, its runs, and what is said of them."""
 
 
 def _names(value: str | Sequence[str]) -> tuple[str, ...]:
@@ -49,29 +40,26 @@ def _names(value: str | Sequence[str]) -> tuple[str, ...]:
 
 @frozen
 class Lines:
-    """Work against an error, the size ``"n"`` or the ladder's ``"rung"``, both logarithmic: lower is better.
+    """Work against an error or the size ``"n"``, both logarithmic: lower is better.
 
     Against an error, which falls to the right and ends at round-off, there is a panel a problem and kind of work, and a
-    line a method. Against n there is a panel a family, and a line a method with its exponent. Against the rung there
-    is a panel a method, and a line a problem, over its least. How many runs of a line failed is said with its name.
+    line a method; how many of its runs failed is said with its name. Against n there is a panel a family, and a line a
+    method with its exponent.
 
     Attributes
     ----------
     across : str
-        One of the results' errors, ``"n"`` or ``"rung"``.
+        One of the results' errors, or ``"n"``.
     work : str or sequence of str
         In `WORK`; several stand side by side.
     problems, methods : sequence of str, optional
         Which; all by default.
-    chosen : callable, optional
-        From a row to the ladder's value that is marked by a large dot.
     """
 
     across: str
     work: tuple[str, ...] = field(converter=_names)
     problems: Sequence[str] | None = None
     methods: Sequence[str] | None = None
-    chosen: Chooser | None = None
 
     @property
     def name(self) -> str:
@@ -90,73 +78,51 @@ class Lines:
         ImportError, ValueError
             Without matplotlib; if the error, the work, a problem or a method is none of the results'.
         """
+        sizes = self.across == "n"
         for work in self.work:
-            results.check(None if self.across in ("n", "rung") else self.across, work)
+            results.check(None if sizes else self.across, work)
         problems = some("problems", self.problems, results.problems)
-        methods = some("methods", self.methods, results.methods)
-        looks = looks_of(results, methods)
-        per = {"n": results.families, "rung": methods}.get(self.across, problems)
-        columns = len(self.work) if len(self.work) > 1 else min(2, len(per))
-        figure, axes = panels(len(per) * len(self.work), columns, results.title)
+        looks = looks_of(results, some("methods", self.methods, results.methods))
+        subjects = results.families if sizes else problems
+        columns = len(self.work) if len(self.work) > 1 else min(2, len(subjects))
+        figure, axes = panels(len(subjects) * len(self.work), columns, results.title)
         for k, ax in enumerate(axes):
-            subject, work = per[k // len(self.work)], self.work[k % len(self.work)]
-            if self.across == "n":
-                lines = self._by_size(results, subject, work, looks)
-            elif self.across == "rung":
-                lines = self._by_rung(results, subject, work, problems)
-            else:
-                lines = self._by_error(results, subject, work, looks)
-            label = {"n": "size n", "rung": results.ladder}.get(self.across) or results.errors[self.across]
+            subject, work = subjects[k // len(self.work)], self.work[k % len(self.work)]
+            lines = (self._by_size if sizes else self._by_error)(results, subject, work, looks)
             ax.set_title(subject, fontsize="medium", loc="left")
-            ax.set_xlabel(label if k + columns >= len(axes) else "")
-            ax.set_ylabel(WORK[work].label + (" over the least" if self.across == "rung" else ""))
+            ax.set_xlabel(("size n" if sizes else results.errors[self.across]) if k + columns >= len(axes) else "")
+            ax.set_ylabel(WORK[work].label)
             self._panel(ax, lines)
         return figure
 
     def _by_error(self, results: Results, problem: str, work: str, looks: dict[str, Any]) -> list[Line]:
-        lines = []
+        lines: list[Line] = []
         for method, look in looks.items():
             rows = results.of(problem=problem, method=method)
             points = [point for row in rows if (point := row.placed(self.across, work)) is not None]
             failed = sum(row.failed for row in rows)
             said = f" ({failed} of {len(rows)} failed)" if failed else ""
-            lines += [Line(method + said, look, points)] if rows else []
+            lines += [(method + said, look, points)] if rows else []
         return lines
 
     def _by_size(self, results: Results, family: str, work: str, looks: dict[str, Any]) -> list[Line]:
         powers = {method: power for (of, method), power in exponents(results, work).items() if of == family}
         named = {m: f"{m}, $n^{{{powers[m]:.1f}}}$" if math.isfinite(powers[m]) else m for m in looks}
-        return [Line(named[m], look, by_size(results, family, m, work)) for m, look in looks.items()]
-
-    def _by_rung(self, results: Results, method: str, work: str, problems: Sequence[str]) -> list[Line]:
-        lines = []
-        for k, problem in enumerate(problems):
-            rows = [row for row in results.of(problem=problem, method=method) if not row.failed]
-            least = min((row.work(work) for row in rows), default=1.0)
-            points = sorted((row.rung, row.work(work) / least) for row in rows)
-            choice = self.chosen(rows[0]) if self.chosen is not None and rows else None
-            seen = None if choice is None else (choice, float(np.interp(choice, *np.array(points).T)))
-            lines.append(Line(problem, look_of(k), points, seen))
-        return lines
+        return [(named[m], look, by_size(results, family, m, work)) for m, look in looks.items()]
 
     def _panel(self, axes: Axes, lines: Sequence[Line]) -> None:
-        lines = [line for line in lines if line.points or "failed" in line.name]
-        for line in lines:
-            if line.points:
-                axes.plot(*zip(*line.points), **line.look)
-            if line.seen is not None:
-                axes.plot(*line.seen, "o", markersize=11, color=line.look["color"], zorder=1, alpha=0.45)
+        for _, look, points in lines:
+            if points:
+                axes.plot(*zip(*points), **look)
+        axes.set_xscale("log")
         axes.set_yscale("log")
-        if self.across != "rung":
-            axes.set_xscale("log")
         axes.margins(x=0.06, y=0.08)
-        if self.across not in ("n", "rung"):
+        if self.across != "n":
             to_round_off(axes)
         plain_ticks(axes.yaxis)
         tidy(axes)
-        ends = [(*line.points[-1], line.name, line.look["color"]) for line in lines if line.points]
-        name_ends(axes, ends)
-        absent = [line.name.split(" (")[0] for line in lines if not line.points]
+        name_ends(axes, [(*points[-1], name, look["color"]) for name, look, points in lines if points])
+        absent = [name.split(" (")[0] for name, _, points in lines if not points and "failed" in name]
         if absent:
             text = f"failed: {', '.join(absent)}"
             axes.annotate(text, (0.02, 0.02), xycoords="axes fraction", fontsize="x-small", color="0.4")
@@ -217,3 +183,111 @@ class Profile:
         return figure
 
 
+ACCURACY = (
+    ("≤ 1e-12", 1e-12, "#08306b"),
+    ("1e-9", 1e-9, "#2171b5"),
+    ("1e-6", 1e-6, "#6baed6"),
+    ("1e-3", 1e-3, "#fdae6b"),
+    ("more", math.inf, "#d94801"),
+)
+"""Classes of errors, of three digits each as a reader tells five colours apart, and their colours."""
+
+
+@frozen
+class Dumbbell:
+    """A row a problem, from the best outside method to the study's first, sorted by their ratio; errors as colours.
+
+    The best is the quickest that did not fail; where there is a ladder, its last rung counts. With `every`, all methods
+    have a row under the name of the problem, with a point a rung.
+
+    Attributes
+    ----------
+    error, work : str
+        Names in the results' errors and `WORK`.
+    problems : sequence of str, optional
+        Which; all by default.
+    every : bool
+    """
+
+    error: str
+    work: str
+    problems: Sequence[str] | None = None
+    every: bool = False
+
+    @property
+    def name(self) -> str:
+        """Of the file."""
+        return f"{'every' if self.every else 'dumbbell'}-{self.work}"
+
+    def draw(self, results: Results) -> Figure:
+        """The matplotlib figure.
+
+        Parameters
+        ----------
+        results : Results
+
+        Raises
+        ------
+        ImportError, ValueError
+            Without matplotlib; if the error, the work or a problem is none of the results'.
+        """
+        results.check(self.error, self.work)
+        problems = some("problems", self.problems, results.problems)
+        lines = self._all_methods(results, problems) if self.every else self._best(results, problems)
+        height, width = (1.2, 7.4) if self.every else (1.5, 9.0)
+        figure, (axes,) = panels(1, 1, results.title, height=1.2 + height * LINE * len(lines), width=width)
+        for k, (_, rows, said) in enumerate(lines):
+            placed = [(row.work(self.work), -k) for row in rows]
+            axes.plot(*zip(*placed or [(math.nan, -k)]), color="0.75", linewidth=2.0, zorder=1)
+            for row, point in zip(rows, placed):
+                colour = next(colour for _, most, colour in ACCURACY if not row.errors[self.error] > most)
+                axes.plot(*point, "o" if row.outside else "D", color=colour, markersize=7, markeredgecolor="white")
+            if len(rows) == 2 and not self.every:
+                # On the side where no line goes.
+                side = -1 if placed[1] < placed[0] else 1
+                where = {"ha": "right" if side < 0 else "left", "va": "center", "fontsize": "x-small", "color": "0.35"}
+                axes.annotate(rows[1].method, placed[1], (7 * side, 0), textcoords="offset points", **where)
+            axes.annotate(said, (1.01, -k), xycoords=("axes fraction", "data"), va="center", fontsize="small")
+        axes.set_xscale("log")
+        # The names of the best take up to a fifth of the panel, at either side.
+        axes.margins(x=0.06 if self.every else 0.35)
+        axes.set_ylim(0.6 - len(lines), 0.6)
+        axes.set_yticks(range(0, -len(lines), -1), [name for name, _, _ in lines], fontsize="small")
+        for label, (_, rows, said) in zip(axes.get_yticklabels(), lines):
+            label.set_weight("normal" if rows or said else "bold")
+        axes.set_xlabel(WORK[self.work].label)
+        tidy(axes)
+        axes.grid(axis="y", visible=False)
+        # Below the panel: which mark is whose, and what the colours mean.
+        marks = [("ours", "D", "0.3"), ("theirs, error:", "o", "0.3"), *((name, "s", c) for name, _, c in ACCURACY)]
+        handles = [axes.plot([], [], mark, color=colour, label=name)[0] for name, mark, colour in marks]
+        figure.legend(handles=handles, loc="outside lower left", ncols=len(handles), frameon=False, fontsize="small",
+                      handletextpad=0.1, columnspacing=1.2)  # fmt: skip
+        return figure
+
+    def _best(self, results: Results, problems: Sequence[str]) -> list[Rows]:
+        """(problem, ours and the best outside one, who is quicker), sorted by their ratio."""
+        found = []
+        for problem in problems:
+            rows = [row for row in results.of(problem=problem) if not row.failed]
+            last = max((row.rung for row in rows if not math.isnan(row.rung)), default=math.nan)
+            rows = [row for row in rows if row.rung == last or math.isnan(row.rung)]
+            ours = [row for row in rows if not row.outside][:1]
+            best = sorted((row for row in rows if row.outside), key=lambda row: row.work(self.work))[:1]
+            ratio = best[0].work(self.work) / ours[0].work(self.work) if best and ours else math.nan
+            much = f"{max(ratio, 1.0 / ratio):.{1 if 0.1 < ratio < 10.0 else 0}f}×"
+            said = f"{much} quicker" if ratio >= 1.0 else f"{much} slower" if ratio < 1.0 else "no rival"
+            found.append((math.inf if math.isnan(ratio) else -ratio, (problem, ours + best, said)))
+        return [line for _, line in sorted(found, key=lambda pair: pair[0])]
+
+    def _all_methods(self, results: Results, problems: Sequence[str]) -> list[Rows]:
+        """A line without rows for each problem, then its methods, the quickest first."""
+        lines: list[Rows] = []
+        for problem in problems:
+            whole = sorted(results.of(problem=problem), key=lambda row: (row.failed, row.work(self.work)))
+            lines.append((problem, [], ""))
+            for method in dict.fromkeys(row.method for row in whole):
+                rows = results.of(problem=problem, method=method)
+                said = ", ".join(dict.fromkeys(row.failure for row in rows if row.failed))
+                lines.append((method, [row for row in rows if not row.failed], said))
+        return lines

@@ -1,25 +1,24 @@
-"""What a study found: one row a run, failures included; kept as CSV."""
+"""What a study found: one row a run, failures included, kept as JSON; and what is read off the rows."""
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path as File
-from typing import Any
 
-from attrs import field, fields, fields_dict, frozen
+import numpy as np
+from attrs import asdict, field, frozen
 
+from continuation.arrays import Array
 from continuation.counts import Counts
 
 ERROR_FLOOR = 1e-13
 """Errors below this are round-off, and count as equal."""
 
-PREFIX = "error: "
-"""Of the columns of errors in a file."""
+FITTED = 3
+"""Sizes that a fitted exponent needs at least; it is made to the larger half of them, since costs are asymptotic."""
 
 
 @frozen
@@ -155,68 +154,41 @@ class Results:
         """As for the problems."""
         return list(dict.fromkeys(row.method for row in self.rows))
 
-    def of(self, *, problem: str | None = None, family: str | None = None, method: str | None = None) -> Sequence[Row]:
-        """The rows with the given names.
+    def of(self, **where: object) -> Sequence[Row]:
+        """The rows with the given values.
 
         Parameters
         ----------
-        problem, family, method : str, optional
-            Only rows of that name; all by default.
+        **where
+            By the names of attributes of `Row`; None for any.
         """
-        wanted = {"problem": problem, "family": family, "method": method}
-        given = {name: value for name, value in wanted.items() if value is not None}
+        given = {name: value for name, value in where.items() if value is not None}
         return [row for row in self.rows if all(getattr(row, name) == value for name, value in given.items())]
 
     def check(self, error: str | None = None, work: str | None = None) -> None:
-        """Refuse an error or a work that the results do not have.
+        """Refuse an error or a work that the results do not have, by a ValueError that names what there is.
 
         Parameters
         ----------
         error, work : str, optional
-
-        Raises
-        ------
-        ValueError
-            Naming what there is.
         """
-        if error is not None and error not in self.errors:
-            raise ValueError(f"error: expected one of {', '.join(self.errors)}, found {error!r}")
-        if work is not None and work not in WORK:
-            raise ValueError(f"work: expected one of {', '.join(WORK)}, found {work!r}")
-
-
-_OWN = [each.name for each in fields(Row) if each.name not in ("errors", "counts")]
-_COUNTS = list(Counts().as_dict())
-_HEAD = [each.name for each in fields(Results) if each.name != "rows"]
+        for kind, name, known in (("error", error, self.errors), ("work", work, WORK)):
+            if name is not None and name not in known:
+                raise ValueError(f"{kind}: expected one of {', '.join(known)}, found {name!r}")
 
 
 def write(results: Results, file: str | PathLike[str]) -> File:
-    """Write results as CSV: a line a run under lines ``# name: JSON`` of what the rows have in common.
-
-    ``pandas.read_csv(file, comment="#")`` reads it, and `read`.
+    """Write results as one JSON object, which `read` reads; its ``rows`` make a table of pandas.
 
     Parameters
     ----------
     results : Results
     file : path
         Replaced if it exists.
-
-    Returns
-    -------
-    Path
     """
-    out = io.StringIO()
-    for name in _HEAD:
-        out.write(f"# {name}: {json.dumps(getattr(results, name))}\n")
-    table = csv.writer(out, lineterminator="\n")
-    table.writerow([*_OWN, *_COUNTS, *(PREFIX + name for name in results.errors)])
-    for row in results.rows:
-        counts = row.counts.as_dict()
-        # What begins with # would be read as a comment; a message has no use for it.
-        own = [value.replace("#", "") if isinstance(value := getattr(row, name), str) else value for name in _OWN]
-        table.writerow([*own, *(counts[name] for name in _COUNTS), *(row.errors[name] for name in results.errors)])
     target = File(file)
-    target.write_text(out.getvalue(), encoding="utf-8")
+    kept = asdict(results, filter=lambda attribute, _: attribute.name != "notes")
+    target.write_text(json.dumps(kept, indent=1), encoding="utf-8")
     return target
 
 
@@ -228,26 +200,105 @@ def read(file: str | PathLike[str]) -> Results:
     file : path
         Written by `write`.
 
-    Returns
-    -------
-    Results
-
     Raises
     ------
     ValueError
         If the file holds something else.
     """
-    lines = File(file).read_text(encoding="utf-8").splitlines()
-    head = dict(line[2:].split(": ", 1) for line in lines if line.startswith("# "))
-    if list(head) != _HEAD:
-        raise ValueError(f"file: expected results that `write` wrote, found {file} without {', '.join(_HEAD)}")
-    common = {name: json.loads(value) for name, value in head.items()}
-    rows = [_row(cells, common["errors"]) for cells in csv.DictReader(lines[len(head) :])]
-    return Results(**common, rows=rows)
+    try:
+        kept = json.loads(File(file).read_text(encoding="utf-8"))
+        rows = [Row(**{**row, "counts": Counts(**row["counts"])}) for row in kept.pop("rows")]
+        return Results(**kept, rows=rows)
+    except (AttributeError, KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"file: expected results that `write` wrote, found {file} ({error})") from error
 
 
-def _row(cells: dict[str, str], errors: Mapping[str, str]) -> Row:
-    kinds: dict[str, Callable[[str], Any]] = {"int": int, "float": float, "str": str, "bool": "True".__eq__}
-    own = {name: kinds[str(fields_dict(Row)[name].type)](cells[name]) for name in _OWN}
-    counts = Counts(*(int(cells[name]) for name in _COUNTS))
-    return Row(**own, counts=counts, errors={name: float(cells[PREFIX + name]) for name in errors})
+# -- what is read off them ----------------------------------------------------------------------------------------
+
+
+def excess(results: Results, error: str, work: str) -> Array:
+    """For each row, how many times the work of the best run of its problem that is at least as accurate.
+
+    It is 1 where no run is better, and infinite for failures.
+
+    Parameters
+    ----------
+    results : Results
+    error, work : str
+        Names in `results.errors` and `WORK`.
+
+    Raises
+    ------
+    ValueError
+        If the error or the work is none of the results'.
+    """
+    results.check(error, work)
+    placed = [(row.problem, row.placed(error, work)) for row in results.rows]
+    points = [(problem, *point) for problem, point in placed if point is not None]
+    return np.array([
+        math.inf if point is None else point[1] / min(w for of, e, w in points if of == problem and e <= point[0])
+        for problem, point in placed
+    ])  # fmt: skip
+
+
+def ratios(results: Results, work: str, family: str | None = None) -> dict[str, Array]:
+    """For each method, a number a problem and rung: its work over the least of all methods; infinite where it failed.
+
+    Methods without a rung take part in each.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+    family : str, optional
+        Only its problems; all by default.
+    """
+    results.check(work=work)
+    rows = results.of(family=family)
+    rungs = sorted({row.rung for row in rows if not math.isnan(row.rung)}) or [math.nan]
+    cost = {
+        (row.problem, rung, row.method): math.inf if row.failed else row.work(work)
+        for row in rows
+        for rung in (rungs if math.isnan(row.rung) else [row.rung])
+    }
+    cases = list(dict.fromkeys((problem, rung) for problem, rung, _ in cost))
+    table = np.array([[cost.get((*case, method), math.inf) for case in cases] for method in results.methods])
+    least = table.min(axis=0)
+    # Where all failed the least is infinite, and the quotient is to be.
+    least[np.isinf(least)] = 1.0
+    return dict(zip(results.methods, table / least))
+
+
+def by_size(results: Results, family: str, method: str, work: str) -> list[tuple[float, float]]:
+    """(n, mean work) of the runs that succeeded, by n."""
+    rows = [row for row in results.of(family=family, method=method) if not row.failed]
+    sizes = sorted({row.n for row in rows})
+    return [(float(n), float(np.mean([row.work(work) for row in rows if row.n == n]))) for n in sizes]
+
+
+def exponents(results: Results, work: str) -> dict[tuple[str, str], float]:
+    """The exponent p of work ~ n^p for each (family, method), by least squares on logarithms; NaN below `FITTED` sizes.
+
+    A size with several runs counts with their mean; failures are left out.
+
+    Parameters
+    ----------
+    results : Results
+    work : str
+        One of `WORK`.
+
+    Raises
+    ------
+    ValueError
+        If the work is none of the results'.
+    """
+    results.check(work=work)
+    found = {}
+    for family in results.families:
+        for method in results.methods:
+            points = by_size(results, family, method, work)
+            upper = np.log(points[-max(FITTED, len(points) // 2) :]).reshape(-1, 2)
+            enough = len(upper) >= FITTED
+            found[family, method] = float(np.polyfit(upper[:, 0], upper[:, 1], 1)[0]) if enough else math.nan
+    return found

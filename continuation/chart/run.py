@@ -8,11 +8,9 @@ from collections.abc import Callable
 from pathlib import Path as File
 
 from continuation.archive.provenance import now, software
-from continuation.chart.errors import distance
-from continuation.chart.ladder import Rung
-from continuation.chart.model import Answer, Failure, Method, Problem
+from continuation.chart.model import Answer, Failure, Method, Problem, Rung
 from continuation.chart.results import Results, Row, write
-from continuation.chart.study import Study
+from continuation.chart.study import Study, distance
 from continuation.chart.table import Table, runs, summary
 from continuation.counts import Counts
 from continuation.linear.threads import one_thread
@@ -146,13 +144,13 @@ def tables(study: Study, results: Results) -> dict[str, Table]:
 
 
 def report(study: Study, results: Results, folder: File) -> list[File]:
-    """Write ``NAME.csv``, ``NAME.md`` and one ``NAME-FIGURE.png`` a figure; what is there is replaced.
+    """Write ``NAME.json``, ``NAME.md`` and one ``NAME-FIGURE.png`` a figure; what is there is replaced.
 
     The folder exists. Returned are the files; without matplotlib there are no figures among them.
     """
     page = folder / f"{study.name}.md"
     page.write_text(_page(study, results), encoding="utf-8")
-    files = [write(results, folder / f"{study.name}.csv"), page]
+    files = [write(results, folder / f"{study.name}.json"), page]
     for figure in study.figures:
         try:
             drawing = figure.draw(results)

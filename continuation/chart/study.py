@@ -1,57 +1,127 @@
-"""A study: problems x methods x a ladder, the errors to measure, and the figures to draw."""
+"""A study: methods on problems at the values of one setting, with the errors to measure and the pictures to draw."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from itertools import pairwise
+from typing import Any, Literal
 
-from attrs import Factory, field, frozen
+import numpy as np
+from attrs import Attribute, Factory, field, frozen
 
 from continuation.arguments.checks import NOT_NEGATIVE, integer
-from continuation.chart.errors import Error
-from continuation.chart.ladder import Ladder, tolerances
-from continuation.chart.model import Method, Problem
+from continuation.arrays import Array
+from continuation.chart.model import Answer, Ladder, Method, Problem, tolerances
 from continuation.chart.results import WORK, Results
 from continuation.chart.table import Table
+from continuation.correctors import MoorePenrose
+from continuation.counts import Counts
+from continuation.evaluation.evaluator import Evaluator
+from continuation.point.linearization import linearize
+from continuation.tolerance import Tolerance
+
+Size = Literal["smoke", "moderate", "full"]
+"""Of a ready study, which is a function (size, compare) to studies: for tests, for a few minutes on two cores, for
+reports; `compare` asks for outside solvers where they are installed."""
+
+# -- errors -------------------------------------------------------------------------------------------------------
 
 
-class Figure(Protocol):
-    """A picture of results."""
+@frozen
+class Error:
+    """A measure of the error of an answer; all of them are relative.
 
-    @property
-    def name(self) -> str:
-        """Part of the file name."""
-        ...
+    Attributes
+    ----------
+    name : str
+        A column's.
+    label : str
+        An axis's.
+    measure : callable
+        (problem, answer) to a number >= 0, or NaN where it does not apply.
+    """
 
-    def draw(self, results: Results) -> Any:
-        """The matplotlib figure.
-
-        Parameters
-        ----------
-        results : Results
-
-        Returns
-        -------
-        matplotlib Figure
-        """
-        ...
+    name: str
+    label: str
+    measure: Callable[[Problem, Answer], float]
 
 
-def _distinct(instance: Any, attribute: Any, value: Sequence[Any]) -> None:
-    if not isinstance(value, Sequence) or isinstance(value, str):
-        raise TypeError(f"{attribute.name}: expected a list, found {value!r}")
-    if not value:
-        raise ValueError(f"{attribute.name}: expected at least one, found none")
-    for item in value:
-        if not hasattr(item, "name"):
-            raise TypeError(f"{attribute.name}: expected {attribute.name} of continuation.chart, found {item!r}")
-    names = [item.name for item in value]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise ValueError(f"{attribute.name}: expected distinct names, found {twice!r} twice")
+def distance(found: Array, true: Array) -> float:
+    """The largest difference of components, relative to 1 plus the largest true one."""
+    return float(np.abs(found - true).max() / (1.0 + np.abs(true).max()))
 
 
-def _known_work(instance: Any, attribute: Any, value: Sequence[str]) -> None:
+def _end_point(problem: Problem, answer: Answer) -> float:
+    true = problem.truth.end
+    return math.nan if true is None or answer.end is None else distance(answer.end, true)
+
+
+def _turning_points(problem: Problem, answer: Answer) -> float:
+    true = problem.truth.turning_points
+    if true is None or answer.path is None or not len(true) or len(answer.path.turning_points) != len(true):
+        return math.nan
+    return max(distance(event.u, row) for event, row in zip(answer.path.turning_points, true))
+
+
+BETWEEN = (0.25, 0.5, 0.75)
+"""Where in each step the dense output is compared with the curve."""
+
+
+def _curve_distance(problem: Problem, answer: Answer) -> float:
+    """The largest distance of the points, and of the dense output between them, from the nearest points of the curve.
+
+    These are found along the normal, by Newton's method to round-off; NaN where that fails.
+    """
+    path = answer.path
+    if path is None or len(path) < 2:
+        return math.nan
+    between = [
+        after.segment.at(t) if after.segment is not None else (1.0 - t) * before.u + t * after.u
+        for before, after in pairwise(path.steps)
+        for t in BETWEEN
+    ]
+    evaluator, corrector = Evaluator(problem.subject, Counts()), MoorePenrose(max_contraction=10.0)
+    largest = 0.0
+    for u in [*path.u, *between]:
+        try:
+            here = linearize(evaluator, u, np.ones_like(u), np.ones_like(u))
+            found = corrector.correct(evaluator, here, u, here.border, Tolerance(relative=1e-12))
+        except ArithmeticError:
+            return math.nan
+        if not found.converged:
+            return math.nan
+        largest = max(largest, distance(u, found.u))
+    return largest
+
+
+def observed(name: str, label: str) -> Error:
+    """A scalar that the homotopy (its `observe`) or the method reports at the end and that is zero at a solution.
+
+    Parameters
+    ----------
+    name : str
+        The key in `Answer.observed`; the error is NaN where nothing of that name is reported.
+    label : str
+        Of an axis.
+    """
+    return Error(name, label, lambda problem, answer: float(answer.observed.get(name, math.nan)))
+
+
+END_POINT = Error("end_point", "relative error of the end point", _end_point)
+TURNING_POINTS = Error("turning_points", "relative error of the turning points", _turning_points)
+CURVE_DISTANCE = Error("curve_distance", "relative distance of the dense output from the curve", _curve_distance)
+
+# -- the study ----------------------------------------------------------------------------------------------------
+
+
+def _named_once(instance: Any, attribute: Attribute[Any], value: Any) -> None:
+    names = [getattr(item, "name", None) for item in value] if isinstance(value, Sequence) else []
+    if not names or None in names or len(set(names)) < len(names):
+        raise ValueError(f"{attribute.name}: expected a list of some, each with a name of its own, found {value!r}")
+
+
+def _known(instance: Any, attribute: Attribute[Any], value: Sequence[str]) -> None:
     if isinstance(value, str) or not value or not set(value) <= set(WORK):
         raise ValueError(f"work: expected a list of some of {', '.join(WORK)}, found {value!r}")
 
@@ -73,8 +143,8 @@ class Study:
         The first one counts where a table has room for one.
     work : sequence of str
         Names in `WORK`; the first one counts where there is room for one.
-    figures : sequence of Figure
-        What ``continuation chart`` draws.
+    figures : sequence
+        Of `Lines`, `Profile`, `Dumbbell`: what ``continuation chart`` draws.
     tables : mapping of str to callable
         By title, of the results: what ``continuation chart`` prints beside the summary by method.
     title : str
@@ -92,17 +162,15 @@ class Study:
     ------
     ValueError
         If there is no problem, method or error, two of a kind have the same name, or a kind of work is unknown.
-    TypeError
-        If problems, methods or errors are no list of such.
     """
 
     name: str
-    problems: Sequence[Problem] = field(validator=_distinct)
-    methods: Sequence[Method] = field(validator=_distinct)
+    problems: Sequence[Problem] = field(validator=_named_once)
+    methods: Sequence[Method] = field(validator=_named_once)
     ladder: Ladder = field(factory=lambda: tolerances(1e-4, 1e-6, 1e-8, 1e-10))
-    errors: Sequence[Error] = field(validator=_distinct)
-    work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known_work)
-    figures: Sequence[Figure] = ()
+    errors: Sequence[Error] = field(validator=_named_once)
+    work: Sequence[str] = field(default=("factorizations", "seconds"), validator=_known)
+    figures: Sequence[Any] = ()
     tables: Mapping[str, Callable[[Results], Table]] = field(factory=dict)
     title: str = field(default=Factory(lambda study: study.name, takes_self=True))
     repeats: int = field(default=2, validator=integer(0))

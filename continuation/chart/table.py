@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from statistics import median
+from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
-from attrs import field, frozen
+from attrs import frozen
 
-from continuation.chart.measures import by_size, excess, exponents, on_front, ratios
-from continuation.chart.results import Results, Row
+from continuation.chart.results import Results, by_size, excess, exponents, ratios
+from continuation.counts import Counts
 
 Cell = str | int | float
-
-ON_FRONT = "*"
-"""Marks the runs on the Pareto front."""
-
-
-def _head(names: Iterable[str]) -> tuple[str, ...]:
-    return tuple(names)
-
-
-def _rows(rows: Iterable[Sequence[Cell]]) -> tuple[tuple[Cell, ...], ...]:
-    return tuple(tuple(row) for row in rows)
 
 
 @frozen
@@ -32,13 +21,13 @@ class Table:
 
     Attributes
     ----------
-    head : tuple of str
-    rows : tuple of tuple
+    head : sequence of str
+    rows : sequence of sequences
         Of text and numbers.
     """
 
-    head: tuple[str, ...] = field(converter=_head)
-    rows: tuple[tuple[Cell, ...], ...] = field(converter=_rows)
+    head: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
 
     def text(self) -> str:
         """Columns aligned, numbers to the right."""
@@ -73,7 +62,7 @@ def _shown(cell: Cell) -> str:
 
 
 def runs(results: Results, failures_only: bool = False) -> Table:
-    """One line a run, failures included; the front in the first error and the first work is marked.
+    """One line a run, failures included; a star where no run is better in the first error and the first work.
 
     Parameters
     ----------
@@ -81,51 +70,43 @@ def runs(results: Results, failures_only: bool = False) -> Table:
     failures_only : bool
         Only the runs that failed.
     """
-    error, work = next(iter(results.errors)), results.work[0]
-    front = {id(row) for p in results.problems for row in on_front(results.of(problem=p), error, work)}
-    counts = [name for name in results.rows[0].counts.as_dict() if name != "jacobians"] if results.rows else []
+    far = excess(results, next(iter(results.errors)), results.work[0])
+    counts = [name for name in Counts().as_dict() if name != "jacobians"]
     head = ("problem", "n", "method", results.ladder, "front", "outcome", "turns", *results.errors, *counts, "seconds")
     lines: list[tuple[Cell, ...]] = [
-        (row.problem, row.n, row.method, row.rung, ON_FRONT if id(row) in front else "", row.failure or "ok", row.turns,
-         *(row.errors[name] for name in results.errors), *(row.counts.as_dict()[name] for name in counts), row.seconds)
-        for row in results.rows
+        (row.problem, row.n, row.method, row.rung, "*" if times == 1.0 else "", row.failure or "ok", row.turns,
+         *row.errors.values(), *(row.counts.as_dict()[name] for name in counts), row.seconds)
+        for row, times in zip(results.rows, far)
         if row.failed or not failures_only
     ]  # fmt: skip
     return Table(head, lines)
 
 
-def summary(results: Results, error: str | None = None) -> Table:
-    """One line a method: runs that succeeded, and how far from the Pareto front they are in each kind of work.
+def summary(results: Results) -> Table:
+    """One line a method: runs that succeeded, and how far from the best ones they are in each kind of work.
 
-    The excess of a run is its work over that of the best run of the same problem that is at least as accurate: 1 on
-    the front. Shown are the median and the largest over the runs that succeeded.
+    The excess of a run is its work over that of the best run of the same problem that is at least as accurate. Shown
+    are the median and the largest over the runs that succeeded.
 
     Parameters
     ----------
     results : Results
-    error : str, optional
-        By default the first of the results.
     """
-    error = next(iter(results.errors)) if error is None else error
-    far = {work: excess(results, error, work) for work in results.work}
     head = ["method", "runs", "solved", "failures"]
     for work in results.work:
         head += [f"{work}: median excess", "worst"]
-    lines = [_line(method, results.of(method=method), far) for method in results.methods]
+    far = [excess(results, next(iter(results.errors)), work) for work in results.work]
+    lines = []
+    for method in results.methods:
+        rows, mine = results.of(method=method), np.array([row.method == method for row in results.rows])
+        failures = Counter(row.failure for row in rows if row.failed)
+        said = ", ".join(f"{count} {name}" for name, count in failures.items())
+        cells: list[Cell] = [method, len(rows), len(rows) - failures.total(), said]
+        for times in far:
+            values = times[mine & np.isfinite(times)]
+            cells += [float(np.median(values)), float(values.max())] if values.size else [math.nan, math.nan]
+        lines.append(tuple(cells))
     return Table(head, lines)
-
-
-def _line(method: str, rows: Sequence[Row], far: dict[str, dict[tuple[str, str, float], float]]) -> tuple[Cell, ...]:
-    cells: list[Cell] = [method, len(rows), sum(not row.failed for row in rows), _failures(rows)]
-    for table in far.values():
-        values = [value for (_, name, _), value in table.items() if name == method and math.isfinite(value)]
-        cells += [median(values), max(values)] if values else [math.nan, math.nan]
-    return tuple(cells)
-
-
-def _failures(rows: Iterable[Row]) -> str:
-    found = [row.failure for row in rows if row.failed]
-    return ", ".join(f"{found.count(name)} {name}" for name in dict.fromkeys(found))
 
 
 def profile(results: Results, work: str = "factorizations") -> Table:

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 PRESETS = ("fast", "default", "conservative", "series")
 
-CHART_TOLERANCES = (1e-3, 1e-6, 1e-9)
-
 MOST_PRINTED = 10
 """Unknowns printed; --json prints all."""
 
@@ -41,14 +39,6 @@ def register(subparsers: Subparsers) -> None:
     _add_homotopy(parser)
     parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
     parser.add_argument("--plot", metavar="FILE", help="draw it (.png, .pdf, .svg); needs matplotlib")
-    parser.add_argument("--chart", metavar="DIR", help="chart speed against accuracy on it, presets and tolerances")
-    parser.add_argument(
-        "--chart-tolerances",
-        metavar="EPS,...",
-        type=_tolerances,
-        default=CHART_TOLERANCES,
-        help="of the chart; default: 1e-3,1e-6,1e-9",
-    )
     parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
     parser.add_argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller")
     parser.add_argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none")
@@ -131,12 +121,6 @@ def _trace(arguments: argparse.Namespace) -> int:
         check_picture("--plot", arguments.plot)
     with complaints("--archive", new="--archive"):
         log = None if arguments.archive is None else PathLog(arguments.archive, parameters=values)
-    folder = None
-    if arguments.chart is not None:
-        from continuation.cli.charts import new_folder
-
-        folder = new_folder("--chart", arguments.chart)
-    course, budget = _course(arguments), _budget(arguments)
     preset = getattr(presets, arguments.preset.upper())
     with refused(arguments.name), complaints("--archive", new="--archive"):
         path = trace(
@@ -145,35 +129,22 @@ def _trace(arguments: argparse.Namespace) -> int:
             progress=arguments.progress,
             preset=preset,
             tolerance=arguments.tolerance,
-            budget=budget,
-            **course,
+            budget=_budget(arguments),
+            **_course(arguments),
         )
     title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
     print(json.dumps(_as_json(title, path)) if arguments.json else "\n".join(_as_text(title, path)))
-    # The one JSON object has stdout for itself.
-    out = sys.stderr if arguments.json else sys.stdout
     if arguments.cite:
         from continuation.citation import cite
 
-        print(f"\n{cite(path)}", file=out)
+        # The one JSON object has stdout for itself.
+        print(f"\n{cite(path)}", file=sys.stderr if arguments.json else sys.stdout)
     if arguments.plot is not None:
         from continuation.cli.figures import save
         from continuation.plot import plot_components
 
         save(arguments.plot, path, f"{title}: {path.status.name}", lambda axes: plot_components(path, axes))
-    arrived = path.success
-    if folder is not None:
-        if not arrived:
-            print("continuation: no chart: a path that does not arrive has no end to measure", file=sys.stderr)
-            return FAILURE
-        from continuation.cli.charts import chart_presets
-
-        try:
-            chart_presets(homotopy, title, course, {"budget": budget}, arguments.chart_tolerances, folder, out)
-        except ArithmeticError as error:
-            print(f"continuation: no chart: {error}", file=sys.stderr)
-            return FAILURE
-    return SUCCESS if arrived else FAILURE
+    return SUCCESS if path.success else FAILURE
 
 
 def _course(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -253,6 +224,3 @@ def _number_or_none(text: str) -> float:
         return math.nan
     return parsed(text, float, math.isfinite, "a finite number or none")
 
-
-def _tolerances(text: str) -> tuple[float, ...]:
-    return tuple(above_zero(part) for part in text.split(","))

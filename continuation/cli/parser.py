@@ -8,6 +8,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NoReturn, Protocol, TextIO, TypeVar
 
 T = TypeVar("T")
@@ -103,3 +104,14 @@ def above_zero(text: str) -> float:
 def positive(text: str) -> int:
     """A positive integer, for the `type` of an argument."""
     return parsed(text, int, lambda value: value >= 1, "a positive integer")
+
+
+def new_folder(option: str, name: str) -> Path:
+    """The directory that an option names, made if it is not there."""
+    folder = Path(name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        complaint = f"expected a directory, or a new one, found {name!r} ({error.strerror})"
+        raise UsageError(option, complaint) from error
+    return folder

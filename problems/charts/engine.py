@@ -7,7 +7,6 @@ from typing import Any
 
 import continuation
 from continuation.chart import (
-    ARCLENGTH,
     CURVE_DISTANCE,
     END_POINT,
     TURNING_POINTS,
@@ -18,7 +17,7 @@ from continuation.chart import (
     tolerances,
     traced,
 )
-from continuation.chart.catalogue import Size
+from continuation.chart.study import Size
 from continuation.controllers import AllgowerGeorg, Curvature, Fixed, Geometric, IterationCount, SeriesRange
 from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
 from continuation.metric import Automatic, Euclidean, Relative, RootMeanSquare
@@ -109,11 +108,11 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
                 problems=[*problems, square] if square else problems,
                 methods=[*methods, *rivals.curve_followers(compare)] if whole else methods,
                 ladder=tolerances(*own),
-                errors=(END_POINT, TURNING_POINTS, *((ARCLENGTH,) if size == "full" else ())),
+                errors=(END_POINT, TURNING_POINTS),
                 work=(*COUNTED, "seconds") if timed else COUNTED,
                 figures=[Lines("end_point", ("seconds", "factorizations"), shown)] if shown else [],
                 repeats={"smoke": 0, "moderate": 1, "full": 3}[size] if timed else 0,
-                notes=rivals.notes([module for module, _ in rivals.FOLLOWERS.values()], compare and whole),
+                notes=rivals.notes(["pysces"], compare and whole),
             )
         )
     return [*found, _steps(problems, size)]

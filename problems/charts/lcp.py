@@ -10,17 +10,18 @@ import numpy as np
 import continuation
 from continuation.arrays import Array
 from continuation.chart import Answer, Failure, Method, Problem, Profile, Rung, Study, observed, tolerances
-from continuation.chart.catalogue import Size
 from continuation.chart.model import answer_of
+from continuation.chart.study import Size
 from continuation.counts import Counts
 from problems import lcp
 from problems.charts import rivals
 from problems.charts.families import planted
-from problems.charts.rivals import Solved, Solver
+from problems.charts.rivals import notes
 from problems.lcp import LCP
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.reference import ReferenceResult, lemke, min_newton, modulus
 from problems.paper import EXAMPLES
+from problems.scenes.rivals import Found, by_clarabel, by_piqp, by_quantecon
 
 SOLVED_TO = 1e-6
 """What `Certificate.solves` is asked of an end before the run counts as a success."""
@@ -64,8 +65,8 @@ def solver(name: str, **options: Any) -> Method:
     return Method(name, run, laddered=False)
 
 
-def direct(name: str, solve: Solver) -> Method:
-    """A solver that the ladder does not concern."""
+def direct(name: str, solve: Callable[[LCP], tuple[Array | None, Counts, str]]) -> Method:
+    """A solver that the ladder does not concern: to x (None where it disowns it), what that cost, and a message."""
 
     def run(problem: Problem, rung: Rung) -> Answer:
         x, counts, message = solve(problem.subject)
@@ -77,27 +78,53 @@ def direct(name: str, solve: Solver) -> Method:
 
 
 def references() -> list[Method]:
-    """Lemke, modulus and min-Newton; a pivot of Lemke's tableau, 4 n^2 operations, counts as 6/n factorisations."""
+    """Lemke, modulus and min-Newton."""
 
-    def counted(solve: Callable[[LCP], ReferenceResult], pivots: bool = False) -> Solver:
-        def run(problem: LCP) -> Solved:
+    def counted(solve: Callable[[LCP], ReferenceResult]) -> Callable[[LCP], tuple[Array | None, Counts, str]]:
+        def run(problem: LCP) -> tuple[Array | None, Counts, str]:
             result = solve(problem)
-            work = -(-6 * result.iterations // problem.n) if pivots else result.factorizations
-            counts = Counts(factorizations=work, solves=result.iterations, accepted=result.iterations)
-            return result.x, counts, result.message
+            work = pivots(result.iterations, problem.n) if solve is lemke else result.factorizations
+            return result.x, Counts(0, 0, work, result.iterations, result.iterations), result.message
 
         return run
 
-    return [
-        direct("Lemke", counted(lemke, pivots=True)),
-        direct("modulus", counted(modulus)),
-        direct("min-Newton", counted(min_newton)),
-    ]
+    return [direct(name, counted(solve)) for name, solve in
+            (("Lemke", lemke), ("modulus", modulus), ("min-Newton", min_newton))]  # fmt: skip
+
+
+def pivots(count: int, n: int) -> int:
+    """Factorisations that take as long as so many pivots of Lemke's tableau, 4 n^2 operations each."""
+    return -(-6 * count // n)
+
+
+OUTSIDE = {
+    "quantecon": ("quantecon Lemke", by_quantecon), "piqp": ("PIQP", by_piqp), "clarabel": ("Clarabel", by_clarabel),
+}  # fmt: skip
+"""Name and adapter by module."""
 
 
 def outside(compare: bool) -> list[Method]:
-    """The installed solvers of other packages, if they are asked for."""
-    return [direct(name, solve) for name, solve in rivals.lcp_solvers().items()] if compare else []
+    """The installed solvers of other packages, if they are asked for.
+
+    An iteration of an interior-point method is one factorisation, a solve to predict and one to correct.
+    """
+
+    def counted(solve: Callable[[Any], Found]) -> Callable[[LCP], tuple[Array | None, Counts, str]]:
+        def run(problem: LCP) -> tuple[Array | None, Counts, str]:
+            try:
+                x, k = solve(problem)
+            except ArithmeticError as error:
+                return None, Counts(), str(error)
+            tables = solve is by_quantecon
+            return x, Counts(0, 0, pivots(k, problem.n) if tables else k, k if tables else 2 * k, k), ""
+
+        return run
+
+    taken = [pair for module, pair in OUTSIDE.items() if compare and rivals.installed(module)]
+    for _, solve in taken:
+        # Once beforehand, for a library that compiles itself at its first call.
+        solve(LCP(np.eye(1), -np.ones(1)))
+    return [direct(name, counted(solve)) for name, solve in taken]
 
 
 def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
@@ -131,7 +158,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         "errors": (RESIDUAL,),
         "work": WORK if size == "full" else WORK[:2],
         "repeats": 3 if size == "full" else 0,
-        "notes": rivals.lcp_notes(compare),
+        "notes": notes(OUTSIDE, compare),
     }
     examples = EXAMPLES[:3] if size == "smoke" else EXAMPLES
     paper = [Problem(f"example {e.number}", e.problem, options={"x0": e.x0}, family="ten examples") for e in examples]

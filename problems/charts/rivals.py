@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Callable, Iterable
-from contextlib import redirect_stdout
-from functools import partial
-from importlib import import_module
 from importlib.machinery import PathFinder
 from importlib.metadata import packages_distributions, version
 from importlib.util import find_spec, module_from_spec
@@ -21,13 +17,8 @@ from scipy.sparse.linalg import splu
 from continuation.arrays import Array
 from continuation.chart import Answer, Method, Problem, Rung
 from continuation.counts import Counts
-from problems.lcp import LCP
 
-Solved = tuple[Array | None, Counts, str]
-"""x, None where the solver itself disowns it; what it cost; how it ended."""
-
-Solver = Callable[[LCP], Solved]
-"""A solver of the LCP that traces no path."""
+PITCON = "PITCON (dense)"
 
 STEPS = 1000
 """Of a path at most: the plain loop needs some hundred where it arrives."""
@@ -124,40 +115,6 @@ def _loop(problem: Problem, rung: Rung) -> Answer:
     raise ArithmeticError(f"the plain loop did not arrive in {counts.accepted} steps")
 
 
-def _bice(problem: Problem, rung: Rung) -> Answer:
-    """Its arclength stepper with its Newton solver for sparse matrices, allowed longer steps than by default."""
-    bice = import_module("bice")
-    aim, ours = _Aim.of(problem), _Counted(problem.subject)
-
-    class Wrapped(bice.Equation):  # type: ignore[name-defined, misc]
-        def __init__(self) -> None:
-            super().__init__(shape=(ours.start.size - 1,))
-            self.u, self.lam = ours.start[:-1], ours.start[-1]
-
-        def rhs(self, u: Array) -> Array:
-            return ours.residual(np.append(u, self.lam))
-
-        def jacobian(self, u: Array) -> Any:
-            return sp.csr_matrix(ours.jacobian(np.append(u, self.lam))[0])
-
-    model, equation = bice.Problem(), Wrapped()
-    model.add_equation(equation)
-    model.continuation_parameter = (equation, "lam")
-    model.settings.neigs = 0
-    stepper = model.continuation_stepper
-    stepper.ds, stepper.ds_max, stepper.ds_increase_factor, stepper.ndesired_newton_steps = 0.1, 30.0, 2.0, 4
-    stepper.convergence_tolerance = rung.value
-    before = ours.start
-    with redirect_stdout(io.StringIO()):
-        for _ in range(STEPS):
-            model.continuation_step()
-            after, ours.counts.accepted = np.append(equation.u, equation.lam), ours.counts.accepted + 1
-            if aim.crossed(before[-1], after[-1]):
-                return ours.land(before, after, aim.value, rung.value)
-            before = after
-    raise ArithmeticError(f"bice did not arrive in {STEPS} steps")
-
-
 def _pitcon(problem: Problem, rung: Rung) -> Answer:
     """PITCON 6.1, dense, as pysces wraps it; it lands on the target itself."""
     library, aim, ours = _pitcon_library(), _Aim.of(problem), _Counted(problem.subject)
@@ -206,10 +163,8 @@ def _pitcon_library() -> Any:
 
 
 def curve_followers(compare: bool) -> list[Method]:
-    """The plain loop, and where it is asked for those of PITCON and bice that are installed."""
-    found = {"plain scipy loop": _loop}
-    if compare:
-        found |= {name: follow for name, (module, follow) in FOLLOWERS.items() if _installed(module)}
+    """The plain loop, and where it is asked for and installed PITCON."""
+    found = {"plain scipy loop": _loop, **({PITCON: _pitcon} if compare and installed("pysces") else {})}
     return [Method(name, _quiet(follow), applies=_is_matrix, outside=True) for name, follow in found.items()]
 
 
@@ -230,39 +185,17 @@ def _quiet(follow: Callable[[Problem, Rung], Answer]) -> Callable[[Problem, Rung
     return run
 
 
-FOLLOWERS = {"PITCON (dense)": ("pysces", _pitcon), "bice": ("bice", _bice)}
-"""Module and adapter by name."""
-
-
-def lcp_solvers() -> dict[str, Solver]:
-    """By name, those of quantecon, PIQP and Clarabel that are installed; `lcp_notes` names the others."""
-    found: dict[str, Solver] = {}
-    for name, (module, solve) in _LCP.items():
-        if not _installed(module):
-            continue
-        library = import_module(module)
-        # Once beforehand, for a library that compiles itself at its first call.
-        solve(library, LCP(np.eye(1), -np.ones(1)))
-        found[name] = partial(solve, library)
-    return found
-
-
 def notes(modules: Iterable[str], compare: bool) -> list[str]:
     """Which packages take part where they are asked for, with their versions, and which are left out."""
     if not compare:
         return []
-    installed = {module: _installed(module) for module in dict.fromkeys(modules)}
-    there = [_versioned(module) for module, found in installed.items() if found]
-    absent = [module for module, found in installed.items() if not found]
+    modules = list(dict.fromkeys(modules))
+    there = [_versioned(module) for module in modules if installed(module)]
+    absent = [module for module in modules if not installed(module)]
     return [
         *([f"outside solvers: {', '.join(there)}"] if there else []),
         *([f"outside solvers left out, not installed: {', '.join(absent)}"] if absent else []),
     ]
-
-
-def lcp_notes(compare: bool) -> list[str]:
-    """`notes` on the solvers of LCPs."""
-    return notes([module for module, _ in _LCP.values()], compare)
 
 
 def _versioned(module: str) -> str:
@@ -270,58 +203,6 @@ def _versioned(module: str) -> str:
     return " ".join([*distributions[:1], *(version(name) for name in distributions[:1])]) or module
 
 
-def _installed(module: str) -> bool:
+def installed(module: str) -> bool:
+    """Whether a module can be imported."""
     return find_spec(module) is not None
-
-
-def _quantecon(library: Any, problem: LCP) -> Solved:
-    """Its tableau method; a pivot counts as 6/n factorisations and a solve, like one of our own."""
-    result = library.optimize.lcp_lemke(_dense(problem), problem.q)
-    pivots = int(result.num_iter)
-    counts = Counts(factorizations=-(-6 * pivots // problem.n), solves=pivots, accepted=pivots)
-    return np.asarray(result.z) if result.success else None, counts, f"status {int(result.status)}"
-
-
-def _piqp(library: Any, problem: LCP) -> Solved:
-    """Min x'(A x + q), x >= 0, A x + q >= 0, a convex program where A is positive semidefinite."""
-    A = _dense(problem)
-    n = problem.n
-    solver = library.DenseSolver()
-    solver.settings.eps_abs = solver.settings.eps_rel = 1e-10
-    solver.setup(A + A.T, problem.q, None, None, A, -problem.q, np.full(n, np.inf), np.zeros(n), np.full(n, np.inf))
-    status = solver.solve()
-    x = np.asarray(solver.result.x) if status == library.PIQP_SOLVED else None
-    return x, _interior(int(solver.result.info.iter)), str(status)
-
-
-def _clarabel(library: Any, problem: LCP) -> Solved:
-    """The same program as a cone program."""
-    A, n = sp.csc_matrix(_dense(problem)), problem.n
-    settings = library.DefaultSettings()
-    settings.verbose = False
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
-    rows = sp.vstack([-sp.identity(n, format="csc"), -A], format="csc")
-    bound = np.concatenate([np.zeros(n), problem.q])
-    upper = sp.triu(A + A.T, format="csc")
-    cones = [library.NonnegativeConeT(2 * n)]
-    solution = library.DefaultSolver(upper, problem.q, rows, bound, cones, settings).solve()
-    x = np.asarray(solution.x) if str(solution.status) in ("Solved", "AlmostSolved") else None
-    return x, _interior(int(solution.iterations)), str(solution.status)
-
-
-def _interior(iterations: int) -> Counts:
-    """An iteration of an interior-point method: one factorisation, a solve to predict and one to correct."""
-    return Counts(factorizations=iterations, solves=2 * iterations, accepted=iterations)
-
-
-def _dense(problem: LCP) -> Array:
-    A: Array = problem.A.toarray() if problem.sparse else problem.A
-    return A
-
-
-_LCP: dict[str, tuple[str, Callable[[Any, LCP], Solved]]] = {
-    "quantecon Lemke": ("quantecon", _quantecon),
-    "PIQP": ("piqp", _piqp),
-    "Clarabel": ("clarabel", _clarabel),
-}
-"""Module and adapter by name."""

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import continuation
 from continuation.chart import Profile, Study, profile, tolerances
-from continuation.chart.catalogue import Size
-from problems.charts import rivals
+from continuation.chart.study import Size
 from problems.charts.families import FAMILIES
-from problems.charts.lcp import RESIDUAL, WORK, outside, path, problem, references, solver
+from problems.charts.lcp import OUTSIDE, RESIDUAL, WORK, outside, path, problem, references, solver
+from problems.charts.rivals import notes
 from problems.lcp.homotopies.registry import HOMOTOPIES
 
 
@@ -38,6 +38,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
             figures=[Profile("factorizations")],
             tables={"By family": profile},
             repeats={"smoke": 0, "moderate": 0, "full": 1}[size],
-            notes=rivals.lcp_notes(compare),
+            notes=notes(OUTSIDE, compare),
         )
     ]

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import continuation
 from continuation.chart import END_POINT, Lines, Problem, Study, tolerances, traced
 from continuation.chart import scaling as table
-from continuation.chart.catalogue import Size
+from continuation.chart.study import Size
 from continuation.correctors import Broyden
 from problems import lcp
-from problems.charts import rivals
-from problems.charts.lcp import RESIDUAL, outside, path, problem, references, solver
+from problems.charts.lcp import OUTSIDE, RESIDUAL, outside, path, problem, references, solver
+from problems.charts.rivals import notes
 from problems.charts.subjects import bratu, bratu_square, chandrasekhar
 
 
@@ -57,7 +57,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
         tables={"Factorisations": table},
         repeats=repeats,
         give_up=True,
-        notes=rivals.lcp_notes(compare),
+        notes=notes(OUTSIDE, compare),
     )
     return [curves, complementarity]
 

@@ -1,4 +1,4 @@
-"""Scenes by ours and by the methods of their fields: time against the error of the answer, with order and memory."""
+"""Scenes by ours and by the methods of their fields: time against the error of the answer, with its order."""
 
 from __future__ import annotations
 
@@ -9,26 +9,22 @@ from typing import Any
 from attrs import asdict
 
 from continuation.chart import Answer, Dumbbell, Error, Failure, Ladder, Method, Problem, Rung, Study, observed
-from continuation.chart.catalogue import Size
+from continuation.chart.study import Size
 from continuation.counts import Counts
 from problems.charts.rivals import notes
-from problems.scenes import Rival, available, error, make, memory, order, solve
+from problems.scenes import Rival, available, error, make, order, solve
 
 WRONG = 1e-2
 """An answer that is off by more is no answer."""
-
-
-def _of_model(measure: Callable[[Any], int]) -> Callable[[Problem, Answer], float]:
-    """A number of the model that was solved; taken after the run, so that the run is not longer for it."""
-    return lambda problem, answer: float(measure(_refined(problem, answer.observed.get("factor", 1.0)).problem()))
 
 
 COMPILING = 30.0
 """Seconds that a first run may take and still be repeated: quantecon and numba compile themselves in it."""
 
 ERROR = observed("answer", "error of the answer, relative")
-ORDER = Error("unknowns", "unknowns of the model", _of_model(order))
-MEMORY = Error("memory", "bytes of the model", _of_model(memory))
+# Of the model that was solved, made again: the run is not longer for it.
+ORDER = Error("unknowns", "unknowns of the model", lambda problem, answer: float(
+    order(_refined(problem, answer.observed.get("factor", 1.0)).problem())))  # fmt: skip
 
 OURS = "ours"
 
@@ -64,7 +60,7 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     meshes = [_problem(name, make(name, larger.get(name))) for name in names if name in MESHES]
     exact = [_problem(name, make(name, larger.get(name))) for name in names if name not in MESHES]
     common: dict[str, Any] = {
-        "errors": (ERROR, ORDER, MEMORY), "work": ("seconds",),
+        "errors": (ERROR, ORDER), "work": ("seconds",),
         "figures": [Dumbbell("answer", "seconds", every=every) for every in (False, True)],
         "repeats": {"smoke": 0, "moderate": 1, "full": 3}[size], "patience": COMPILING,
     }  # fmt: skip

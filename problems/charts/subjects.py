@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.integrate import quad
 
-from continuation.arrays import Array
 from continuation.chart import Problem, Truth, reference
 from continuation.events import TargetValue
 from problems.bifurcation import Bratu1D, Bratu2D, ExponentialCosine, FreudensteinRoth
@@ -16,34 +14,15 @@ from problems.charts.chandrasekhar import Chandrasekhar
 
 
 def freudenstein() -> Problem:
-    """Freudenstein and Roth's path to (5, 4), a polynomial in x2 from -2 to 4."""
-    step = 1e-6
-
-    def speed(t: float) -> float:
-        ahead, behind = freudenstein_roth.curve(np.array([t + step, t - step]))
-        return float(np.linalg.norm(ahead - behind)) / (2.0 * step)
-
-    truth = Truth(
-        end=np.array([5.0, 4.0, 1.0]),
-        turning_points=freudenstein_roth.turning_points(),
-        arclength=float(quad(speed, -2.0, 4.0, epsabs=1e-10, epsrel=1e-10)[0]),
-        nearest=lambda u: freudenstein_roth.curve(u[:, 1]),
-    )
+    """Freudenstein and Roth's path to (5, 4)."""
+    truth = Truth(np.array([5.0, 4.0, 1.0]), freudenstein_roth.turning_points())
     return Problem("Freudenstein-Roth", FreudensteinRoth(), truth)
 
 
 def cosine(n: int) -> Problem:
-    """The exponential-cosine path, a graph over S = sum_j x_j."""
-
-    def nearest(u: Array) -> Array:
-        return exponential_cosine.curve(n, u[:, :-1].sum(axis=1))
-
-    truth = Truth(
-        end=exponential_cosine.curve(n, np.array(exponential_cosine.end(n))),
-        turning_points=exponential_cosine.turning_points(n),
-        arclength=exponential_cosine.arclength(n),
-        nearest=nearest,
-    )
+    """The exponential-cosine path."""
+    end = exponential_cosine.curve(n, np.array(exponential_cosine.end(n)))
+    truth = Truth(end, exponential_cosine.turning_points(n))
     return Problem(f"exponential-cosine, n = {n}", ExponentialCosine(n), truth, family="exponential-cosine")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from continuation.cli import FAILURE, SUCCESS, Subparsers, UsageError
-from continuation.cli.charts import new_folder
+from continuation.cli.parser import new_folder
 
 if TYPE_CHECKING:
     from problems.paper_report import Row

@@ -18,7 +18,6 @@ from problems.scenes.scene import (
     Unknown,
     at_least,
     error,
-    memory,
     order,
     solve,
     with_parameters,
@@ -26,5 +25,5 @@ from problems.scenes.scene import (
 
 __all__ = [
     "Finite", "Kind", "NotNegative", "Numbers", "Picture", "Point", "Positive", "Rival", "Scene", "Seed", "Unknown",
-    "at_least", "available", "error", "find", "make", "mark", "memory", "order", "picture", "solve", "with_parameters",
+    "at_least", "available", "error", "find", "make", "mark", "order", "picture", "solve", "with_parameters",
 ]  # fmt: skip

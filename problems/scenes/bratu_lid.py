@@ -15,7 +15,6 @@ from continuation.tracing import solve_at
 from problems.bifurcation import Bratu1D
 from problems.nonlinear.normal_map import NormalMap
 from problems.nonlinear.obstacle import BratuForce
-from problems.scenes.arc_length import arc_length_method
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.scene import Positive, Quantities, Scene, Unknown, at_least, with_parameters
 
@@ -110,5 +109,5 @@ def BratuLid(lid: Positive = 2.0, load: Positive = 6.0, n: Annotated[int, at_lea
         units={"fold": "", "turning kink": "", "contact from": ""},
         # One half: with both, kinks would come in pairs.
         unknowns=(Unknown("temperatures", n, "where they reach the lid"),),
-        problem=problem, answer=answer, exact=exact, picture=drawn, rivals=(arc_length_method(load, named),),
+        problem=problem, answer=answer, exact=exact, picture=drawn,
     )  # fmt: skip

@@ -13,7 +13,7 @@ from problems.lcp.data.problem import LCP
 from problems.lcp.search.solver import solve
 from problems.scenes.pictures import Picture, mark, picture, rectangle
 from problems.scenes.planar import Contact, contact_unknowns, free_motion, impulses, time_step
-from problems.scenes.rivals import LEMKE, TABLES, by_quantecon, by_tables
+from problems.scenes.rivals import LEMKE, TABLES, Found, by_quantecon, by_tables
 from problems.scenes.scene import (
     Finite,
     NotNegative,
@@ -130,9 +130,9 @@ def Pile(
             "heights": solution.places[-1, :, 1], "slid": float(solution.places[-1, 0, 0]),
         }  # fmt: skip
 
-    def in_steps(rival: Rival, method: Callable[[LCP], Array]) -> Rival:
+    def in_steps(rival: Rival, method: Callable[[LCP], Found]) -> Rival:
         """The rival of that name, with its method for every step."""
-        return evolve(rival, run=lambda scene: answer(fall(lambda problem: Point(method(problem)))))
+        return evolve(rival, run=lambda scene: answer(fall(lambda problem: Point(method(problem)[0]))))
 
     def drawn(solution: Any) -> Picture:
         """The pile at the beginning, dashed, and at the end."""

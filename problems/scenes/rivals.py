@@ -14,7 +14,7 @@ from scipy.optimize import linprog, minimize
 from continuation.arrays import Array
 from problems.lcp.data.program import Program
 from problems.lcp.reference import lemke
-from problems.scenes.scene import Point, Quantities, Rival, conditions
+from problems.scenes.scene import Point, Rival, conditions
 
 TOLERANCE = 1e-10
 """Asked of interior-point methods: what they reach on well-scaled problems."""
@@ -23,38 +23,33 @@ SWEEPS = 200_000
 """Of projected Gauss-Seidel at most: some seconds on the problems of the charts."""
 
 
-def of_problem(name: str, module: str, method: Callable[[Any], Array]) -> Rival:
-    """A rival that takes the problem of a scene and returns its unknowns, or the first of them."""
-
-    def run(scene: Any) -> Quantities:
-        found: Quantities = scene.answer(Point(np.asarray(method(scene.problem()), dtype=float)))
-        return found
-
-    return Rival(name, module, run)
+Found = tuple[Array, int]
+"""The unknowns of a problem, or the first of them, and how many iterations it took to find them."""
 
 
-def _dense(A: Any) -> Array:
-    found: Array = A.toarray() if sp.issparse(A) else A
-    return found
+def of_problem(name: str, module: str, method: Callable[[Any], Found]) -> Rival:
+    """A rival that takes the problem of a scene."""
+    return Rival(name, module, lambda scene: scene.answer(Point(method(scene.problem())[0])))
 
 
-def _arrived(x: Any, well: bool, message: object) -> Array:
+def _arrived(x: Any, well: bool, message: object, iterations: int = 0) -> Found:
     if x is None or not well:
         raise ArithmeticError(f"no solution: {message}")
-    return np.asarray(x)
+    return np.asarray(x, dtype=float), int(iterations)
 
 
-def by_quantecon(problem: Any) -> Array:
+def by_quantecon(problem: Any) -> Found:
     """Lemke's method on tables, compiled."""
     found = conditions(problem)
-    result = import_module("quantecon.optimize").lcp_lemke(_dense(found.A), found.q, max_iter=100 * found.n)
-    return _arrived(result.z, result.success, f"status {result.status}")
+    A = found.A.toarray() if found.sparse else found.A
+    result = import_module("quantecon.optimize").lcp_lemke(A, found.q, max_iter=100 * found.n)
+    return _arrived(result.z, result.success, f"status {result.status}", result.num_iter)
 
 
-def by_tables(problem: Any) -> Array:
+def by_tables(problem: Any) -> Found:
     """Lemke's method on tables of numpy."""
     result = lemke(conditions(problem))
-    return _arrived(result.x, result.solved, result.message)
+    return _arrived(result.x, result.solved, result.message, result.iterations)
 
 
 @cache
@@ -82,7 +77,7 @@ def _sweeper() -> Callable[..., Any]:
     return compiled
 
 
-def _gauss_seidel(problem: Any) -> Array:
+def _gauss_seidel(problem: Any) -> Found:
     found = conditions(problem)
     A = sp.csr_array(found.A)
     if not (A.diagonal() > 0.0).all():
@@ -93,11 +88,16 @@ def _gauss_seidel(problem: Any) -> Array:
 
 
 def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array, Array]:
-    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a symmetric problem with bounds."""
+    """P, c, A_eq, b_eq, G, h (G x >= h), lower, upper of a program, or of a problem with bounds.
+
+    Of one that is not symmetric: min x'(A x + q), A x + q >= 0, within the bounds; it is convex where A is monotone.
+    """
     found = conditions(problem)
     if not isinstance(problem, Program):
-        none = sp.csr_array((0, found.n))
-        return sp.csr_array(found.A), found.q, none, np.zeros(0), none, np.zeros(0), found.lower, found.upper
+        M, none, q = sp.csr_array(found.A), sp.csr_array((0, found.n)), found.q
+        if (M != M.T).nnz:
+            return M + M.T, q, none, np.zeros(0), M, -q, found.lower, found.upper
+        return M, q, none, np.zeros(0), none, np.zeros(0), found.lower, found.upper
     n, A = problem.n, sp.csr_array(found.A)
     if problem.both.size:
         raise ArithmeticError("rows with two sides are not handed on")
@@ -107,7 +107,8 @@ def program_of(problem: Any) -> tuple[Any, Array, Any, Array, Any, Array, Array,
     return A[:n, :n], found.q[:n], R[free], b[free], R[signed], b[signed], found.lower[:n], found.upper[:n]
 
 
-def _piqp(problem: Any) -> Array:
+def by_piqp(problem: Any) -> Found:
+    """An interior-point method."""
     P, c, B, b, G, h, lower, upper = program_of(problem)
     library = import_module("piqp")
     solver = library.SparseSolver()
@@ -115,10 +116,11 @@ def _piqp(problem: Any) -> Array:
     B, G = sp.csc_matrix(B), sp.csc_matrix(G)
     solver.setup(sp.csc_matrix(P), c, B, b, G, h, np.full(h.size, np.inf), lower, upper)
     status = solver.solve()
-    return _arrived(solver.result.x, status == library.PIQP_SOLVED, status)
+    return _arrived(solver.result.x, status == library.PIQP_SOLVED, status, solver.result.info.iter)
 
 
-def _clarabel(problem: Any) -> Array:
+def by_clarabel(problem: Any) -> Found:
+    """Another one, for programs with cones."""
     P, c, B, b, G, h, lower, upper = program_of(problem)
     library = import_module("clarabel")
     settings = library.DefaultSettings()
@@ -129,17 +131,18 @@ def _clarabel(problem: Any) -> Array:
     sides = np.concatenate([b, -h, -lower[low], upper[high]])
     cones = [library.ZeroConeT(b.size), library.NonnegativeConeT(sides.size - b.size)]
     found = library.DefaultSolver(sp.csc_matrix(sp.triu(P)), c, rows, sides, cones, settings).solve()
-    return _arrived(found.x, str(found.status) == "Solved", found.status)
+    return _arrived(found.x, str(found.status) == "Solved", found.status, found.iterations)
 
 
-def _highs(problem: Any) -> Array:
+def _highs(problem: Any) -> Found:
     _, c, B, b, G, h, lower, upper = program_of(problem)
     found = linprog(c, A_ub=-G, b_ub=-h, A_eq=B if b.size else None, b_eq=b if b.size else None,
                     bounds=np.column_stack([lower, upper]))  # fmt: skip
     return _arrived(found.x, found.success, found.message)
 
 
-def _bfgs(problem: Any) -> Array:
+def by_bfgs(problem: Any) -> Found:
+    """A quasi-Newton method for bounds alone."""
     P, c, _, b, _, h, lower, upper = program_of(problem)
     if b.size or h.size:
         raise ArithmeticError("L-BFGS-B takes bounds alone")
@@ -151,16 +154,16 @@ def _bfgs(problem: Any) -> Array:
     start = np.clip(np.zeros(c.size), lower, upper)
     options = {"maxiter": 15_000, "maxfun": 30_000, "ftol": 1e-16, "gtol": 1e-12}
     found = minimize(value, start, jac=True, method="L-BFGS-B", bounds=np.column_stack([lower, upper]), options=options)
-    return np.asarray(found.x)
+    return _arrived(found.x, True, found.message)
 
 
 LEMKE = of_problem("Lemke (quantecon)", "quantecon", by_quantecon)
 TABLES = of_problem("Lemke (tables, numpy)", "", by_tables)
 GAUSS_SEIDEL = of_problem("projected Gauss-Seidel (numba)", "numba", _gauss_seidel)
-PIQP = of_problem("PIQP", "piqp", _piqp)
-CLARABEL = of_problem("Clarabel", "clarabel", _clarabel)
+PIQP = of_problem("PIQP", "piqp", by_piqp)
+CLARABEL = of_problem("Clarabel", "clarabel", by_clarabel)
 HIGHS = of_problem("HiGHS (scipy)", "", _highs)
-BFGS = of_problem("L-BFGS-B (scipy)", "", _bfgs)
+BFGS = of_problem("L-BFGS-B (scipy)", "", by_bfgs)
 
 QUADRATIC = (PIQP, CLARABEL, BFGS)
 """For symmetric problems with bounds alone."""

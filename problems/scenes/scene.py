@@ -224,27 +224,6 @@ def order(problem: Any) -> int:
     return int(found.n) if isinstance(found, MixedLCP) else len(found.start()[0])
 
 
-def memory(problem: Any) -> int:
-    """Bytes of the matrix and the vectors of the model.
-
-    Parameters
-    ----------
-    problem : LCP, MixedLCP, Program or homotopy
-
-    Returns
-    -------
-    int
-        Of a homotopy those of its unknowns; no matrix is stored with it.
-    """
-    found = conditions(problem)
-    if not isinstance(found, MixedLCP):
-        return 8 * order(problem)
-    A: Any = found.A
-    parts = (A.data, A.indices, A.indptr) if found.sparse else (A,)
-    bounds = () if found.standard else (found.lower, found.upper)
-    return sum(int(part.nbytes) for part in (*parts, found.q, *bounds))
-
-
 def error(found: Quantities, true: Quantities) -> float:
     """The largest difference of quantities that both have, relative to the size of the true one, or to 1 where it is 0.
 

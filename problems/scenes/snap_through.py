@@ -10,7 +10,6 @@ import numpy as np
 from continuation.arguments.checks import number
 from continuation.arrays import Array
 from problems.nonlinear.normal_map import NormalMap
-from problems.scenes.arc_length import arc_length_method
 from problems.scenes.pictures import Picture, mark, picture
 from problems.scenes.scene import Kind, Positive, Quantities, Scene, Unknown, with_parameters
 
@@ -93,5 +92,4 @@ def SnapThrough(
         # One, by symmetry; the force of the stop is what balances the joint.
         unknowns=(Unknown("height of the joint", 1, "where it is when it touches the stop"),),
         problem=problem, answer=answer, exact=exact, picture=drawn,
-        rivals=(arc_length_method(asked, lambda fold, kink, z: named(fold, kink, stop - float(z[0]))),),
     )  # fmt: skip

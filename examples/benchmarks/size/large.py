@@ -1,19 +1,14 @@
-"""Few large problems: obstacles, torsion and a put in two assets beside cvxopt, with each way to factor that is there.
+"""Few large problems: an obstacle, torsion and a put in two assets, with one of the ways to factor.
 
-    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/large.py [--size 316] [--against CHECKOUT]
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/large.py obstacle [--size 316] [--way cholmod]
 
-Each solve has a process of its own, and they take turns; the least processor time counts. Memory is the most that a
-process held, with Python, numpy and the problem itself.
+Memory is the most that the process held, with Python, numpy and the problem itself.
 """
 
 import argparse
-import json
-import os
 import resource
-import subprocess
 import sys
 import time
-from importlib.util import find_spec
 from pathlib import Path as File
 from typing import Any
 
@@ -25,8 +20,6 @@ from generators import obstacle_2d
 
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
-
-HERE = str(File(__file__).resolve().parents[3])
 
 
 def torsion(m: int) -> MixedLCP:
@@ -66,86 +59,31 @@ def put(m: int) -> LCP:
 ROWS = {"obstacle": obstacle_2d, "torsion": torsion, "put": put}
 
 
-def by_cvxopt(problem: MixedLCP) -> np.ndarray:
-    """Its interior-point method for quadratic programs, which factors by CHOLMOD."""
-    from cvxopt import matrix, solvers, spmatrix
-
-    entries = sp.coo_array(problem.A)
-    P = spmatrix(entries.data, entries.row.astype(int), entries.col.astype(int), entries.shape)
-    n, above = problem.n, np.isfinite(problem.lower).all()
-    G = spmatrix(-1.0 if above else 1.0, range(n), range(n))
-    h = matrix(-problem.lower if above else problem.upper)
-    solvers.options.update(show_progress=False, abstol=1e-10, reltol=1e-10, feastol=1e-10)
-    x = np.array(solvers.qp(P, matrix(problem.q), G, h)["x"]).ravel()
-    return problem.clipped(x)
-
-
 def measured(row: str, m: int, way: str) -> dict[str, Any]:
     """One solve in numbers."""
     problem = ROWS[row](m)
-    if way == "cvxopt":
-        import cvxopt.solvers  # noqa: F401
-    elif way == "amg":
+    if way == "amg":
         import pyamg  # noqa: F401
     began = time.process_time()
-    if way == "cvxopt":
-        x, said = by_cvxopt(problem), ""
-        seconds, number = time.process_time() - began, 0
-    else:
-        found = lcp.solve(problem, **({} if way == "given" else {"sparse": way}))
-        seconds = time.process_time() - began
-        assert found.solved, found.message
-        x, number = found.x, found.counts.factorizations
-        said = found.message.partition("Sparse factorisations: ")[2].partition(". In")[0]
-    end = lcp.certify(problem, x)
+    found = lcp.solve(problem, sparse=way)
+    seconds = time.process_time() - began
+    assert found.solved, found.message
+    end = lcp.certify(problem, found.x)
+    said = found.message.partition("Sparse factorisations: ")[2].partition(". In")[0]
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     answer = {"n": problem.n, "seconds": seconds, "residual": end.relative_residual, "natural": end.residual}
-    return answer | {"memory": memory, "factorisations": number, "said": said}
-
-
-def asked(checkout: str, *arguments: str) -> dict[str, Any]:
-    """The same in a process of its own."""
-    environment = os.environ | {"PYTHONPATH": checkout, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    command = [sys.executable, __file__, "--measure", *arguments]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    return found
+    return answer | {"memory": memory, "factorisations": found.counts.factorizations, "said": said}
 
 
 def main() -> None:
-    """Print a line for each row and way."""
+    """Print a line for a row and a way."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("rows", nargs="*", default=list(ROWS))
+    parser.add_argument("row", choices=[*ROWS])
     parser.add_argument("--size", type=int, default=316)
-    parser.add_argument("--against", help="another checkout")
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--ways", nargs="*", help="superlu, cholmod, amg, pardiso, auto, cvxopt")
-    parser.add_argument("--measure", nargs=3, help=argparse.SUPPRESS)
+    parser.add_argument("--way", default="auto", help="superlu, cholmod, amg, pardiso, auto")
     arguments = parser.parse_args()
-    if arguments.measure:
-        row, m, way = arguments.measure
-        print(json.dumps(measured(row, int(m), way)))
-        return
-    there = {"cholmod": "cvxopt", "amg": "pyamg", "cvxopt": "cvxopt"}
-    ways = arguments.ways or ["superlu", *(way for way, name in there.items() if find_spec(name)), "auto"]
-    runs = [(HERE, way) for way in ways] + ([(arguments.against, "given")] if arguments.against else [])
-    for row in arguments.rows:
-        best: dict[tuple[str, str], dict[str, Any]] = {}
-        for _ in range(arguments.rounds):
-            for run in runs:
-                new = asked(run[0], row, str(arguments.size), run[1])
-                best[run] = min(best.get(run, new), new, key=lambda one: one["seconds"])
-        rival = best.get((HERE, "cvxopt"))
-        print(f"-- {row}, n = {next(iter(best.values()))['n']}")
-        for (_, way), one in best.items():
-            ratio = f", {one['seconds'] / rival['seconds']:.2f} of cvxopt" if rival is not None else ""
-            name = "the other checkout" if way == "given" else way
-            print(
-                f"{name}: {one['seconds']:.2f} s{ratio}, relative residual {one['residual']:.0e}, "
-                f"natural {one['natural']:.0e}, {one['memory']:.0f} MiB; {one['factorisations']} factorisations: "
-                f"{one['said']}",
-                flush=True,
-            )
+    for name, value in measured(arguments.row, arguments.size, arguments.way).items():
+        print(f"{name}: {value}")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import math
 import random
-from typing import Any
 
 from problems.lcp.classes.exact import ExactMatrix, index_sets, principal_minors
 from problems.lcp.classes.membership import Evidence, Membership, Rows, matrix_class
@@ -39,16 +38,10 @@ def is_almost_n_bar(matrix: ExactMatrix) -> Membership:
     return _limit(matrix, "almost N-bar", matrix.n - 1, ALMOST_N_BAR)
 
 
-def is_n_bar_of_exact_order(A: Any, k: int | None = None) -> Membership:
-    """N-bar of exact order k: the limit of N-matrices of exact order k.
-
-    Parameters
-    ----------
-    A : array_like, shape (n, n)
-    k : int, optional
-        As for `is_n_of_exact_order`.
-    """
-    return of_exact_order(A, "N-bar", k, lambda matrix, name, last: _limit(matrix, name, last, N_BAR_EXACT))
+@matrix_class
+def is_n_bar_of_exact_order(matrix: ExactMatrix) -> Membership:
+    """N-bar of exact order k, for some k: the limit of N-matrices of exact order k."""
+    return of_exact_order(matrix, "N-bar", lambda matrix, name, last: _limit(matrix, name, last, N_BAR_EXACT))
 
 
 def _limit(matrix: ExactMatrix, name: str, last: int, cited: str) -> Membership:

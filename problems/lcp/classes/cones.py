@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
+from attrs import evolve
+
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, show_vector, undecided
 from problems.lcp.classes.simplex import Constraint, Point, at_least, at_most, equal, feasible_point, positive_point
@@ -103,16 +105,14 @@ def is_strictly_copositive(matrix: ExactMatrix) -> Membership:
 
 
 def _copositive(matrix: ExactMatrix, name: str, build: Build, wanted: str) -> Membership:
-    cited = CPS + ", section 3.8"
-    if matrix.n > LARGEST_SUPPORTS:
-        return undecided(name, matrix.n, LARGEST_SUPPORTS, cited)
-    violation = _first_violation(matrix.symmetric_part, build)
-    if violation is None:
-        return Membership(name, True, Evidence(f"x'Ax is {wanted} for every nonzero x >= 0"), cited)
-    support, x = violation
+    words = ("x'Ax of the wrong sign", f"x'Ax is {wanted} for every nonzero x >= 0")
+    found = _by_supports(matrix.symmetric_part, name, build, words, CPS + ", section 3.8")
+    x = found.certificate.vector
+    if x is None:
+        return found
     value = quadratic_form(matrix, x)
     sentence = f"x = {show_vector(x)} has x'Ax = {value}, not {wanted}"
-    return Membership(name, False, Evidence(sentence, support, value, x), cited)
+    return evolve(found, certificate=evolve(found.certificate, sentence=sentence, value=value))
 
 
 def quadratic_form(matrix: ExactMatrix, x: Sequence[Fraction]) -> Fraction:
@@ -130,13 +130,10 @@ def is_almost_copositive(matrix: ExactMatrix) -> Membership:
     if plain.holds:
         return Membership("almost copositive", False, Evidence("A is copositive of order n too"), cited)
     alpha = plain.certificate.indices or ()
-    if len(alpha) < matrix.n:
-        sentence = f"the principal submatrix of {show_set(alpha)} is not copositive: {plain.certificate}"
-        certificate = Evidence(sentence, alpha, plain.certificate.value, plain.certificate.vector)
-        return Membership("almost copositive", False, certificate, cited)
-    sentence = f"copositive up to order n - 1, and {plain.certificate}"
-    certificate = Evidence(sentence, alpha, plain.certificate.value, plain.certificate.vector)
-    return Membership("almost copositive", True, certificate, cited)
+    almost = len(alpha) == matrix.n
+    start = "copositive up to order n - 1, and" if almost else f"the principal submatrix of {show_set(alpha)} is not:"
+    certificate = evolve(plain.certificate, sentence=f"{start} {plain.certificate}")
+    return Membership("almost copositive", almost, certificate, cited)
 
 
 @matrix_class

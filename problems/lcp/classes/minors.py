@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Any
+
+from attrs import evolve
 
 from problems.lcp.classes.exact import ExactMatrix, index_sets, indices
 from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, undecided
@@ -103,56 +104,40 @@ def is_almost_n0(matrix: ExactMatrix) -> Membership:
     return judge(matrix, "almost N0", two_signs("nonpositive", matrix.n - 1, "positive"), PAPER)
 
 
-def is_n_of_exact_order(A: Any, k: int | None = None) -> Membership:
-    """N of exact order k: principal minors negative up to order n - k and positive beyond.
+@matrix_class
+def is_n_of_exact_order(matrix: ExactMatrix) -> Membership:
+    """N of exact order k, for some k with 1 <= k < n: minors negative up to order n - k and positive beyond.
 
-    Parameters
-    ----------
-    A : array_like, shape (n, n)
-    k : int, optional
-        1 <= k < n. Without it, any k serves, and the one found is the certificate's value.
+    The certificate's value is k.
     """
-    return of_exact_order(A, "N", k, _up_to("negative"))
+    return of_exact_order(matrix, "N", _up_to("negative"))
 
 
-def is_n0_of_exact_order(A: Any, k: int | None = None) -> Membership:
-    """N0 of exact order k: principal minors nonpositive up to order n - k, positive beyond.
-
-    Parameters
-    ----------
-    A : array_like, shape (n, n)
-    k : int, optional
-        As for `is_n_of_exact_order`.
-    """
-    return of_exact_order(A, "N0", k, _up_to("nonpositive"))
+@matrix_class
+def is_n0_of_exact_order(matrix: ExactMatrix) -> Membership:
+    """N0 of exact order k, for some k: principal minors nonpositive up to order n - k, positive beyond."""
+    return of_exact_order(matrix, "N0", _up_to("nonpositive"))
 
 
-def _up_to(low: str) -> Callable[[ExactMatrix, str, int], Membership]:
+Test = Callable[[ExactMatrix, str, int], Membership]
+"""(matrix, name, n - k) to membership in a class of exact order k."""
+
+
+def _up_to(low: str) -> Test:
     return lambda matrix, name, last: judge(matrix, name, two_signs(low, last, "positive"), EXACT_ORDER)
 
 
-def of_exact_order(A: Any, base: str, k: int | None, test: Callable[[ExactMatrix, str, int], Membership]) -> Membership:
-    """`test(matrix, name, n - k)` for the k given, or for k = 1, ..., n - 1 until one holds."""
-    matrix = ExactMatrix.of(A)
-    n = matrix.n
-    if k is not None:
-        if not 1 <= k < n:
-            raise ValueError(f"k: expected 1 <= k < n = {n}, found {k}")
-        return test(matrix, f"{base} of exact order {k}", n - k)
+def of_exact_order(matrix: ExactMatrix, base: str, test: Test) -> Membership:
+    """The test for k = 1, ..., n - 1 until one holds."""
     name = f"{base} of exact order k"
-    if n == 1:
-        return Membership(name, False, Evidence("no order k with 1 <= k < n = 1"), EXACT_ORDER)
-    results = [test(matrix, name, n - order) for order in range(1, n)]
-    for order, result in enumerate(results, start=1):
+    results = [test(matrix, name, matrix.n - k) for k in range(1, matrix.n)]
+    for k, result in enumerate(results, 1):
         if result.holds:
-            sentence = f"k = {order}: {result.certificate}"
-            found = Evidence(sentence, value=Fraction(order), perturbation=result.certificate.perturbation)
-            return Membership(name, True, found, result.cited)
-    for result in results:
-        if result.holds is None:
-            return result
-    reasons = "; ".join(f"k = {order}: {result.certificate}" for order, result in enumerate(results, start=1))
-    return Membership(name, False, Evidence(reasons), EXACT_ORDER)
+            found = evolve(result.certificate, sentence=f"k = {k}: {result.certificate}", value=Fraction(k))
+            return evolve(result, certificate=found)
+    reasons = "; ".join(f"k = {k}: {result.certificate}" for k, result in enumerate(results, 1))
+    refused = Membership(name, False, Evidence(reasons or "no order k with 1 <= k < n = 1"), EXACT_ORDER)
+    return next((result for result in results if result.holds is None), refused)
 
 
 @matrix_class

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import math
-from collections.abc import Sequence
 from fractions import Fraction
 
 from attrs import evolve
 
 from problems.lcp.classes.cones import columns, embed, quadratic_form
 from problems.lcp.classes.exact import ExactMatrix, Indices, index_sets, indices, simplest
-from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_set, show_vector, undecided
+from problems.lcp.classes.membership import CPS, Evidence, Membership, matrix_class, show_vector, undecided
 from problems.lcp.classes.minors import is_p, is_p0
 from problems.lcp.classes.simplex import Point, at_most, positive_point
 
@@ -22,7 +20,6 @@ LARGEST_DENSE = 64
 """Largest order of the elimination that decides positive semidefiniteness; numbers grow with n (0.6 s at 64)."""
 
 VALIAHO = "Väliaho, P_*-matrices are just sufficient, Linear Algebra Appl. 239 (1996) 103-108"
-HANDICAP = "Kojima, Megiddo, Noma and Yoshise, 1991; Väliaho, Linear Algebra Appl. 253 (1997) 279-298"
 
 
 @matrix_class
@@ -125,56 +122,6 @@ def is_sufficient(matrix: ExactMatrix) -> Membership:
 def is_p_star(matrix: ExactMatrix) -> Membership:
     """P_*: (1 + 4 kappa) sum_{I+} x_i (Ax)_i + sum_{I-} x_i (Ax)_i >= 0 for all x and some kappa >= 0.
 
-    P_* is the same as sufficient (Väliaho 1996), which decides it. The certificate's value is kappa itself where it is
-    known exactly (zero for PSD) and otherwise a lower bound, as its sentence says; the paper's tau is 4 kappa.
+    P_* is the same as sufficient (Väliaho 1996), which decides it; the paper's tau is 4 kappa.
     """
-    sufficient = is_sufficient(matrix)
-    if not sufficient.holds:
-        return Membership("P_*", sufficient.holds, sufficient.certificate, VALIAHO)
-    if is_psd(matrix).holds:
-        return Membership("P_*", True, Evidence("PSD: kappa = 0 exactly", value=Fraction(0)), HANDICAP)
-    if matrix.n == 2:
-        kappa = _handicap_of_pair(matrix, (0, 1))
-        text = f"kappa = {float(kappa):.6g} from the closed form for n = 2; the value is that number rounded down"
-        return Membership("P_*", True, Evidence(text, value=kappa), HANDICAP)
-    kappa, source = _handicap_bound(matrix)
-    text = f"kappa >= {float(kappa):.6g}, a lower bound only, from {source}"
-    return Membership("P_*", True, Evidence(text, value=kappa), HANDICAP)
-
-
-def _handicap_bound(matrix: ExactMatrix) -> tuple[Fraction, str]:
-    """The best of the closed form on principal submatrices of order 2 and of small integer vectors."""
-    n = matrix.n
-    best, source = Fraction(0), "the definition"
-    for pair in itertools.combinations(range(n), 2):
-        kappa = _handicap_of_pair(matrix, pair)
-        if kappa > best:
-            best, source = kappa, f"the principal submatrix of {show_set(pair)}"
-    reach = 2 if n <= 5 else 1
-    vectors = itertools.product(range(-reach, reach + 1), repeat=n) if n <= LARGEST_SIGNED else ()
-    for x in vectors:
-        ratio = _ratio(matrix, x)
-        if ratio > best:
-            best, source = ratio, f"x = {x}"
-    return best, source
-
-
-def _ratio(matrix: ExactMatrix, x: Sequence[int]) -> Fraction:
-    """The kappa that this x alone asks for."""
-    products = [v * sum(a * u for a, u in zip(row, x)) for v, row in zip(x, matrix.entries)]
-    gain, total = sum(p for p in products if p > 0), sum(products)
-    return Fraction(-total, 4 * gain) if total < 0 else Fraction(0)
-
-
-def _handicap_of_pair(matrix: ExactMatrix, pair: Indices) -> Fraction:
-    """The handicap of a sufficient principal submatrix of order 2, rounded down to 40 binary digits.
-
-    1 + 4 kappa = max(b^2, c^2) / (sqrt(a d) + sqrt(a d - b c))^2 for [[a, b], [c, d]], where it exceeds 1.
-    """
-    i, j = pair
-    rows = matrix.entries
-    a, b, c, d = rows[i][i], rows[i][j], rows[j][i], rows[j][j]
-    scale = 1 << 80
-    root_sum = math.isqrt(a * d * scale) + math.isqrt((a * d - b * c) * scale) + 2
-    tau = Fraction(max(b * b, c * c) * scale, root_sum**2) - 1
-    return max(tau / 4, Fraction(0))
+    return evolve(is_sufficient(matrix), name="P_*", cited=VALIAHO)

@@ -139,13 +139,6 @@ class Structure:
         return ranges(self.problem)
 
     @cached_property
-    def without_activities(self) -> Structure:
-        """That of the other unknowns."""
-        assert self.ranges is not None
-        rest, problem = self.ranges.rest, self.problem
-        return Structure(MixedLCP(problem.A[rest][:, rest], problem.q[rest], problem.lower[rest], problem.upper[rest]))
-
-    @cached_property
     def squarable(self) -> bool:
         """Whether A'DA may be formed: always if A is dense or banded, else where it fills little."""
         if not self.problem.sparse or self.band is not None:

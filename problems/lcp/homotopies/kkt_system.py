@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 from attrs import frozen
-from numpy.typing import NDArray
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.homotopies.cores import Full, Pairs, core_system, parity, second_eliminated
+from problems.lcp.homotopies.cores import Full, Pairs, core_system, second_eliminated
 from problems.lcp.homotopies.rows import RowPairs, Rows, row_pairs
 from problems.lcp.homotopies.sides import BoundPairs
 
@@ -178,13 +176,12 @@ def _reduced(system: KKTSystem, border: Array) -> Reduced | None:
     s, n, mu = system, system.column.size, 1.0 - system.lam
     transpose = s.structure.transpose
     with np.errstate(all="ignore"):
-        pairs, gap, ranges = s.pairs(), s.gap, None
+        pairs, gap = s.pairs(), s.gap
         rest = pairs.rest
         if not s.structure.problem.standard:
             least = LEAST_GIVE * s.give * pairs.factor
             rest = np.where(np.abs(rest) < np.abs(least), least, rest)
             gap = np.maximum(gap, LEAST_GAP * s.z1 / s.give)
-            ranges = s.structure.ranges
         first = s.rows.sides.eliminated(s.z1, gap, s.c1, larger=False)
         second = second_eliminated(pairs.factor, rest, pairs.c)
         d2, d3 = pairs.of(second.b * s.rho + second.f * pairs.c, np.zeros_like(s.c3), 1.0)
@@ -198,62 +195,10 @@ def _reduced(system: KKTSystem, border: Array) -> Reduced | None:
         try:
             matrix = s.structure.normal(mu, weights, s.lam - mu * first.b)
             definite = s.structure.semidefinite and not s.structure.problem.sparse
-            gone = None if ranges is None or s.structure.band is not None else ranges.activity
-            return Reduced(s, first, pairs, second, border, _factored(matrix, column, row, definite, gone))
+            core = factor_bordered(Symmetric(matrix, definite=True) if definite else matrix, column, row)
+            return Reduced(s, first, pairs, second, border, core)
         except SingularError:
             return None
-
-
-@frozen(eq=False)
-class WithoutActivities:
-    """A core without the activities of rows with two sides: their block is diagonal, as only a row of mu has one.
-
-    The matrix and its borders are those with the activities; the core is of the Schur complement.
-    """
-
-    kept: NDArray[np.intp]
-    gone: NDArray[np.intp]
-    diagonal: Array
-    matrix: Matrix
-    column: Array
-    row: Array
-    core: BorderedSystem
-
-    @property
-    def sign(self) -> int:
-        """Of the whole determinant."""
-        return self.core.sign * parity(np.count_nonzero(self.diagonal < 0.0))
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The solution, shape (n + 1,)."""
-        z = np.zeros(r.size + 1)
-        z[self.gone] = r[self.gone] / self.diagonal
-        left = r - self.matrix @ z[:-1]
-        inner = self.core.solve(left[self.kept], rho - float(self.row @ z))
-        z[self.kept], z[-1] = inner[:-1], inner[-1]
-        z[self.gone] += (r - self.matrix @ z[:-1] - self.column * z[-1])[self.gone] / self.diagonal
-        return z
-
-
-def _factored(
-    matrix: Matrix, column: Array, row: Array, definite: bool, gone: NDArray[np.intp] | None
-) -> BorderedSystem:
-    """The core, without the indices that are gone."""
-    if gone is None:
-        return factor_bordered(Symmetric(matrix, definite=True) if definite else matrix, column, row)
-    kept = np.setdiff1d(np.arange(column.size), gone)
-    diagonal = matrix.diagonal()[gone]
-    if not diagonal.all():
-        raise SingularError("an activity has no share in anything")
-    above, below = matrix[kept][:, gone], matrix[gone][:, kept]
-    inverse = sp.diags_array(1.0 / diagonal)
-    inner = matrix[kept][:, kept] - above @ (inverse @ below)
-    inner = sp.csc_array(inner) if sp.issparse(matrix) else inner
-    share = row[gone] / diagonal
-    ends = np.append(row[kept] - share @ below, row[-1] - float(share @ column[gone]))
-    side = column[kept] - above @ (column[gone] / diagonal)
-    core = factor_bordered(Symmetric(inner, definite=True) if definite else inner, side, ends)
-    return WithoutActivities(kept, gone, diagonal, matrix, column, row, core)
 
 
 def _augmented(system: KKTSystem, border: Array) -> Augmented:

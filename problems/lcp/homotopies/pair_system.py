@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.linear import BorderedSystem, SingularError, Symmetric, factor_bordered
 from problems.lcp.data.matrix_structure import Structure
-from problems.lcp.data.ranges import Ranges
 from problems.lcp.homotopies.cores import Full, Pairs, core_system
 from problems.lcp.homotopies.sides import BoundPairs, Sides
 
@@ -136,80 +133,6 @@ def _definite(system: PairSystem, border: Array) -> ReducedPairs | None:
             return None
 
 
-@frozen(eq=False)
-class WithoutActivities:
-    """A core without the activities of rows with two sides: of r and mu one unknown k is kept, order n + 1 - m.
-
-    The row of r, ``d dr + e dmu = rho``, is solved for the unknown with the larger coefficient: dr = p k + pr rho and
-    dmu = q k + qr rho. So no number is divided by a small one, and no entry fills. `times` is the product with the
-    matrix, `sign` that of the whole determinant.
-    """
-
-    ranges: Ranges
-    p: Array
-    q: Array
-    pr: Array
-    qr: Array
-    times: Callable[[Array], Array]
-    column: Array
-    row: Array
-    sign: int
-    core: BorderedSystem
-
-    def solve(self, r: Array, rho: float) -> Array:
-        """The solution, shape (n + 1,)."""
-        known = self._known(r)
-        left = (r - self.times(known))[self.ranges.rest]
-        inner = self.core.solve(left, rho - float(self.row[:-1] @ known))
-        z = np.append(known - self._known(self.column) * inner[-1], inner[-1])
-        k = inner[self.ranges.place].copy()
-        inner[self.ranges.place] = 0.0
-        z[self.ranges.rest] += inner[:-1]
-        z[self.ranges.activity] += self.p * k
-        z[self.ranges.multiplier] += self.q * k
-        return z
-
-    def _known(self, r: Array) -> Array:
-        return _placed(self.ranges, self.pr * r[self.ranges.activity], self.qr * r[self.ranges.activity])
-
-
-def _placed(ranges: Ranges, activity: Array, multiplier: Array) -> Array:
-    whole = np.zeros(ranges.A.shape[0])
-    whole[ranges.activity], whole[ranges.multiplier] = activity, multiplier
-    return whole
-
-
-def _without_activities(
-    structure: Structure, alpha: float, columns: Array, diagonal: Array, column: Array, row: Array
-) -> WithoutActivities:
-    """The core of ``alpha A diag(columns) + diag(diagonal)`` and borders."""
-    ranges = structure.ranges
-    assert ranges is not None
-    r, mu, rest, place = ranges.activity, ranges.multiplier, ranges.rest, ranges.place
-    # An r has no entry of A on the diagonal.
-    d, e = diagonal[r], alpha * ranges.up * columns[mu]
-    first = np.abs(d) >= np.abs(e)
-    if not np.where(first, d, e).all():
-        raise SingularError("the row of an activity is zero")
-    p, q = np.where(first, -e / d, 1.0), np.where(first, 1.0, -d / e)
-    pr, qr = np.where(first, 1.0 / d, 0.0), np.where(first, 0.0, 1.0 / e)
-
-    def times(z: Array) -> Array:
-        product: Array = alpha * (structure.problem.A @ (columns * z)) + diagonal * z
-        return product
-
-    known = _placed(ranges, pr * column[r], qr * column[r])
-    kept_columns, kept_diagonal = columns[rest], diagonal[rest]
-    kept_columns[place] *= q
-    kept_diagonal[place] = q * kept_diagonal[place] + alpha * ranges.down * columns[r] * p
-    inner_row = np.append(row[rest], row[-1] - float(row[:-1] @ known))
-    inner_row[place] = q * row[mu] + p * row[r]
-    matrix = structure.without_activities.scaled(alpha, kept_columns, kept_diagonal)
-    core = factor_bordered(matrix, (column - times(known))[rest], inner_row)
-    turned = np.count_nonzero(np.where(first, d, -e) < 0.0) % 2
-    return WithoutActivities(ranges, p, q, pr, qr, times, column, row, -core.sign if turned else core.sign, core)
-
-
 def _reduced(system: PairSystem, border: Array, pairs: Pairs | BoundPairs, definite: bool = False) -> ReducedPairs:
     s, n = system, system.column.size
     with np.errstate(all="ignore"):
@@ -218,10 +141,6 @@ def _reduced(system: PairSystem, border: Array, pairs: Pairs | BoundPairs, defin
         bx, by = border[:n], border[n:-1]
         row = np.append(bx * pairs.a + pairs.row(by), border[-1] + float(bx @ v) + float(by @ dy))
         diagonal = s.beta * pairs.a - s.gamma * pairs.b
-        if s.structure.ranges is not None:
-            return ReducedPairs(
-                s, pairs, border, _without_activities(s.structure, s.alpha, pairs.a, diagonal, column, row)
-            )
         matrix = s.structure.scaled(s.alpha, pairs.a, diagonal)
         core = factor_bordered(Symmetric(matrix, definite=True) if definite else matrix, column, row)
         return ReducedPairs(s, pairs, border, core)

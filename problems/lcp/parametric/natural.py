@@ -9,6 +9,7 @@ from attrs import field, frozen
 
 from continuation.arrays import Array
 from problems.lcp.data.problem import MixedLCP
+from problems.lcp.parametric.stairs import Stairs
 
 
 @frozen(eq=False)
@@ -51,40 +52,34 @@ class NaturalMap:
         return found
 
     def switches(self, y: Array, lam: float) -> Array:
-        """X - w less its lower, and then its upper limits, those that there are.
+        """How far x - w is from the lower corner of each pair, and then from the upper one, where there is one.
 
         `y` of shape (n,).
         """
-        moved = y - self.problem.w(y) - lam * self.d
-        low, high = self._limits
-        return np.concatenate([(moved - low[0] - lam * low[1])[low[2]], (moved - high[0] - lam * high[1])[high[2]]])
+        moved, stairs = y - self.problem.w(y) - lam * self.d, self.stairs
+        off: Array = moved - stairs.corner_x + lam * stairs.corner_slope
+        return off[np.isfinite(stairs.corner_x)]
 
     def piece(self, signs: Array) -> Piece:
         """The equations where these signs hold.
 
         `signs` of shape (m,).
         """
-        low, high = self._limits
-        count = int(low[2].sum())
-        below, above = np.zeros(self.d.size, dtype=bool), np.zeros(self.d.size, dtype=bool)
-        below[low[2]], above[high[2]] = np.asarray(signs[:count]) < 0, np.asarray(signs[count:]) > 0
-        levels = self.level > 0.0
-        outside = np.where(levels, ~(below | above), below | above)
-        value = np.where(levels, 0.0, np.where(below, low[0], np.where(above, high[0], 0.0)))
-        slope = np.where(levels & below, -self.level, np.where(levels & above, self.level, 0.0))
-        return Piece(self, outside, np.where(outside, value, 0.0), slope)
+        stairs, every = self.stairs, np.arange(self.d.size)
+        side = np.zeros(stairs.corner_x.shape)
+        side[np.isfinite(stairs.corner_x)] = signs
+        row = 1 + (side[1] > 0.0) - (side[0] < 0.0)
+        return Piece(self, ~stairs.moves_x[row, every], stairs.fixed[row, every], -stairs.fixed_slope[row, every])
 
     @property
-    def _limits(self) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
-        """The limits of x - w: at t = 0, their slopes, and where there are such."""
-        levels = self.level > 0.0
-        low, high = (np.where(levels, 0.0, end) for end in (self.problem.lower, self.problem.upper))
-        return (low, -self.level, np.isfinite(low)), (high, self.level, np.isfinite(high))
+    def stairs(self) -> Stairs:
+        """The graph of each pair."""
+        return Stairs.of(self.problem, self.level)
 
 
 @frozen(eq=False)
 class Piece:
-    """One piece: x_i is a bound, or zero, where it is `fixed`, and else w_i + t slope_i = 0."""
+    """One piece: x_i is `value_i` where it is `fixed`, and else w_i + t slope_i = 0."""
 
     whole: NaturalMap
     fixed: Array

@@ -79,8 +79,6 @@ class Derivative:
         """By middle and radius, from the coefficients of the cubic, shape (slabs, 4, N + 1)."""
         alpha, beta, value = (_apply(part, cubic) for part in (form.first, form.second, form.plain))
         a, b = alpha.middle(), beta.middle()
-        # The same number where it is the same function, however a product rounds it.
-        a[..., form.even] = a[..., form.even[:1]]
         return cls(form, _coefficients(value, alpha, beta), a, b, alpha.radius(a), beta.radius(b))
 
     def matrix(self, k: int) -> Array:

@@ -9,8 +9,7 @@ from attrs import frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import Index
-from continuation.numbers.ends import EPS, Ends, Mask, thin
-from problems.lcp.quadratic.products import Blocks
+from continuation.numbers.ends import EPS, Ends, thin
 
 
 @frozen(eq=False, slots=False)
@@ -106,22 +105,6 @@ class Quadratic:
     first: Affine
     second: Affine
 
-    @cached_property
-    def even(self) -> Index:
-        """Rows in which the first factor is the same, as lambda is: a product with those of `second` serves for all."""
-        keys = np.column_stack([self.first.constant, self.first.matrix])
-        _, kind, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-        found: Index = np.flatnonzero(kind.ravel() == int(count.argmax()))
-        return found if len(found) > 1 and self.first.sizes is None and self.first.constant_sizes is None else found[:0]
-
-    @cached_property
-    def _blocks(self) -> tuple[list[Blocks], ...]:
-        """Of `second`, even rows and the others; of `first` and `plain`."""
-        every = np.arange(len(self.plain.matrix))
-        rest, matrix = np.setdiff1d(every, self.even), self.second.matrix
-        kinds = ((matrix, self.even), (matrix, rest), (self.first.matrix, every), (self.plain.matrix, every))
-        return tuple(Blocks.of(*kind) for kind in kinds)
-
     def times(self, left: Array, a: Array, b: Array, chart: Array, scale: Array, powers: int) -> Array:
         """Products with the coefficients of G' along cubics, in units of the unknowns, shape (powers, slabs, m, N + 1).
 
@@ -129,7 +112,7 @@ class Quadratic:
         ----------
         left : ndarray, shape (slabs, m, N + 1)
         a, b : ndarray, shape (slabs, 4, N)
-            Coefficients of `first`, the same for even rows, and of `second`.
+            Coefficients of `first` and of `second`.
         chart : ndarray, shape (slabs, N + 1)
             The last row of the coefficient of power 0.
         scale : ndarray, shape (slabs, N + 1)
@@ -137,36 +120,10 @@ class Quadratic:
         powers : int
             How many coefficients.
         """
-        even, rest, first, plain = self._blocks
-        shared = np.zeros((*left.shape[:2], chart.shape[1]))
-        for block in even:
-            block.add(shared, left, scale)
-        out = np.empty((powers, *shared.shape))
+        out = np.empty((powers, *left.shape[:2], chart.shape[1]))
         for k in range(powers):
-            # Of what no row is even, this is zero.
-            np.multiply(shared, a[:, k, self.even[:1], None] if len(self.even) else 0.0, out=out[k])
-            for blocks, factor in ((rest, a), (first, b)):
-                for block in blocks:
-                    block.add(out[k], left, scale, factor[:, k])
-        for block in plain:
-            block.add(out[0], left, scale)
-        out[0] += left[:, :, -1:] * (chart * scale)[:, None, :]
+            entries = a[:, k, :, None] * self.second.matrix + b[:, k, :, None] * self.first.matrix
+            np.matmul(left[:, :, :-1], entries if k else entries + self.plain.matrix, out=out[k])
+        out[0] += left[:, :, -1:] * chart[:, None, :]
+        out *= scale[:, None, :]
         return out
-
-    @cached_property
-    def pivots(self) -> tuple[Index, Index]:
-        """Rows and columns of H' where it is diagonal, whatever u is: multipliers, each in an equation of its own."""
-        there: Mask = (self.plain.matrix != 0.0) | (self.first.matrix != 0.0) | (self.second.matrix != 0.0)
-        free_rows, free_columns = np.ones_like(there[:, 0]), np.ones_like(there[0])
-        per_row, found = there.sum(axis=1), []
-        for j in np.argsort(there[:, :-1].sum(axis=0), kind="stable").tolist():
-            rows = np.flatnonzero(there[:, j] & free_rows)
-            i = int(rows[np.argmin(per_row[rows])]) if len(rows) else -1
-            if i < 0 or not free_columns[j]:
-                continue
-            found.append((i, j))
-            # No other pair may have an entry in this row or in this column.
-            free_rows = free_rows & ~there[:, j]
-            free_columns = free_columns & ~there[i]
-        pairs = np.array(found, dtype=np.intp).reshape(-1, 2)
-        return pairs[:, 0], pairs[:, 1]

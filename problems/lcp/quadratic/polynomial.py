@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import factorial
-from typing import Any
 
 import numpy as np
 from attrs import field, frozen
@@ -17,11 +16,10 @@ from attrs import field, frozen
 from continuation.arrays import Array
 from continuation.certificate.cells import Slabs, evaluated
 from continuation.certificate.engine import up_by
-from continuation.certificate.inverse import times
+from continuation.certificate.inverse import inverses, times
 from continuation.numbers.ends import EPS, Ends, accumulated, thin
 from problems.lcp.quadratic.balls import SINGLE_UNDERFLOW, UNIT, Ball, Single, image_of, largest, rounded
 from problems.lcp.quadratic.derivative import Derivative, at_points
-from problems.lcp.quadratic.inverse import inverted
 
 SHARE = 1e-3
 """Rounding is bounded once, for a vector in the shape of the misfit and with this share of its largest component."""
@@ -71,14 +69,14 @@ class Polynomial:
         chart, form = slabs.cells.chart, derivative.form
         G0 = np.concatenate([derivative.matrix(0), chart[:, None, :]], axis=1) * d[:, None, :]
         moving = bool(slabs.offset.any())
-
-        def product(Y: Array, place: Any) -> Array:
-            return form.times(Y, derivative.a[place], derivative.b[place], chart[place], d[place], 4 if moving else 1)
-
-        Y, off, found = inverted(G0, *form.pivots, radius / d, product)
+        # Rows of one size each, which pivots are chosen among: those of complementary pairs may vanish.
+        rows = np.abs(G0).max(axis=2, keepdims=True)
+        Y = inverses(G0 / rows) / rows.transpose(0, 2, 1)
+        whole, *found = form.times(Y, derivative.a, derivative.b, chart, d, 4 if moving else 1)
+        off = np.abs(np.eye(Y.shape[1]) - whole)
         if not moving:
             return cls(slabs, derivative, d, Y, off)
-        E, F, H = found.astype(np.float32)
+        E, F, H = (coefficient.astype(np.float32) for coefficient in found)
         C = np.matmul(E, E)
         C -= F
         left = np.concatenate([np.matmul(E, F), F, H], axis=1)

@@ -14,78 +14,49 @@ _TIE = 1e-11
 """Ratios closer than this, relatively, count as tied; smaller pivots, relative to their column, count as zero."""
 
 
-def lemke(problem: LCP, covering: Array | None = None, max_pivots: int | None = None) -> ReferenceResult:
-    """Solve LCP(q, A) by Lemke's method.
+def lemke(problem: LCP) -> ReferenceResult:
+    """Solve LCP(q, A) by Lemke's method, with the covering vector of ones.
 
-    The tableau holds w - A x - d z0 = q. Among rows of equal ratio the lexicographically least row of
+    The tableau holds w - A x - e z0 = q. Among rows of equal ratio the lexicographically least row of
     [q, B^-1] leaves (z0 itself if it is tied), so that no basis comes back and the method ends: with z0 = 0
-    and a solution, or on a secondary ray, which is reported. Dense; O(n^2) a pivot.
+    and a solution, or on a secondary ray. Dense; O(n^2) a pivot, at most 50 n + 100 of them.
 
     Parameters
     ----------
     problem : LCP
         A sparse A is made dense.
-    covering : Array of shape (n,), optional
-        d > 0; all ones by default.
-    max_pivots : int, optional
-        50 n + 100 by default; Murty's and Fathi's families need 2^n.
 
     Returns
     -------
     ReferenceResult
-        `ray` is the direction (dx, dz0), shape (n + 1,), along which w, x, z0 stay >= 0 and complementary.
-
-    Raises
-    ------
-    ValueError
-        If the covering vector has another shape, or an entry that is not positive and finite.
 
     References
     ----------
     Lemke 1965; Cottle, Pang and Stone, Algorithm 4.4.5 and section 4.9 (lexicographic rule).
     """
     n = problem.n
-    d = _covering(covering, n)
     if (problem.q >= 0).all():
         return at_point(problem, np.zeros(n), 0, 0, "")
-    budget = 50 * n + 100 if max_pivots is None else max_pivots
-    dense: Array = problem.A.toarray() if problem.sparse else problem.A
+    budget, dense = 50 * n + 100, problem.A.toarray() if problem.sparse else problem.A
     # Columns: w (0..n-1, which are B^-1 throughout), x (n..2n-1), z0 (2n), right-hand side (2n+1).
-    tableau = np.hstack([np.eye(n), -dense, -d[:, None], problem.q[:, None]])
-    z0 = 2 * n
-    basis = np.arange(n)
+    tableau = np.hstack([np.eye(n), -dense, -np.ones((n, 1)), problem.q[:, None]])
+    z0, basis = 2 * n, np.arange(n)
     # Afterwards every row of [q, B^-1] is lexicographically positive.
-    row = _lexicographic_least(_lexicographic_rows(tableau, basis), d)
+    row: int | None = _lexicographic_least(_lexicographic_rows(tableau, basis), np.ones(n))
     entering = z0
     for pivots in range(1, budget + 1):
+        assert row is not None
         leaving = int(basis[row])
         _pivot(tableau, row, entering)
         basis[row] = entering
         if leaving == z0:
-            return at_point(
-                problem,
-                _solution(problem, dense, tableau, basis),
-                pivots,
-                1,
-                "The last basis is too ill-conditioned: its point does not pass the residual test.",
-            )
+            x = _solution(problem, dense, tableau, basis)
+            return at_point(problem, x, pivots, 1, "The last basis is too ill-conditioned for the residual test.")
         entering = leaving + n if leaving < n else leaving - n
-        found = _leaving_row(tableau, basis, entering, z0)
-        if found is None:
-            return without_point(
-                pivots, 0, f"Ended on a secondary ray after {pivots} pivots.", _ray(tableau, basis, entering)
-            )
-        row = found
-    return without_point(budget, 0, f"No solution within {budget} pivots; try a larger max_pivots.")
-
-
-def _covering(covering: Array | None, n: int) -> Array:
-    d = np.ones(n) if covering is None else np.asarray(covering, dtype=float)
-    if d.shape != (n,):
-        raise ValueError(f"covering: expected shape ({n},), found {d.shape}")
-    if not ((d > 0) & np.isfinite(d)).all():
-        raise ValueError(f"covering: expected positive finite numbers, found {d.min()}")
-    return d
+        row = _leaving_row(tableau, basis, entering, z0)
+        if row is None:
+            return without_point(pivots, 0, f"Ended on a secondary ray after {pivots} pivots.")
+    return without_point(budget, 0, f"No solution within {budget} pivots.")
 
 
 def _lexicographic_least(rows: Array, scale: Array) -> int:
@@ -141,12 +112,3 @@ def _solution(problem: LCP, dense: Array, tableau: Array, basis: NDArray[np.intp
         fresh[active], _ = scipy.linalg.lapack.dgetrs(factors, swaps, -problem.q[active])
     better = bool(np.isfinite(fresh).all()) and problem.natural_residual(fresh) < problem.natural_residual(x)
     return fresh if better else x
-
-
-def _ray(tableau: Array, basis: NDArray[np.intp], entering: int) -> Array:
-    """The direction (dx, dz0) along which the entering variable grows without bound."""
-    n = tableau.shape[0]
-    direction = np.zeros(2 * n + 1)
-    direction[basis] = -tableau[:, entering]
-    direction[entering] = 1.0
-    return np.maximum(direction[n:], 0.0)

@@ -12,7 +12,6 @@ from continuation.arrays import Array, Matrix
 from continuation.linear.superlu import factor_superlu
 from problems.lcp.data.problem import LCP
 from problems.lcp.reference.result import ReferenceResult, at_point, is_solved
-from problems.options import check_finite
 
 _DECREASE = 2e-4
 """Twice Armijo's 1e-4 (Nocedal and Wright, 2006, p. 33), as the merit |min(x, w)|^2 is a square: factor 1 - 2e-4 t."""
@@ -20,7 +19,11 @@ _SHORTEST = 1e-10
 """Shortest step of the line search: below it the merit changes by round-off only."""
 
 
-def min_newton(problem: LCP, x0: Array | None = None, max_iterations: int = 300) -> ReferenceResult:
+ITERATIONS = 300
+"""At most: from zero it takes some ten where it arrives."""
+
+
+def min_newton(problem: LCP) -> ReferenceResult:
     """Solve LCP(q, A) by a damped min-Newton, the primal-dual active-set method with a line search.
 
     The active set at x is {x_i > w_i}; the step moves to x with w = 0 there and x = 0 elsewhere. A singular
@@ -29,32 +32,22 @@ def min_newton(problem: LCP, x0: Array | None = None, max_iterations: int = 300)
     Parameters
     ----------
     problem : LCP
-    x0 : Array of shape (n,), optional
-        Any start; zero by default. From zero it solves the paper's examples 2 to 8.
-    max_iterations : int
-
-    Raises
-    ------
-    ValueError
-        If x0 has another shape or is not finite.
+        It is solved from zero, as the paper's examples 2 to 8 can be.
 
     References
     ----------
     Pang, Newton's method for B-differentiable equations, Math. Oper. Res. 15, 1990; Hintermueller, Ito and
     Kunisch, SIAM J. Optim. 13, 2003.
     """
-    x = np.zeros(problem.n) if x0 is None else np.array(x0, dtype=float)
-    if x.shape != (problem.n,):
-        raise ValueError(f"x0: expected shape ({problem.n},), found {x.shape}")
-    check_finite("x0", x)
-    for iteration in range(max_iterations):
+    x = np.zeros(problem.n)
+    for iteration in range(ITERATIONS):
         w = problem.w(x)
         trial = _line_search(problem, x, _newton_step(problem.A, x > w, -np.minimum(x, w)))
         # A point that passes is polished until it gets no better: with the right active set one step is exact.
         if is_solved(problem, x) and problem.natural_residual(trial) >= problem.natural_residual(x):
             return at_point(problem, x, iteration, iteration + 1, "")
         x = trial
-    return at_point(problem, x, max_iterations, max_iterations, f"No convergence within {max_iterations} iterations.")
+    return at_point(problem, x, ITERATIONS, ITERATIONS, f"No convergence within {ITERATIONS} iterations.")
 
 
 def _newton_step(matrix: Matrix, active: NDArray[np.bool_], right: Array) -> Array:

@@ -29,8 +29,6 @@ class ReferenceResult:
         The natural residual, absolute; infinite without x.
     iterations, factorizations : int
         Pivots or iterations, and matrices factored.
-    ray : Array of shape (n + 1,) or None
-        Lemke's secondary ray, direction (dx, dz0).
     message : str
         How it ended, a sentence.
     """
@@ -41,7 +39,6 @@ class ReferenceResult:
     residual: float
     iterations: int
     factorizations: int
-    ray: Array | None
     message: str
 
 
@@ -55,9 +52,9 @@ def at_point(problem: LCP, x: Array, iterations: int, factorizations: int, failu
     solved = is_solved(problem, x)
     message = f"Solved in {iterations} iterations." if solved else failure
     residual = problem.natural_residual(x)
-    return ReferenceResult(x, problem.w(x), solved, residual, iterations, factorizations, None, message)
+    return ReferenceResult(x, problem.w(x), solved, residual, iterations, factorizations, message)
 
 
-def without_point(iterations: int, factorizations: int, failure: str, ray: Array | None = None) -> ReferenceResult:
+def without_point(iterations: int, factorizations: int, failure: str) -> ReferenceResult:
     """The result of a method that ended without an x."""
-    return ReferenceResult(None, None, False, float("inf"), iterations, factorizations, ray, failure)
+    return ReferenceResult(None, None, False, float("inf"), iterations, factorizations, failure)

@@ -36,7 +36,7 @@ def study():
             ),
         ],
         ladder=chart.tolerances(1e-4, 1e-8),
-        errors=[chart.END_POINT, chart.TURNING_POINTS, chart.ARCLENGTH, chart.CURVE_DISTANCE],
+        errors=[chart.END_POINT, chart.TURNING_POINTS, chart.CURVE_DISTANCE],
         work=["factorizations", "seconds"],
         figures=[chart.Lines("end_point", "factorizations"), chart.Profile("factorizations")],
         repeats=1,

@@ -7,17 +7,9 @@ import pytest
 
 import continuation
 from continuation import chart
-from continuation.predictors import Hermite, Taylor
+from continuation.predictors import Hermite
 from problems.bifurcation import Circle
 from problems.charts.subjects import cosine
-
-
-def test_the_ladder_of_orders_sets_the_order_and_needs_a_series():
-    rung = chart.orders(7).rungs[0]
-    assert rung.apply({"predictor": Taylor(accuracy=1e-3)})["predictor"] == Taylor(7, accuracy=1e-3)
-    assert rung.apply({"preset": continuation.SERIES})["predictor"].order == 7
-    with pytest.raises(TypeError, match="predictor: expected a Taylor predictor"):
-        rung.apply({})
 
 
 @pytest.mark.parametrize("preset", [continuation.DEFAULT, continuation.SERIES], ids=lambda preset: preset.name)
@@ -31,20 +23,20 @@ def test_the_ladder_of_longest_steps_is_kept_to_by_every_preset(preset, longest)
 
 
 @pytest.mark.parametrize(
-    ("change", "kind", "complaint"),
+    ("change", "complaint"),
     [
-        ({"methods": [chart.traced("a")] * 2}, ValueError, "methods: expected distinct names, found 'a' twice"),
-        ({"problems": []}, ValueError, "problems: expected at least one"),
-        ({"problems": cosine(2)}, TypeError, "problems: expected a list"),
-        ({"problems": [Circle()]}, TypeError, "problems: expected problems of continuation.chart"),
-        ({"errors": ["end_point"]}, TypeError, "errors: expected errors of continuation.chart, found 'end_point'"),
-        ({"work": ("flops",)}, ValueError, "work: expected a list of some of factorizations, .*'flops'"),
+        ({"methods": [chart.traced("a")] * 2}, "methods: expected a list of some, each with a name of its own"),
+        ({"problems": []}, r"problems: expected a list of some, .* found \[\]"),
+        ({"problems": cosine(2)}, "problems: expected a list of some"),
+        ({"problems": [Circle()]}, "problems: expected a list of some"),
+        ({"errors": "end_point"}, "errors: expected a list of some, .* found 'end_point'"),
+        ({"work": ("flops",)}, "work: expected a list of some of factorizations, .*'flops'"),
     ],
     ids=["twice", "none", "no list", "no problem", "no error", "no work"],
 )
-def test_a_study_refuses_what_is_none(change, kind, complaint):
+def test_a_study_refuses_what_is_none(change, complaint):
     whole = {"problems": [cosine(2)], "methods": [chart.traced("a")], "errors": [chart.END_POINT]}
-    with pytest.raises(kind, match=complaint):
+    with pytest.raises(ValueError, match=complaint):
         chart.Study(name="s", **{**whole, **change})
 
 

@@ -108,7 +108,7 @@ OTHERS = [
     *[(f"classify good.npz --width {value}", "--width") for value in ("0", "-5", "a", "1.5")],
     ("paper --methods kkt,color", "--methods: expected all or some of kkt, wang ... 'color'"),
     ("paper --output good.npz", "--output: expected a directory, or a new one"),
-    ("chart color", "NAME"),
+    ("chart color", "color: no study of this name"),
     ("chart --smoke --full", "--full"),
     ("plugins color", "color"),
     ("plugins trouble:", "trouble:"),
@@ -137,8 +137,7 @@ TRACE = [
     ("trace kkt example=11", "example: expected a number from 1 to 10, found 11"),
     ("trace circle --target soon", "--target: expected a finite number or none, found 'soon'"),
     ("trace circle --tolerance 0", "--tolerance: expected a positive number"),
-    ("trace circle --chart-tolerances 1e-6,0", "--chart-tolerances: expected a positive number"),
-    ("trace circle --chart good.npz", "--chart: expected a directory"),
+    ("chart scenes --output good.npz", "--output: expected a directory"),
     ("trace circle --plot path.txt", "--plot: expected a name in .png"),
     ("check circle radius=2", "radius: expected an option of circle (none)"),
     ("trace cusp color=1", "color"),
@@ -153,7 +152,6 @@ TRACE = [
         "budget-seconds": ("0", "nan", "-1"),
         "archive": ("no/a.h5", "good.npz", "."),
         "plot": ("no/a.png",),
-        "chart-tolerances": ("a", "0", "1e-3,x"),
     }.items() for value in values],
 ]  # fmt: skip
 ARCHIVES = [

@@ -3,7 +3,7 @@
 import pytest
 
 from continuation import chart
-from continuation.chart import catalogue
+from continuation.arguments import plugins
 from continuation.cli import charts
 from continuation.cli.parser import Parser, UsageError
 from problems.charts.subjects import cosine
@@ -31,7 +31,7 @@ def installed(monkeypatch):
             return lambda size, compare: [small]
 
     points = [Point()]
-    monkeypatch.setattr(catalogue, "entry_points", lambda group: points)
+    monkeypatch.setattr(plugins, "entry_points", lambda group: points)
     return points
 
 
@@ -47,7 +47,7 @@ def test_the_command_writes_everything(installed, tmp_path, capsys):
     for _ in range(2):
         assert command("closed", "--smoke", "--output", str(folder)) == 0
     assert sorted(file.name for file in folder.iterdir()) == [
-        "closed-end_point-factorizations.png", "closed-profile-factorizations.png", "closed.csv", "closed.md",
+        "closed-end_point-factorizations.png", "closed-profile-factorizations.png", "closed.json", "closed.md",
     ]  # fmt: skip
     assert "1 exception" in capsys.readouterr().out
     page = (folder / "closed.md").read_text()
@@ -58,7 +58,7 @@ def test_the_command_writes_everything(installed, tmp_path, capsys):
 def test_the_command_lists_the_studies_and_names_a_wrong_one(installed, capsys):
     assert command() == 0
     assert capsys.readouterr().out == "closed\n"
-    with pytest.raises(UsageError, match="NAME: expected all or one of closed, found 'open'"):
+    with pytest.raises(UsageError, match="open: no study of this name is installed; known are closed"):
         command("open")
 
 
@@ -66,5 +66,5 @@ def test_two_packages_with_one_name_are_an_error(installed):
     other = type(installed[0])()
     other.value = "other:studies"
     installed.append(other)
-    with pytest.raises(ValueError, match="found package:studies and other:studies"):
-        catalogue.catalogue()
+    with pytest.raises(UsageError, match=r"closed: expected one package .* package:studies .* other:studies"):
+        command("closed")

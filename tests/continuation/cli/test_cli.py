@@ -10,7 +10,8 @@ import pytest
 
 import continuation
 from continuation.archive import PathLog, open_archive
-from continuation.cli import BAD_INPUT, FAILURE, SUCCESS, commands
+from continuation.arguments import plugins
+from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
 
@@ -224,18 +225,18 @@ def points(*pairs):
 
 
 def test_a_command_that_cannot_be_loaded_hides_no_other(run, archive, monkeypatch):
-    monkeypatch.setattr(commands, "entry_points", points(("broken", "no.such.module:register")))
+    monkeypatch.setattr(plugins, "entry_points", points(("broken", "no.such.module:register")))
     assert run("inspect", archive)[0] == SUCCESS
     status, _, err = run("broken", "--anything", "file")
     assert status == BAD_INPUT
-    assert "broken: no.such.module:register cannot be loaded: ModuleNotFoundError" in err
+    assert "broken: no.such.module:register (no.such.module:register) cannot be loaded: ModuleNotFoundError" in err
 
 
 def test_two_packages_with_one_command_are_both_named(run, monkeypatch):
-    monkeypatch.setattr(commands, "entry_points", points(("solve", "here.solve:register"), ("solve", "there:register")))
+    monkeypatch.setattr(plugins, "entry_points", points(("solve", "here.solve:register"), ("solve", "there:register")))
     status, _, err = run("solve", "file.npz")
     assert status == BAD_INPUT
-    assert "found here.solve:register and there:register" in err
+    assert "found here.solve:register (here.solve:register) and there:register (there:register)" in err
 
 
 def test_the_program_as_a_process(second, tmp_path):

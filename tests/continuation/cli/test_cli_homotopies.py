@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import chart
 from continuation.archive import open_archive
 from continuation.cli import BAD_INPUT, FAILURE, SUCCESS
 from problems.bifurcation.truth import bratu
@@ -68,40 +67,6 @@ def test_trace_by_name_with_archive_and_plot(run, tmp_path):
     with open_archive(archive) as stored:
         assert stored.attributes["homotopy_entry_point"] == "bratu-1d"
         assert stored.path(0).endpoint.lam == pytest.approx(bratu.FOLD_1D[100][0], abs=1e-10)
-
-
-def test_a_chart_of_the_presets_on_the_path(run, tmp_path):
-    folder = tmp_path / "chart"
-    status, out, _ = run("trace", "freudenstein-roth", "--chart", folder, "--chart-tolerances", "1e-4,1e-8")
-    assert status == SUCCESS
-    assert "REACHED_TARGET" in out
-    names = {file.name.removeprefix("freudenstein-roth") for file in folder.iterdir()}
-    pictures = {f"-{error}-seconds-factorizations.png" for error in ("end_point", "turning_points")}
-    assert names == {".csv", ".md", *pictures}
-    results = chart.read(folder / "freudenstein-roth.csv")
-    assert set(results.methods) == {"FAST", "DEFAULT", "CONSERVATIVE", "SERIES"}
-    assert len(results.rows) == 8
-    for row in results.rows:
-        assert row.failure == ""
-        assert max(row.errors.values()) <= 10 * row.rung
-    for method in results.methods:
-        assert method in out
-
-
-def test_a_chart_of_a_homotopy_of_ones_own_beside_json(run, home):
-    status, out, err = run("trace", "my_homotopies:Root", "--chart", "chart", "--chart-tolerances", "1e-6", "--json")
-    assert status == SUCCESS
-    json.loads(out)
-    assert "my_homotopies-Root-end_point-seconds-factorizations.png" in err
-    assert (home / "chart" / "my_homotopies-Root.md").exists()
-
-
-def test_a_path_that_does_not_arrive_has_no_chart(run, tmp_path):
-    status, out, err = run("trace", "circle", "--budget-steps", 3, "--chart", tmp_path / "chart")
-    assert status == FAILURE
-    assert "BUDGET_EXHAUSTED" in out
-    assert "no chart: a path that does not arrive" in err
-    assert list((tmp_path / "chart").iterdir()) == []
 
 
 def test_trace_as_json_with_another_target(run):

@@ -13,7 +13,7 @@ from problems.bifurcation import ExponentialCosine
 COMMANDS = {
     "trace": "trace exponential-cosine n=4 --archive new.h5",
     "trace, picture": "trace cusp --plot new.png",
-    "trace, chart": "trace cusp --chart new --chart-tolerances 1e-3",
+    "chart": "chart lcp --smoke --output new",
     "merge": "merge new.h5 old.h5",
     "export": "export old.h5 new.nc",
     "export, text": "export old.h5 new.csv",

@@ -63,12 +63,6 @@ def test_scenes_are_listed_beside_homotopies(run):
     assert "options: mass=1.0, friction=0.5, speed=1.0" in out
 
 
-def test_names_of_scenes_are_completed(run):
-    _, out, _ = run("completion", "bash")
-    (line,) = (line for line in out.splitlines() if line.strip().startswith("solve)"))
-    assert "american-put" in line
-
-
 def test_the_scene_of_the_tutorial_is_short_and_runs_by_its_name(run, tmp_path, monkeypatch):
     page = (Path(__file__).parents[3] / "docs" / "own_scene.md").read_text(encoding="utf-8")
     code = re.search(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1]

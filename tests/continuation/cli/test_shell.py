@@ -1,4 +1,4 @@
-"""What a shell's user expects: colours, stdin, completion, a version at once, one line instead of a traceback."""
+"""What a shell's user expects: colours, stdin, a version at once, one line instead of a traceback."""
 
 import io
 import json
@@ -150,22 +150,6 @@ def test_colours_are_for_terminals(monkeypatch):
     assert paint("SOLVED", True, io.StringIO()) == "SOLVED"
     monkeypatch.setenv("NO_COLOR", "1")
     assert paint("SOLVED", True, Terminal()) == "SOLVED"
-
-
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_completion_knows_commands_options_and_homotopies(run, shell):
-    status, out, _ = run("completion", shell)
-    assert status == SUCCESS
-    for word in ("solve", "--tolerance", "--direction", "bratu-1d"):
-        assert word in out
-
-
-def test_completion_works_in_bash(run, tmp_path):
-    (tmp_path / "c.sh").write_text(run("completion", "bash")[1])
-    line = "COMP_WORDS=(continuation trace br); COMP_CWORD=2; _continuation; echo ${COMPREPLY[@]}"
-    command = ["bash", "-c", f"source {tmp_path}/c.sh; {line}"]
-    found = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert found.stdout.split() == ["bratu-1d", "bratu-2d", "brown-fixed-point"]
 
 
 def test_the_version_is_said_without_importing_the_library():

@@ -29,7 +29,7 @@ def test_every_scene_is_registered_and_installed():
     written = project["entry-points"]["continuation.scenes"]
     # Entry points are read from the installed package: `pip install -e .` after a change of pyproject.toml.
     assert {name: available()[name].points[0].value for name in written} == written
-    parts = {"__init__", "arc_length", "pictures", "planar", "registry", "rivals", "scene"}
+    parts = {"__init__", "pictures", "planar", "registry", "rivals", "scene"}
     files = {file.stem for file in (ROOT / "problems" / "scenes").glob("*.py")} - parts
     assert {value.partition(":")[0].rpartition(".")[2] for value in written.values()} == files
     assert set(NAMES) >= set(MINIMAL) == set(written)

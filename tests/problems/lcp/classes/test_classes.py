@@ -96,8 +96,6 @@ def test_known_matrices(A, yes, no):
 def test_the_exact_order_of_the_last_two_matrices_is_two(number):
     A = EXAMPLES[number - 1].A
     assert classes.is_n0_of_exact_order(A).certificate.value == 2
-    assert classes.is_n0_of_exact_order(A, 2).holds is True
-    assert classes.is_n0_of_exact_order(A, 1).holds is False
 
 
 SIGNS = {"P": operator.gt, "P0": operator.ge, "N": operator.lt, "N0": operator.le}
@@ -178,9 +176,6 @@ def test_no_small_vector_contradicts_a_yes(A):
             "R0": nonnegative and p.sum() == 0 and image.min() >= 0,
         }
         assert [name for name, bad in contradicted.items() if bad and result[name].holds] == []
-        kappa = result["P_*"].certificate.value
-        if result["P_*"].holds and len(A) <= 2:
-            assert (1 + 4 * float(kappa) + 1e-9) * p[p > 0].sum() + p[p <= 0].sum() >= -1e-9
 
 
 IMPLIED = {
@@ -255,30 +250,8 @@ def test_a_sequence_that_shows_a_closure_has_the_strict_signs(A):
 def test_a_closure_is_refuted_by_a_minor_or_by_the_signature_and_shown_by_a_sequence():
     """A triangle of positive cycle product has a positive minor; the paper's example 9 has the minors only."""
     assert classes.is_n_bar([[0, 1, 0], [0, 0, 1], [1, 0, 0]]).certificate.value == 1
-    assert "S A S" in classes.is_n_bar_of_exact_order(EXAMPLES[8].A, 2).certificate.sentence
+    assert "S A S" in classes.is_n_bar_of_exact_order(EXAMPLES[8].A).certificate.sentence
     shown = classes.is_n_bar([[0, 1, 1], [0, 0, -1], [0, 0, 0]])
     assert shown.holds
     assert shown.certificate.perturbation is not None
 
-
-@pytest.mark.parametrize(
-    ("A", "kappa"),
-    [
-        ([[0, 1], [-2, 0]], 0.25),
-        ([[1, 4], [0, 1]], 0.75),
-        ([[0, 1], [-1, 0]], 0),
-        ([[1, -9], [0, 1]], (81 / 4 - 1) / 4),
-    ],
-)
-def test_the_handicap_of_order_two(A, kappa):
-    """Closed forms: max(|b/c|, |c/b|) = 1 + 4 kappa for a zero diagonal, b^2 / 4 for a unit triangle."""
-    value = classes.is_p_star(A).certificate.value
-    assert 0 <= kappa - value < 1e-20 + 1e-11 * kappa
-
-
-def test_the_handicap_of_larger_order_is_called_a_lower_bound():
-    A = [[1, 0, 0], [-3, 1, 0], [-3, -3, 1]]
-    membership = classes.is_p_star(A)
-    assert membership.holds
-    assert "lower bound only" in membership.certificate.sentence
-    assert membership.certificate.value >= Fraction(9, 16) - Fraction(1, 4)

@@ -40,11 +40,6 @@ def test_beyond_the_limits_the_answer_is_not_decided_with_the_reason():
     assert classes.is_k(laplacian - 0.1 * np.eye(40)).holds is False
 
 
-def test_exact_order_out_of_range_is_refused():
-    with pytest.raises(ValueError, match="k: expected 1 <= k < n = 2, found 2"):
-        classes.is_n_of_exact_order(np.eye(2), 2)
-
-
 def test_a_membership_has_no_truth_value():
     with pytest.raises(TypeError, match=r"read \.holds"):
         bool(classes.is_p(np.eye(2)))

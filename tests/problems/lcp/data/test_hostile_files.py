@@ -111,6 +111,9 @@ HOSTILE = {
     "nan.mtx": MTX.format("coordinate", "2 2 2\n1 1 nan\n2 2 1").encode(),
     "integer.mtx": b"%%MatrixMarket matrix coordinate integer general\n2 2 1\n1 1 99999999999999999999\n",
     "cut.mtx": b"%%MatrixMarket matrix array real symmetric\n%\n3 3\n2\n-1\n0\n2\n-1",
+    "joined.mtx": b"%%MatrixMarket matrix array real symmetric\n2 2\n3\x0b1\n2\n",
+    **{f"{k}.mtx": MTX.format("coordinate", f"2 2 2\n1 1 {word}\n2 2 1").encode() for k, word in enumerate(
+        ("1.5x7", "1.5.7", "1.5-7", "1e2e3", "1,5", "0x10", "1\x007"))},
     "more.mtx": MTX.format("coordinate", "2 2 2\n1 1 1.0\n2 2 1.0\n1 2 5.0").encode(),
     "skew.mtx": b"%%MatrixMarket matrix array real skew-symmetric\n3 3\n1\n2\n",
     "complex.mtx": b"%%MatrixMarket matrix array complex hermitian\n2 2\n1 0\n2 0\n",
@@ -281,4 +284,7 @@ def test_matlab_as_scipy_reads_it(tmp_path, packed):
         if sp.issparse(other):
             one, other = one.toarray(), other.toarray()
         assert np.array_equal(one, other), name
-    assert (found["text"], found["cell"]) == ("no matrix of numbers",) * 2
+    for name in ("text", "cell"):
+        scipy.io.savemat(tmp_path / "p.mat", {"A": given[name], "q": Q})
+        with pytest.raises(InputError, match="A: expected real numbers"):
+            read_problem(tmp_path / "p.mat")

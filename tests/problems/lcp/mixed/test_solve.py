@@ -203,7 +203,7 @@ def test_a_multiplier_of_bounds_is_checked_exactly():
 
 @pytest.mark.parametrize("n", [20, 50])
 def test_a_nonconvex_program_in_a_box_gives_a_kkt_point(n):
-    """Integers from -50 to 50; `nonconvex.py` runs 20 of each size and density."""
+    """Integers from -50 to 50."""
     rng = np.random.default_rng(8)
     for _ in range(3):
         P = np.triu(rng.integers(-50, 51, (n, n))).astype(float)

@@ -47,7 +47,6 @@ def check(problem, result):
 def test_the_table_of_the_ten_examples():
     assert solved_by(lemke) == [2, 3, 4, 6]
     assert solved_by(min_newton) == [2, 3, 4, 5, 6, 7, 8]
-    assert solved_by(lambda problem: modulus(problem, omega=4.0)) == [2, 6]
     assert solved_by(modulus) == [1, 2]
 
 
@@ -69,23 +68,13 @@ def test_lemke_solves_every_p_matrix(problem):
     np.testing.assert_allclose(min_newton(problem).x, result.x, atol=1e-7)  # diagonally dominant: min-Newton too
 
 
-@given(any_problems(), st.integers(0, 2**32 - 1))
+@given(any_problems())
 @settings(deadline=None)
-def test_lemke_ends_on_a_solution_or_on_a_ray(problem, seed):
-    covering = np.random.default_rng(seed).integers(1, 4, problem.n).astype(float)
-    result = lemke(problem, covering)
-    if result.ray is None:
-        assert result.solved
+def test_lemke_ends_on_a_solution_or_on_a_ray(problem):
+    result = lemke(problem)
+    assert result.solved or "secondary ray" in result.message
+    if result.solved:
         check(problem, result)
-        return
-    dx, dz0 = result.ray[:-1], result.ray[-1]
-    dw = problem.A @ dx + covering * dz0
-    assert (result.ray >= 0).all()
-    assert result.ray.any()
-    assert dw.min() >= -1e-9
-    assert np.abs(dx * dw).max() <= 1e-9
-    assert result.x is None
-    assert not result.solved
 
 
 def first_index_lemke_cycles(A, q):
@@ -121,26 +110,21 @@ def test_lemke_reports_its_ray_on_the_first_counterexample():
     problem = LCP([[0, 1], [0, 0]], [-1, 1])
     result = lemke(problem)
     assert not result.solved
-    assert result.ray is not None
     assert "ray" in result.message
 
 
-@pytest.mark.parametrize("n", [4, 8, 10])
+@pytest.mark.parametrize("n", [4, 8])
 def test_lemke_needs_exponentially_many_pivots_on_murtys_family(n):
-    """A unit lower triangular with 2 below the diagonal, q = -e, d = e: 2^n pivots; from d_i = 2^i only 2."""
-    problem = LCP(np.tril(np.full((n, n), 2.0), -1) + np.eye(n), -np.ones(n))
-    slow = lemke(problem, max_pivots=2**n)
-    fast = lemke(problem, 2.0 ** np.arange(n))
-    assert (slow.iterations, fast.iterations) == (2**n, 2)
-    for result in (slow, fast):
-        assert result.solved
-        np.testing.assert_array_equal(result.x, np.eye(n)[0])
+    """A unit lower triangular with 2 below the diagonal, q = -e: 2^n pivots."""
+    result = lemke(LCP(np.tril(np.full((n, n), 2.0), -1) + np.eye(n), -np.ones(n)))
+    assert result.iterations == 2**n
+    np.testing.assert_array_equal(result.x, np.eye(n)[0])
 
 
 def test_lemke_stops_at_its_budget():
-    result = lemke(LCP(CYCLING, [-1, -1, -1]), max_pivots=1)
+    result = lemke(LCP(np.tril(np.full((10, 10), 2.0), -1) + np.eye(10), -np.ones(10)))
     assert not result.solved
-    assert "max_pivots" in result.message
+    assert "within 600 pivots" in result.message
 
 
 def test_lemke_where_zero_solves():
@@ -157,14 +141,14 @@ def test_min_newton_reaches_the_exact_solution_and_survives_singular_systems():
     assert result.solved
     assert result.residual <= 1e-12
     for matrix in (np.zeros((2, 2)), sp.csr_array((2, 2))):
-        stuck = min_newton(LCP(matrix, [-1.0, 1.0]), max_iterations=5)
+        stuck = min_newton(LCP(matrix, [-1.0, 1.0]))
         assert not stuck.solved
 
 
 def test_modulus_says_how_it_failed():
     assert "singular" in modulus(EXAMPLES[5].problem).message
     assert "Diverged" in modulus(EXAMPLES[4].problem).message
-    assert "No convergence" in modulus(EXAMPLES[2].problem, max_iterations=50).message
+    assert "No convergence" in modulus(EXAMPLES[2].problem).message
     assert "singular" in modulus(LCP(sp.csr_array([[-1.0]]), [1.0])).message
 
 
@@ -173,19 +157,3 @@ def test_a_diverging_iterate_is_not_called_solved():
     result = modulus(EXAMPLES[3].problem)
     assert EXAMPLES[3].problem.relative_residual(result.x) < 1e-8
     assert not result.solved
-
-
-@pytest.mark.parametrize(
-    ("call", "named"),
-    [
-        (lambda p: lemke(p, np.ones(3)), "covering"),
-        (lambda p: lemke(p, np.zeros(2)), "covering"),
-        (lambda p: modulus(p, omega=0.0), "omega"),
-        (lambda p: modulus(p, z=np.ones(3)), "z"),
-        (lambda p: min_newton(p, np.ones(3)), "x0"),
-        (lambda p: min_newton(p, np.array([np.nan, 0.0])), "x0"),
-    ],
-)
-def test_bad_input_is_named(call, named):
-    with pytest.raises(ValueError, match=f"^{named}: expected"):
-        call(EXAMPLES[0].problem)
