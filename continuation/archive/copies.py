@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Integral
 from pathlib import Path as File
 from typing import Any
@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.archive.atomic import beside, like, publish
 from continuation.archive.contents import Contents
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
@@ -161,20 +160,3 @@ def _filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Any], ro
             whole[:, : values.shape[1]] = values
         filled[column.name] = whole
     return filled
-
-
-def put(target: File, write: Callable[[File], Store], *, replace: bool = False) -> None:
-    """Write a whole new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
-
-    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file.
-    """
-    with beside(target) as part:
-        store = write(part)
-        try:
-            store.finish()
-        except BaseException:
-            store.close()
-            raise
-        if replace:
-            like(part, target)
-        publish(part, target, replace=replace)

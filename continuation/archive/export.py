@@ -12,9 +12,10 @@ from pathlib import Path as File
 from typing import Any, BinaryIO
 
 from continuation.archive.atomic import as_file, beside, check_new, publish
-from continuation.archive.copies import check_level, put, share_of, write_copy
+from continuation.archive.copies import check_level, share_of, write_copy
 from continuation.archive.provenance import history
 from continuation.archive.reader import Archive, open_archive
+from continuation.archive.store import put
 from continuation.archive.tables import Table
 
 _ROWS = 4096

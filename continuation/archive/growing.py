@@ -16,14 +16,14 @@ from attrs import define, evolve
 
 from continuation.archive import record
 from continuation.archive.atomic import as_file, beside, check_new
-from continuation.archive.copies import put, share_of, write_copy
+from continuation.archive.copies import share_of, write_copy
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.recover import own
 from continuation.archive.resume import check_homotopy
 from continuation.archive.rows import Row, parts_of, to_columns
 from continuation.archive.schema import CONTROLLER_STATE, Layout
-from continuation.archive.store import Store, create, publish_live
+from continuation.archive.store import Store, create, put
 from continuation.archive.stored import StoredSteps
 from continuation.archive.tables import Table, dataframe, dataset
 from continuation.path import LocatedEvent, Path
@@ -159,7 +159,8 @@ class Growing:
                 yield path, self._kept(ends, number, source.points.some("role", source.rows(number)))
             attributes = {**source.attributes, **process(), **history(source.attributes, "went on")}
             store = write_copy([share_of(source)], part, attributes=attributes)
-            self._store, self._identifier = publish_live(store, target, replace=True), attributes["identifier"]
+            store.publish(target, replace=True)
+            self._store, self._identifier = store, attributes["identifier"]
 
     def add(self, path: Path) -> Path:
         """One more path, which comes back as it is kept; the first makes the file."""

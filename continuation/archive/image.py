@@ -1,7 +1,7 @@
-"""Files as HDF5 is shown them: bytes that are read and written here, so that no fault of theirs is HDF5's to bear.
+"""Files as HDF5 is shown them: bytes that are read here, so that no fault of theirs is HDF5's to bear.
 
-HDF5 waits without end for a checksum that a file under SWMR does not have, waits for a FIFO, and ends the process when
-a write fails while it closes a file. None of this can happen where Python reads and writes in its stead.
+HDF5 waits without end for a checksum that a file under SWMR does not have, and for a FIFO. Neither can happen where
+Python reads in its stead.
 """
 
 from __future__ import annotations
@@ -22,24 +22,6 @@ _VERSION, _IN_USE, _LENGTH, _CRC, HEAD_BYTES = 8, 11, 28, 44, 48
 _SWMR = 4
 _WORD = 0xFFFFFFFF
 _HEAP = b"GCOL"
-
-
-def _seek(file: Image | Sink, offset: int, whence: int = os.SEEK_SET) -> int:
-    """Move; the end of a file that is read is where it should be."""
-    file.at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: file.at, os.SEEK_END: file.length}[whence]
-    return file.at
-
-
-def _tell(file: Image | Sink) -> int:
-    """Where it is."""
-    return file.at
-
-
-def _read(file: Image | Sink, size: int) -> bytes:
-    """So many bytes; h5py knows a file by this method, and uses `readinto`."""
-    buffer = bytearray(size)
-    file.readinto(buffer)
-    return bytes(buffer)
 
 
 class Image:
@@ -82,7 +64,20 @@ class Image:
 
     # -- what h5py asks for -----------------------------------------------------------------------------------
 
-    seek, tell, read = _seek, _tell, _read
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Move; the end is where it should be."""
+        self.at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self.at, os.SEEK_END: self.length}[whence]
+        return self.at
+
+    def tell(self) -> int:
+        """Where it is."""
+        return self.at
+
+    def read(self, size: int) -> bytes:
+        """So many bytes; h5py knows a file by this method, and uses `readinto`."""
+        buffer = bytearray(size)
+        self.readinto(buffer)
+        return bytes(buffer)
 
     def readinto(self, buffer: bytearray) -> int:
         """Fill the buffer."""
@@ -106,69 +101,6 @@ class Image:
         if view[:4] == _HEAP:
             _check_heap(view)
         return len(view)
-
-    def close(self) -> None:
-        """Give the file back."""
-        if self.descriptor >= 0:
-            os.close(self.descriptor)
-            self.descriptor = -1
-
-
-class Sink:
-    """A new file that HDF5 writes to through Python: a write that fails is kept in memory, and told by `check`."""
-
-    def __init__(self, file: File) -> None:
-        self.file, self.at, self.length = file, 0, 0
-        self.descriptor = os.open(file, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
-        self._error: OSError | None = None
-        self._kept: list[tuple[int, bytes]] = []
-
-    def check(self) -> None:
-        """Raise the error of the first write that failed, an OSError."""
-        if self._error is not None:
-            raise self._error
-
-    seek, tell, read = _seek, _tell, _read
-
-    def readinto(self, buffer: bytearray) -> int:
-        """Fill the buffer; what could not be written is read all the same, so that HDF5 can close the file."""
-        view = memoryview(buffer).cast("B")
-        got = os.pread(self.descriptor, len(view), self.at)
-        view[: len(got)] = got
-        view[len(got) :] = bytes(len(view) - len(got))
-        for at, data in self._kept:
-            first, last = max(at, self.at), min(at + len(data), self.at + len(view))
-            if first < last:
-                view[first - self.at : last - self.at] = data[first - at : last - at]
-        self.at += len(view)
-        return len(view)
-
-    def write(self, data: bytes) -> int:
-        """Write all of it, or remember that it could not be."""
-        view = memoryview(data).cast("B")
-        done = 0
-        try:
-            while self._error is None and done < len(view):
-                done += os.pwrite(self.descriptor, view[done:], self.at + done)
-        except OSError as error:
-            self._error = error
-        if self._error is not None:
-            self._kept.append((self.at, bytes(view)))
-        self.at += len(view)
-        self.length = max(self.length, self.at)
-        return len(view)
-
-    def truncate(self, size: int | None = None) -> int:
-        """Set the length."""
-        self.length = self.at if size is None else size
-        try:
-            os.ftruncate(self.descriptor, self.length)
-        except OSError as error:
-            self._error = self._error or error
-        return self.length
-
-    def flush(self) -> None:
-        """Nothing is held back."""
 
     def close(self) -> None:
         """Give the file back."""

@@ -47,6 +47,10 @@ class Lock:
         except OSError:
             return False
 
+    def sync(self) -> None:
+        """Wait until the file is on the disk."""
+        os.fsync(self._descriptor)
+
     def close(self) -> None:
         """Give it back; a second call does nothing."""
         if self._descriptor >= 0:

@@ -18,7 +18,6 @@ from continuation.archive.copies import (
     check_level,
     interrupt,
     leading,
-    put,
     share_of,
     write_copy,
 )
@@ -27,6 +26,7 @@ from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.schema import TEXT, text
+from continuation.archive.store import put
 from continuation.archive.workers import Batch
 from continuation.archive.writer import PathLog
 from continuation.arguments.checks import complain

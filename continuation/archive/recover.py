@@ -16,13 +16,14 @@ from continuation.archive import record
 from continuation.archive.atomic import as_file
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
-from continuation.archive.copies import Share, interrupt, put, share_of, write_copy
+from continuation.archive.copies import Share, interrupt, share_of, write_copy
 from continuation.archive.errors import ArchiveError
 from continuation.archive.files import check_writable
 from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import TEXT, text
+from continuation.archive.store import put
 from continuation.archive.structure import SLOTS
 from continuation.path import Path
 from continuation.status import Kind, Status

@@ -21,7 +21,7 @@ from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own
 from continuation.archive.schema import ACCEPTED
-from continuation.archive.store import Store, publish_live
+from continuation.archive.store import Store
 from continuation.archive.stored import kept_every, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
@@ -263,4 +263,5 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     share = share_of(source, last=checkpoint.path, points=rows)
     with beside(target) as part:
         store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
-        return publish_live(store, target, replace=replace)
+        store.publish(target, replace=replace)
+        return store

@@ -20,6 +20,7 @@ _ROWS, _PATHS = 64, 8
 _CHUNK_BYTES = 1 << 13
 """A chunk takes its whole room from its first row on: with 512 KiB eight points of 100 unknowns take 600 KB."""
 
+
 def chunk_rows(width: tuple[int, ...], most: int = _ROWS) -> int:
     """Rows a chunk, each of so many numbers: 8 KiB at most, a power of two."""
     fitting = max(_CHUNK_BYTES // (8 * max(math.prod(width), 1)), 1)
