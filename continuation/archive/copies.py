@@ -1,8 +1,13 @@
-"""Copies of committed rows in a file of their own: what recovery, resuming, merging and export are made of."""
+"""Paths as columns, read from a file or held in memory, and appended elsewhere.
+
+A `Share` is some paths with their points; `append` adds one to a file that grows, `write_copy` makes a new file of
+several. Recovery, resuming, merging, export, diagrams and the parts of a sweep are shares and one of the two.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from numbers import Integral
 from pathlib import Path as File
 from typing import Any
@@ -13,9 +18,11 @@ from attrs import evolve, frozen
 from continuation.archive.contents import Contents
 from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
-from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Layout, text
+from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Column, Layout, text
 from continuation.archive.store import Store
 from continuation.status import Status
+
+Block = dict[str, Any]
 
 _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
 """Of what is copied at once, and so of the blocks that a reader checks whole."""
@@ -23,15 +30,27 @@ _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
 
 @frozen(eq=False)
 class Share:
-    """What is copied of one archive: the rows of its paths from number `first` on, by column, and of their points.
+    """Some paths and their points.
 
-    Of the last path it may be the first points only.
+    `paths`: Rows of the path table, by column. `points`: Which rows of the point table; of the last path it may be the
+    first ones only. `fetch`: (column, rows) -> numbers. `names`: What `event_index` counts. `first`: The number that
+    the first path has in `path_index`. `origin`: The open file, where it is of one.
     """
 
-    source: Contents
+    layout: Layout
+    names: Sequence[str]
     paths: Mapping[str, Any]
     points: slice
+    fetch: Callable[[str, slice], Any]
     first: int = 0
+    origin: Contents | None = None
+
+    @classmethod
+    def of(cls, contents: Contents, paths: Mapping[str, Any], points: slice, first: int = 0) -> Share:
+        """A share of an open file."""
+        return cls(
+            contents.layout, contents.event_names, paths, points, partial(contents.read, "point"), first, contents
+        )
 
     @property
     def size(self) -> int:
@@ -65,7 +84,7 @@ def share_of(archive: Archive, first: int = 0, last: int | None = None, points: 
         paths[column.name] = np.where(own == b"", filled, own)
     begin = archive.rows(first).start if count else 0
     end = begin + points if points is not None else archive.rows(stop - 1).stop if count else 0
-    return Share(contents, paths, slice(begin, end), first)
+    return Share.of(contents, paths, slice(begin, end), first)
 
 
 def interrupt(paths: Mapping[str, Any]) -> None:
@@ -77,7 +96,16 @@ def interrupt(paths: Mapping[str, Any]) -> None:
 
 def leading(shares: Sequence[Share]) -> Contents:
     """The archive of the first point: its settings and problem stand for all; one of failures alone has none."""
-    return next((share.source for share in shares if share.size), shares[0].source)
+    found = next((share for share in shares if share.size), shares[0]).origin
+    assert found is not None
+    return found
+
+
+def append(store: Store, share: Share) -> None:
+    """Add a share that is in memory to a file, in one commit."""
+    held = store.committed
+    points = _numbered(share, store, share.points, held.paths) if share.size else None
+    store.commit(points, held.points, _rows(share, store.layout, held.paths), held.paths)
 
 
 def write_copy(
@@ -88,17 +116,18 @@ def write_copy(
     checkpoints: Mapping[int, bytes] | None = None,
     compression: int = 0,
 ) -> Store:
-    """Concatenate shares into a new file, which is still open.
+    """Concatenate shares of open files into a new one, which is still open.
 
     Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
     """
-    problem = leading(shares).problem()
-    store = Store(part, _joint(shares), {**attributes, "schema": SCHEMA}, problem, compression=compression)
+    layout = _joint(shares)
+    store = Store(part, layout, {**attributes, "schema": SCHEMA}, leading(shares).problem(), compression=compression)
     try:
-        points = paths = 0
-        for share in shares:
-            points, paths = _copy(share, store, points, paths)
-        store.commit(checkpoints=checkpoints)
+        for block in _blocks(shares, store):
+            store.commit(block, store.committed.points)
+        counts = np.cumsum([0, *(len(share.paths["path"]) for share in shares)]).tolist()
+        rows = [_rows(share, layout, number) for share, number in zip(shares, counts)]
+        store.commit(paths=_joined(rows) if counts[-1] else None, checkpoints=checkpoints)
     except BaseException:
         store.close()
         raise
@@ -108,11 +137,11 @@ def write_copy(
 def _joint(shares: Sequence[Share]) -> Layout:
     """One layout that holds them all: a column that only some have is missing elsewhere."""
     head = leading(shares)
-    first, layouts = head.layout, [share.source.layout for share in shares]
-    for share, layout in zip(shares, layouts):
-        if layout.unknowns != first.unknowns and share.size:
+    first, layouts = head.layout, [share.layout for share in shares]
+    for share in shares:
+        if share.layout.unknowns != first.unknowns and share.size and share.origin is not None:
             raise ArchiveError(
-                f"{share.source.file}: holds paths of {layout.unknowns} unknowns, {head.file} of "
+                f"{share.origin.file}: holds paths of {share.layout.unknowns} unknowns, {head.file} of "
                 f"{first.unknowns}; one file holds one number"
             )
     return evolve(
@@ -126,37 +155,55 @@ def _joint(shares: Sequence[Share]) -> Layout:
     )
 
 
-def _copy(share: Share, store: Store, point: int, path: int) -> tuple[int, int]:
-    """Append a share; the numbers of points and paths then."""
-    source, layout, rows = share.source, store.layout, share.points
-    numbers = np.array([store.name_event(name) for name in source.event_names] + [-1], dtype="i2")
-    size = min(max(_BLOCK_BYTES // (8 * (layout.unknowns + 16)), 1), _BLOCK_ROWS)
-    for start in range(rows.start, rows.stop, size):
-        part = slice(start, min(start + size, rows.stop))
-        block = {column.name: source.read("point", column.name, part) for column in source.layout.point_columns}
-        block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
-        if np.any(block["event_index"] >= len(source.event_names)) or np.any(block["event_index"] < -1):
-            raise source.damaged(ValueError("its points refer to events that it does not name"))
-        # The number -1, no event, finds the last entry.
-        block["event_index"] = numbers[block["event_index"]]
-        store.commit(_filled(block, layout, layout.point_columns, part.stop - start), point)
-        point += part.stop - start
+def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
+    """The points of all of them, in blocks of nearly one size: what is small is joined, what is large cut."""
+    size = min(max(_BLOCK_BYTES // (8 * (store.layout.unknowns + 16)), 1), _BLOCK_ROWS)
+    waiting: list[Block] = []
+    held = path = 0
+    for share in shares:
+        for start in range(share.points.start, share.points.stop, size):
+            part = slice(start, min(start + size, share.points.stop))
+            waiting.append(_numbered(share, store, part, path))
+            held += part.stop - part.start
+            if held >= size:
+                yield _joined(waiting)
+                waiting, held = [], 0
+        path += len(share.paths["path"])
+    if waiting:
+        yield _joined(waiting)
+
+
+def _joined(blocks: Sequence[Block]) -> Block:
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
+def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
+    """Points as a block of the store's columns, with its numbers of events, the share's first path being `path`."""
+    numbers = np.array([store.name_event(name) for name in share.names] + [-1], dtype="i2")
+    block = {column.name: share.fetch(column.name, rows) for column in share.layout.point_columns}
+    block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
+    if share.origin and (np.any(block["event_index"] >= len(share.names)) or np.any(block["event_index"] < -1)):
+        raise share.origin.damaged(ValueError("its points refer to events that it does not name"))
+    # The number -1, no event, finds the last entry.
+    block["event_index"] = numbers[block["event_index"]]
+    return filled(block, store.layout, store.layout.point_columns, rows.stop - rows.start)
+
+
+def _rows(share: Share, layout: Layout, path: int) -> Block:
+    """The share's rows of the path table, numbered from `path` on."""
     count = len(share.paths["path"])
-    if count:
-        columns = {**share.paths, "path": np.arange(path, path + count)}
-        store.commit(paths=_filled(columns, layout, layout.path_columns, count), path=path)
-    return point, path + count
+    columns = {**share.paths, "path": np.arange(path, path + count)}
+    return filled(columns, layout, layout.path_columns, count)
 
 
-def _filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Any], rows: int) -> dict[str, Any]:
+def filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Column], rows: int) -> Block:
     """The block in the columns of the layout; what it lacks is missing (NaN)."""
-    filled = {}
+    whole = {}
     for column in columns:
-        whole = np.full((rows, *layout.width(column)), column.missing, dtype=column.storage)
+        whole[column.name] = np.full((rows, *layout.width(column)), column.missing, dtype=column.storage)
         values = block.get(column.name)
-        if values is not None and values.shape == whole.shape:
-            whole = np.ascontiguousarray(values)
+        if values is not None and values.shape == whole[column.name].shape:
+            whole[column.name] = np.ascontiguousarray(values)
         elif values is not None:
-            whole[:, : values.shape[1]] = values
-        filled[column.name] = whole
-    return filled
+            whole[column.name][:, : values.shape[1]] = values
+    return whole

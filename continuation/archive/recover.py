@@ -44,7 +44,7 @@ def salvaged(contents: Contents, lost: Mapping[str, Spans]) -> list[Share]:
     for number in sorted({*runs, *np.flatnonzero(rows).tolist()}):
         points = runs.get(number, slice(0, 0))
         own = number < committed.paths and bool(rows[number])
-        shares.append(Share(contents, _row(contents, number, own, points.stop - points.start), points, number))
+        shares.append(Share.of(contents, _row(contents, number, own, points.stop - points.start), points, number))
     return shares
 
 
@@ -52,7 +52,7 @@ def nothing(contents: Contents) -> Share:
     """No row at all, of a file to which none was committed."""
     columns = contents.layout.path_columns
     empty = {column.name: contents.read("path", column.name, slice(0, 0)) for column in columns}
-    return Share(contents, empty, slice(0, 0))
+    return Share.of(contents, empty, slice(0, 0))
 
 
 def _outside(spans: Spans, size: int) -> np.ndarray[Any, Any]:

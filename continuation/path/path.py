@@ -281,7 +281,7 @@ class Path:
         """
         from continuation.archive import growing
 
-        growing.save(self, file, title)
+        growing.save_all([self], file, title)
 
     def _repr_html_(self) -> str:
         from continuation.plot.html import TABLE_ROWS, table
