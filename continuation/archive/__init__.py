@@ -4,9 +4,9 @@ The schema is `continuation-path-2` (`continuation.archive.schema`): two tables,
 xarray (engines h5netcdf and netCDF4) and every netCDF-4 tool read without this package.
 """
 
+from continuation.archive.atomic import ArchiveError, ArchiveExistsError
 from continuation.archive.certificates import add_proof, recheck
 from continuation.archive.codec import SupportsArchive
-from continuation.archive.errors import ArchiveError, ArchiveExistsError
 from continuation.archive.export import export
 from continuation.archive.merge import merge
 from continuation.archive.page import describe

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from attrs import evolve, frozen
 
+from continuation.archive.atomic import ArchiveError
 from continuation.archive.contents import Contents
-from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Column, Layout, text
 from continuation.archive.store import Store

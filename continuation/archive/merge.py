@@ -10,7 +10,7 @@ from pathlib import Path as File
 import numpy as np
 from attrs import evolve
 
-from continuation.archive.atomic import as_file, check_new
+from continuation.archive.atomic import ArchiveError, as_file, check_new
 from continuation.archive.copies import (
     Share,
     check_level,
@@ -18,7 +18,6 @@ from continuation.archive.copies import (
     share_of,
     write_copy,
 )
-from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.schema import TEXT, text

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from continuation.archive.atomic import ArchiveError
 from continuation.archive.checkpoint import Checkpoint
-from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES

@@ -13,13 +13,10 @@ from typing import Any
 import numpy as np
 
 from continuation.archive import record
-from continuation.archive.atomic import as_file
+from continuation.archive.atomic import ArchiveError, Lock, as_file, locked
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
 from continuation.archive.copies import Share, interrupt, share_of, write_copy
-from continuation.archive.errors import ArchiveError
-from continuation.archive.files import check_writable
-from continuation.archive.locks import Lock, locked
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import TEXT, text
@@ -181,5 +178,9 @@ def own(contents: Contents, file: File, *, force: bool = False) -> Lock:
 
     Raises `ArchiveError` if it may not be written, is being written, or was replaced since it was opened.
     """
-    check_writable(file)
+    # The mode too, since root may write everything: who took the right away meant it.
+    if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
+        raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")
+    if not os.access(file.parent, os.W_OK):
+        raise ArchiveError(f"{file}: the directory {file.parent} may not be written; copy the file to another one")
     return locked(file, contents.descriptor, f"process {contents.attributes.get('process', 'unknown')}", force=force)

@@ -12,11 +12,9 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from continuation.archive.atomic import as_file, beside, check_new, short
+from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, is_held, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
 from continuation.archive.copies import share_of, write_copy
-from continuation.archive.errors import ArchiveError
-from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own

@@ -7,6 +7,7 @@ readable at every moment, the records (`continuation.archive.checks`) say how mu
 from __future__ import annotations
 
 import os
+import resource
 import weakref
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -18,13 +19,11 @@ import h5py
 import numpy as np
 from h5py import h5s
 
-from continuation.archive.atomic import beside, check_new, like, publish, short
+from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, like, publish, short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import GROUP, PLACES, RECORD_BYTES, RECORDS, Committed, digest, of_attributes, seal
 from continuation.archive.codec import write_problem
-from continuation.archive.errors import ArchiveError
-from continuation.archive.image import HEAD_BYTES, stated_length, to_nowhere
-from continuation.archive.locks import Lock
+from continuation.archive.hdf5 import HEAD_BYTES, stated_length
 from continuation.archive.schema import EVENT_NAME, NAME, Layout, text
 from continuation.archive.structure import RESUME, SLOTS, build
 
@@ -240,7 +239,7 @@ class Store:
     def disown(self) -> None:
         """Let HDF5 write nowhere what it still has, in a process that is not to write."""
         if self._h5:
-            to_nowhere(self._h5.id.get_vfd_handle())
+            _to_nowhere(self._h5.id.get_vfd_handle())
             self._abandoned = True
 
     def abandon(self) -> None:
@@ -267,6 +266,18 @@ def _in_child() -> None:
 
 
 os.register_at_fork(after_in_child=_in_child)
+
+
+def _to_nowhere(descriptor: int) -> None:
+    """Let the descriptor of a file stand for another file, which is thrown away."""
+    # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
+    limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+    if limited or not hasattr(os, "memfd_create"):
+        nowhere = os.open(os.devnull, os.O_RDWR)
+    else:
+        nowhere = os.memfd_create("abandoned")
+    os.dup2(nowhere, descriptor, inheritable=False)
+    os.close(nowhere)
 
 
 def _rows(block: Block | None) -> int:

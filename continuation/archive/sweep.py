@@ -19,10 +19,9 @@ from typing import Any, Unpack
 
 from attrs import define, field, frozen
 
-from continuation.archive.atomic import as_file, check_new
+from continuation.archive.atomic import ArchiveError, as_file, check_new
 from continuation.archive.codec import problem_data
 from continuation.archive.copies import Share, append
-from continuation.archive.errors import ArchiveError
 from continuation.archive.growing import share_of_path
 from continuation.archive.merge import gather
 from continuation.archive.provenance import root_attributes

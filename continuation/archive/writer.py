@@ -12,10 +12,9 @@ from types import TracebackType
 from typing import Any
 
 from continuation.archive import record
-from continuation.archive.atomic import as_file, check_new
+from continuation.archive.atomic import ArchiveError, as_file, check_new
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
-from continuation.archive.errors import ArchiveError
 from continuation.archive.provenance import root_attributes, scalars
 from continuation.archive.reader import open_archive
 from continuation.archive.record import Buffer, Limits, Mark, OpenPath, Record, counted, unknowns_of
