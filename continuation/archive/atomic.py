@@ -15,7 +15,6 @@ import re
 import secrets
 import struct
 import time
-import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from os import PathLike
@@ -184,48 +183,23 @@ class Lock:
 
     def __init__(self, file: File) -> None:
         try:
-            self._descriptor = os.open(file, os.O_RDWR | os.O_CLOEXEC | os.O_NONBLOCK)
+            self.descriptor = os.open(file, os.O_RDWR | os.O_CLOEXEC | os.O_NONBLOCK)
         except OSError as error:
             raise ArchiveError(f"{file}: may not be written ({error.strerror})") from None
         self.taken = True
         try:
             if hasattr(fcntl, "F_OFD_SETLK"):
-                fcntl.fcntl(self._descriptor, fcntl.F_OFD_SETLK, _WHOLE)
+                fcntl.fcntl(self.descriptor, fcntl.F_OFD_SETLK, _WHOLE)
             else:
-                fcntl.lockf(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                fcntl.lockf(self.descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             self.taken = error.errno not in _TAKEN
-        _HELD.add(self)
-
-    def same(self, file: File, descriptor: int) -> bool:
-        """Whether the name, the file that was read and the file that is locked are one."""
-        mine = os.fstat(self._descriptor)
-        try:
-            return os.path.samestat(mine, file.stat()) and os.path.samestat(mine, os.fstat(descriptor))
-        except OSError:
-            return False
-
-    def sync(self) -> None:
-        """Wait until the file is on the disk."""
-        os.fsync(self._descriptor)
 
     def close(self) -> None:
         """Give it back; a second call does nothing."""
-        if self._descriptor >= 0:
-            os.close(self._descriptor)
-            self._descriptor = -1
-
-
-_HELD: weakref.WeakSet[Lock] = weakref.WeakSet()
-
-
-def _in_child() -> None:
-    """A forked child shares its parent's locks, and would keep them when the parent is gone."""
-    for lock in list(_HELD):
-        lock.close()
-
-
-os.register_at_fork(after_in_child=_in_child)
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+            self.descriptor = -1
 
 
 def is_held(file: File) -> bool:
@@ -248,7 +222,9 @@ def locked(file: File, descriptor: int, writer: str, *, force: bool = False) -> 
     if not force and not lock.taken:
         lock.close()
         raise ArchiveError(f"{file}: {writer}, which writes it, seems to be alive; end it first, or say force=True")
-    if not lock.same(file, descriptor):
+    mine = os.fstat(lock.descriptor)
+    # The name, the file that was read and the file that is locked are one.
+    if not (file.exists() and os.path.samestat(mine, file.stat()) and os.path.samestat(mine, os.fstat(descriptor))):
         lock.close()
         raise ArchiveError(f"{file}: was replaced by another process this moment; try again")
     return lock

@@ -37,14 +37,15 @@ from continuation.archive.schema import (
     EVENT_NAME,
     KINK_COLUMNS,
     ORIGIN_COLUMNS,
+    RESUME,
     SCHEMA,
+    SLOTS,
     TANGENT_COLUMNS,
     UNCHECKED,
     Column,
     Layout,
     check_names,
 )
-from continuation.archive.structure import RESUME, SLOTS
 
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")

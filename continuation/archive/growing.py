@@ -15,52 +15,32 @@ from typing import Any
 import numpy as np
 from attrs import define, evolve
 
-from continuation.archive import record
 from continuation.archive.atomic import as_file, beside, check_new
 from continuation.archive.copies import Share, append, filled, share_of, write_copy
-from continuation.archive.provenance import history, process, root_attributes, scalars
+from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.recover import own
 from continuation.archive.resume import check_homotopy
-from continuation.archive.rows import Row, parts_of, to_columns
-from continuation.archive.schema import CONTROLLER_STATE, ORIGIN_COLUMNS, Layout, text
+from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
+from continuation.archive.schema import ORIGIN_COLUMNS, text
 from continuation.archive.store import Store, create, put
-from continuation.archive.stored import StoredSteps
-from continuation.archive.tables import Table, dataframe, dataset
-from continuation.homotopy import SupportsPieces
-from continuation.path import LocatedEvent, Path
-
-
-def rows_of(path: Path, pieces: bool = False) -> list[Row]:
-    """Steps and located events in the order of the path; with the switches and the rays of its kinks if `pieces`."""
-    waiting: list[LocatedEvent] = list(path.events)
-    rows = []
-    for step in path.steps:
-        last = None
-        while waiting and waiting[0].step <= step.index:
-            event = waiting.pop(0)
-            if event.ends_step and event.kind == step.kind:
-                last = event
-            else:
-                rows.append(Row(None, event))
-        rows += [Row(step, last), *(parts_of(last) if pieces else ())]
-    return rows
+from continuation.archive.tables import StoredSteps, Table, dataframe, dataset
+from continuation.path import Path
 
 
 def share_of_path(
     path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0, pieces: bool = False
 ) -> Share:
     """A finished path as a share; with the switches and rays of kinks if `pieces`."""
-    pieces = pieces or isinstance(homotopy, SupportsPieces)
     first = path.steps[0] if path.steps else None
-    observed = () if first is None else tuple(first.observed)
-    tangents = pieces or (first is not None and bool(np.isfinite(first.tangent).all()))
-    width, own = max(len(controller), CONTROLLER_STATE), tuple(sorted(scalars(homotopy)))
-    layout = Layout(1 if first is None else first.y.size, width, observed, own, tangents, pieces)
-    rows, names = rows_of(path, pieces), list(dict.fromkeys(event.name for event in path.events))
+    tangents = first is not None and bool(np.isfinite(first.tangent).all())
+    unknowns, observed = (1, ()) if first is None else (first.y.size, tuple(first.observed))
+    layout = layout_of(homotopy, unknowns, observed, controller, tangents or pieces)
+    layout = evolve(layout, pieces=pieces or layout.pieces)
+    rows, names = rows_of(path, layout.pieces), list(dict.fromkeys(event.name for event in path.events))
     points = filled(to_columns(rows, 0, layout, names.index) if rows else {}, layout, layout.point_columns, len(rows))
-    row = {**record.of_path(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
-    paths = record.to_columns(row, layout)
+    row = {**record_of(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
+    paths = row_columns(row, layout)
     return Share(layout, names, paths, slice(0, len(rows)), partial(_part, points))
 
 
@@ -152,7 +132,7 @@ class Growing:
             for number, path in enumerate(source):
                 # A point that was read is part of an array, which would stay in memory with it.
                 ends = path if self.keep == "all" else deepcopy(evolve(path, steps=[path.steps[0], path.steps[-1]]))
-                yield path, self._kept(ends, number, source.points.some("role", source.rows(number)))
+                yield path, self._kept(ends, number, source.points["role"][source.rows(number)])
             attributes = {**source.attributes, **process(), **history(source.attributes, "went on")}
             store = write_copy([share_of(source)], part, attributes=attributes)
             store.publish(target, replace=True)
@@ -171,7 +151,7 @@ class Growing:
     def _kept(self, path: Path, number: int, roles: Any) -> Path:
         if self.keep == "all":
             return path
-        steps: Any = StoredSteps(open_archive, self.file, number, 0)
+        steps: Any = StoredSteps(open_archive, self.file, number)
         steps.known(roles, (path.steps[0], path.steps[-1]))
         return evolve(path, steps=steps)
 

@@ -24,8 +24,7 @@ from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import GROUP, PLACES, RECORD_BYTES, RECORDS, Committed, digest, of_attributes, seal
 from continuation.archive.codec import write_problem
 from continuation.archive.hdf5 import HEAD_BYTES, stated_length
-from continuation.archive.schema import EVENT_NAME, NAME, Layout, text
-from continuation.archive.structure import RESUME, SLOTS, build
+from continuation.archive.schema import EVENT_NAME, NAME, RESUME, SLOTS, Layout, build, text
 
 
 def create(target: File, *arguments: Any, **options: Any) -> Store:
@@ -223,7 +222,7 @@ class Store:
         try:
             self._h5.close()
             if sync:
-                self._lock.sync()
+                os.fsync(self._lock.descriptor)
         except (OSError, RuntimeError):
             # Of what was given up nothing more is expected.
             if not self._abandoned:
@@ -260,9 +259,13 @@ _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
 
 
 def _in_child() -> None:
-    """A forked child has its parent's files open, and HDF5 would write to them when the child ends."""
+    """A forked child has its parent's files open, and HDF5 would write to them when the child ends.
+
+    It shares its parent's locks too, and would keep them when the parent is gone.
+    """
     for store in list(_LIVE):
         store.disown()
+        store._lock.close()
 
 
 os.register_at_fork(after_in_child=_in_child)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import secrets
 import tempfile
-import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import ExitStack, suppress
@@ -17,38 +16,27 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
-from attrs import define, field, frozen
+from attrs import define, field
 
-from continuation.archive.atomic import ArchiveError, as_file, check_new
+from continuation.archive.atomic import as_file, check_new
 from continuation.archive.codec import problem_data
-from continuation.archive.copies import Share, append
-from continuation.archive.growing import share_of_path
-from continuation.archive.merge import gather
+from continuation.archive.copies import Share, append, gather
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout
 from continuation.archive.store import Store, create
+from continuation.archive.workers import Result, Task, Watch, begun, failed, interrupts, kept, work
 from continuation.archive.writer import PathLog
 from continuation.arguments.checks import complain, instance_with, is_number
-from continuation.path import LocatedEvent, Path, Step
+from continuation.path import Path
 from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
-from continuation.step.tracer import Observer, Tracer
-from continuation.step.verdict import sentence
+from continuation.step.tracer import Tracer
 
 Progress = Callable[[int, int], None]
-Result = Path | Share | BaseException | None
-"""What came of a homotopy; None where Ctrl-C ended it."""
-
 _GRACE = 0.5
 """Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s; the rest is for the answer."""
-
-_LOOK = 0.2
-"""Seconds between two looks at the stop sign."""
-
-_ITS_OWN = (Exception, SystemExit, GeneratorExit)
-"""What a homotopy raises costs its own path; Ctrl-C alone ends the sweep."""
 
 
 def trace_many(
@@ -133,87 +121,7 @@ def _interrupted(paths: Sequence[Path]) -> Interrupted:
     return Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
 
 
-# -- one path -------------------------------------------------------------------------------------------------
-
-
-@define(eq=False)
-class _Watch:
-    """Ends a path as Ctrl-C does once the stop sign, a file, is there; else tells a log of all but the path's end."""
-
-    stop: File | None = None
-    log: PathLog | None = None
-    next_look: float = 0.0
-
-    def step(self, tracer: Tracer, step: Step) -> None:
-        """See `continuation.Observer`."""
-        if self.log is not None:
-            self.log.step(tracer, step)
-        if self.stop is not None and time.monotonic() >= self.next_look:
-            self.next_look = time.monotonic() + _LOOK
-            if self.stop.exists():
-                raise KeyboardInterrupt
-
-    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
-        """See `continuation.Observer`."""
-        if self.log is not None:
-            self.log.event(tracer, event)
-
-    def end(self, tracer: Tracer) -> None:
-        """Not yet: the exception that ended a path is known to who called the tracer."""
-
-
-def _begun(homotopy: Any, observer: Observer, options: Options) -> Tracer | BaseException:
-    try:
-        return Tracer(homotopy, observers=(observer,), **options)
-    except _ITS_OWN as error:
-        return error
-
-
-def _interrupts(tracer: Tracer) -> bool:
-    """Trace the path to its end; whether Ctrl-C is that."""
-    try:
-        tracer.run()
-    except Interrupted:
-        return True
-    except ArchiveError:
-        # The disk's, not the path's.
-        raise
-    except _ITS_OWN as error:
-        if tracer.path.status in (Status.TRACING, Status.ABANDONED):
-            tracer.path.status = Status.RAISED
-        tracer.path.message = sentence(error)
-    return False
-
-
-def _failed(error: BaseException) -> Path:
-    return Path(status=Status.RAISED, message=sentence(error))
-
-
-@frozen(eq=False)
-class Task:
-    """A homotopy for a worker, and its number in the sweep. A file `stop` ends the worker by its existence."""
-
-    homotopy: Any
-    number: int
-    stop: File
-    archived: bool
-    options: Options
-
-
-def work(task: Task) -> Result:
-    """Trace a homotopy."""
-    if task.stop.exists():
-        return None
-    tracer = _begun(task.homotopy, _Watch(task.stop), task.options)
-    if not isinstance(tracer, Tracer):
-        return _kept(_failed(tracer), task)
-    if _interrupts(tracer):
-        return None
-    return _kept(tracer.path, task, tracer.state.controller if tracer.state is not None else ())
-
-
-def _kept(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:
-    return share_of_path(path, task.homotopy, controller, task.number) if task.archived else path
+# -- one after another, or over an executor --------------------------------------------------------------------
 
 
 def _serial(tasks: list[Any], target: File | None, report: Progress, options: Options) -> list[Path]:
@@ -224,11 +132,11 @@ def _serial(tasks: list[Any], target: File | None, report: Progress, options: Op
         for number, homotopy in enumerate(tasks):
             if log is not None:
                 log.member = number
-            tracer, stopped = _begun(homotopy, _Watch(log=log), options), False
+            tracer, stopped = begun(homotopy, Watch(log=log), options), False
             if isinstance(tracer, Tracer):
-                stopped = _interrupts(tracer)
+                stopped = interrupts(tracer)
             if log is None:
-                paths.append(tracer.path if isinstance(tracer, Tracer) else _failed(tracer))
+                paths.append(tracer.path if isinstance(tracer, Tracer) else failed(tracer))
             elif isinstance(tracer, Tracer):
                 log.end(tracer)
             else:
@@ -237,9 +145,6 @@ def _serial(tasks: list[Any], target: File | None, report: Progress, options: Op
                 raise _interrupted(paths)
             report(number + 1, len(tasks))
     return paths
-
-
-# -- over an executor -----------------------------------------------------------------------------------------
 
 
 def _spread(
@@ -294,9 +199,13 @@ class _Run:
         What was lost with a worker is done again, each in a process of its own: one that ends its process takes no
         other with it.
         """
+        lost: dict[int, BaseException] = {}
         for task in self.tasks:
-            self.futures[self.executor.submit(work, task)] = task.number
-        waiting, again = set(self.futures), []
+            try:
+                self.futures[self.executor.submit(work, task)] = task.number
+            except BrokenExecutor as error:
+                lost[task.number] = error
+        waiting = set(self.futures)
         while waiting:
             ended, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
             if not ended:
@@ -308,15 +217,14 @@ class _Run:
             for future in ended:
                 # Dask does again what is lost with a worker while somebody holds its future.
                 number, found = self.futures.pop(future), _outcome(future)
-                if isinstance(found, BrokenExecutor) and isinstance(self.executor, ProcessPoolExecutor):
-                    again.append(number)
+                if isinstance(found, BrokenExecutor):
+                    lost[number] = found
                 else:
                     self.add(number, found)
             del ended
-        for number in sorted(again):
-            self.add(number, self._alone(self.tasks[number]))
-        for number in sorted(self.futures.values()):
-            self.add(number, self._late())
+        lost |= {number: self._late() for number in self.futures.values()}
+        for number in sorted(lost):
+            self.add(number, self._alone(self.tasks[number], lost[number]))
 
     def add(self, number: int, found: Result) -> None:
         """What came of a homotopy; `KeyboardInterrupt` where Ctrl-C reached its worker."""
@@ -329,7 +237,7 @@ class _Run:
     def keep(self, number: int, found: Path | Share | BaseException) -> None:
         """Put a path where it stays."""
         if isinstance(found, BaseException):
-            found = _kept(_failed(found), self.tasks[number])
+            found = kept(failed(found), self.tasks[number])
         if isinstance(found, Path):
             self.paths[number] = found
         else:
@@ -350,13 +258,13 @@ class _Run:
     def _late(self) -> TimeoutError:
         return TimeoutError(f"took longer than {self.timeout:g} s")
 
-    def _alone(self, task: Task) -> Result:
+    def _alone(self, task: Task, error: BaseException) -> Result:
+        if not (isinstance(error, BrokenExecutor) and isinstance(self.executor, ProcessPoolExecutor)):
+            return error
         alone = ProcessPoolExecutor(1, mp_context=getattr(self.executor, "_mp_context", None))
         try:
             future = alone.submit(work, task)
-            if wait([future], timeout=self.timeout).done:
-                return _outcome(future)
-            return self._late()
+            return _outcome(future) if wait([future], timeout=self.timeout).done else self._late()
         finally:
             _end_processes(alone)
             alone.shutdown()
@@ -379,9 +287,9 @@ class _Run:
 
 
 def _outcome(future: Future[Result]) -> Result:
-    if future.cancelled():
+    error = None if future.cancelled() else future.exception()
+    if future.cancelled() or isinstance(error, KeyboardInterrupt):
         return None
-    error = future.exception()
     return future.result() if error is None else error
 
 

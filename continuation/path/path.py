@@ -32,7 +32,7 @@ class Path:
     Attributes
     ----------
     steps : sequence of Step
-        The accepted points, the start first: a list, or `continuation.archive.stored.StoredSteps`.
+        The accepted points, the start first: a list, or `continuation.archive.tables.StoredSteps`.
     events : list of LocatedEvent
         In order along the path.
     status : Status
