@@ -4,19 +4,19 @@ The schema is `continuation-path-2` (`continuation.archive.schema`): two tables,
 xarray (engines h5netcdf and netCDF4) and every netCDF-4 tool read without this package.
 """
 
+from continuation.archive.atomic import ArchiveError, ArchiveExistsError
 from continuation.archive.certificates import add_proof, recheck
 from continuation.archive.codec import SupportsArchive
-from continuation.archive.errors import ArchiveError, ArchiveExistsError
+from continuation.archive.copies import merge
 from continuation.archive.export import export
-from continuation.archive.merge import merge
 from continuation.archive.page import describe
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.record import Limits
 from continuation.archive.recover import recover
 from continuation.archive.resume import resume
+from continuation.archive.rows import Limits
 from continuation.archive.schema import SCHEMA
 from continuation.archive.sweep import trace_many
-from continuation.archive.tables import Selection, Table
+from continuation.archive.tables import Table
 from continuation.archive.writer import PathLog
 
 __all__ = [
@@ -26,7 +26,6 @@ __all__ = [
     "ArchiveExistsError",
     "Limits",
     "PathLog",
-    "Selection",
     "SupportsArchive",
     "Table",
     "add_proof",

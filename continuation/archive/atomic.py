@@ -1,4 +1,6 @@
-"""Files that appear under their name whole: written beside it, brought to the disk, then named.
+"""Files and who may write them: errors in one line, names that appear whole, locks that die with their owner.
+
+A file is written beside its name, brought to the disk, then named.
 
 What is written beside is called ``.NAME.xxxxxxxx.part``; a kill may leave it, and the next writer of
 that name removes it.
@@ -7,9 +9,11 @@ that name removes it.
 from __future__ import annotations
 
 import errno
+import fcntl
 import os
 import re
 import secrets
+import struct
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -17,9 +21,22 @@ from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
-from continuation.archive.errors import ArchiveError, ArchiveExistsError
-from continuation.archive.locks import is_held
 from continuation.arguments.checks import complain
+
+
+class ArchiveError(OSError):
+    """A file that cannot be read, written or resumed; the message is one line that names the file and the reason.
+
+    What the file itself says is in it, so that what cannot be printed, as a terminal's control codes, is a "?".
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__("".join(c if c.isprintable() else "?" for c in message))
+
+
+class ArchiveExistsError(ArchiveError, FileExistsError):
+    """The file to be written exists already; an archive is never overwritten."""
+
 
 _ABANDONED = 60.0
 """Seconds after which a part that nobody holds a lock on is litter: it is locked right after it is made."""
@@ -149,3 +166,65 @@ def short(error: BaseException) -> str:
     if found:
         return found[1]
     return (error.strerror if isinstance(error, OSError) and error.strerror else text)[:200]
+
+
+# Locks of an open file description (Linux): flock is taken by HDF5 for its own ends, and the locks of POSIX, which
+# serve elsewhere, are lost when any descriptor of the file is closed by the process, as by one who reads it.
+_WHOLE = struct.pack("hhlli4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
+_TAKEN = (errno.EAGAIN, errno.EACCES)
+
+
+class Lock:
+    """A lock on a file, held until `close`, or until the process is gone; `taken` is False where somebody else has it.
+
+    Where the file system knows no locks it counts as taken. Raises `ArchiveError` if the file cannot be opened for
+    writing.
+    """
+
+    def __init__(self, file: File) -> None:
+        try:
+            self.descriptor = os.open(file, os.O_RDWR | os.O_CLOEXEC | os.O_NONBLOCK)
+        except OSError as error:
+            raise ArchiveError(f"{file}: may not be written ({error.strerror})") from None
+        self.taken = True
+        try:
+            if hasattr(fcntl, "F_OFD_SETLK"):
+                fcntl.fcntl(self.descriptor, fcntl.F_OFD_SETLK, _WHOLE)
+            else:
+                fcntl.lockf(self.descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            self.taken = error.errno not in _TAKEN
+
+    def close(self) -> None:
+        """Give it back; a second call does nothing."""
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+            self.descriptor = -1
+
+
+def is_held(file: File) -> bool:
+    """Whether some process writes the file; False also where that cannot be asked."""
+    try:
+        lock = Lock(file)
+    except ArchiveError:
+        return False
+    lock.close()
+    return not lock.taken
+
+
+def locked(file: File, descriptor: int, writer: str, *, force: bool = False) -> Lock:
+    """The lock on a file that is to be replaced; by force also where another has it.
+
+    `descriptor` is of the file as it was read, `writer` who wrote it last. Raises `ArchiveError` if its writer is at
+    work, or the file was replaced this very moment.
+    """
+    lock = Lock(file)
+    if not force and not lock.taken:
+        lock.close()
+        raise ArchiveError(f"{file}: {writer}, which writes it, seems to be alive; end it first, or say force=True")
+    mine = os.fstat(lock.descriptor)
+    # The name, the file that was read and the file that is locked are one.
+    if not (file.exists() and os.path.samestat(mine, file.stat()) and os.path.samestat(mine, os.fstat(descriptor))):
+        lock.close()
+        raise ArchiveError(f"{file}: was replaced by another process this moment; try again")
+    return lock

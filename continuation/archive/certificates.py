@@ -17,11 +17,10 @@ from typing import Any
 import h5py
 import numpy as np
 
-from continuation.archive.atomic import as_file, beside, like, publish, short
+from continuation.archive.atomic import ArchiveError, as_file, beside, like, publish, short
 from continuation.archive.checks import DamageError, digest
-from continuation.archive.datasets import Allowance, StructureError, dataset, names, subgroup
-from continuation.archive.errors import ArchiveError
-from continuation.archive.files import FAULTS
+from continuation.archive.contents import FAULTS
+from continuation.archive.hdf5 import Allowance, StructureError, dataset, names, subgroup
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import own
 from continuation.archive.resume import stored_homotopy

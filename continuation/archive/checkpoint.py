@@ -6,7 +6,7 @@ import json
 import math
 import struct
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 import attrs
@@ -61,35 +61,18 @@ def major(version: str) -> str:
     return first if first != "0" else f"0.{second}"
 
 
-class _Block:
-    """Arrays in a row; an array that occurs twice is stored once."""
+def _fetched(raw: bytes) -> Callable[[Any], Any]:
+    """From an array's place to the array: one object for each number, so that what was identical is so again."""
+    made: list[np.ndarray[Any, Any]] = []
 
-    def __init__(self) -> None:
-        self.arrays: list[np.ndarray[Any, Any]] = []
-        self._known: dict[int, int] = {}
-
-    def place(self, name: str, array: Any) -> Any:
-        number = self._known.setdefault(id(array), len(self.arrays))
-        if number == len(self.arrays):
-            self.arrays.append(array)
-        return {"number": number, "dtype": array.dtype.str, "shape": list(array.shape)}
-
-
-class _Arrays:
-    """The reverse of `_Block`: one array object for each number, so that what was identical is so again."""
-
-    def __init__(self, raw: bytes) -> None:
-        self._raw = raw
-        self._offset = 0
-        self._made: list[np.ndarray[Any, Any]] = []
-
-    def fetch(self, place: Any) -> Any:
+    def fetch(place: Any) -> Any:
         # Arrays were numbered in the order in which the description names them first.
-        if place["number"] == len(self._made):
-            array = numbers(self._raw[self._offset :], place["dtype"], place["shape"]).copy()
-            self._offset += array.nbytes
-            self._made.append(array)
-        return self._made[place["number"]]
+        if place["number"] == len(made):
+            offset = sum(array.nbytes for array in made)
+            made.append(numbers(raw[offset:], place["dtype"], place["shape"]).copy())
+        return made[place["number"]]
+
+    return fetch
 
 
 def numbers(raw: bytes, dtype: str, shape: Sequence[int], order: Literal["C", "F"] = "C") -> np.ndarray[Any, Any]:
@@ -109,22 +92,14 @@ def describe_run(tracer: Tracer, member: int | None, homotopy: Mapping[str, Any]
 
     `member` is the index in a sweep; `homotopy` describes one whose arrays are in the file's own problem group.
     """
-    options = {name: _described(value) for name, value in _options(tracer).items()}
-    return {"options": options, "homotopy": homotopy or _described(tracer.homotopy), "member": member}
-
-
-def _options(tracer: Tracer) -> dict[str, Any]:
     values = {name: getattr(tracer.settings, name) for name in OPTIONS}
-    return {**values, "events": _asked_for(tracer)}
-
-
-def _asked_for(tracer: Tracer) -> tuple[Any, ...]:
-    """The tracer's events without the homotopy's own, which a new tracer adds again in the same order."""
     own, watched = tuple(getattr(tracer.homotopy, "events", ())), tracer.settings.events
-    if not own:
-        return watched
-    first = 0 if watched[0] is own[0] or watched[0] == own[0] else 1
-    return watched[first + len(own) :]
+    if own:
+        # Without the homotopy's own events, which a new tracer adds again in the same order.
+        first = 0 if watched[0] is own[0] or watched[0] == own[0] else 1
+        values["events"] = watched[first + len(own) :]
+    options = {name: _described(value) for name, value in values.items()}
+    return {"options": options, "homotopy": homotopy or _described(tracer.homotopy), "member": member}
 
 
 def _described(value: Any) -> Any:
@@ -153,17 +128,23 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
 
     `run` is the JSON of ``checkpoint.run``, if it is at hand: it does not change along a path.
     """
-    block = _Block()
+    arrays: dict[int, np.ndarray[Any, Any]] = {}
+
+    def place(name: str, array: Any) -> Any:
+        arrays.setdefault(id(array), array)
+        number = list(arrays).index(id(array))
+        return {"number": number, "dtype": array.dtype.str, "shape": list(array.shape)}
+
     tree = {
         "version": __version__,
         "path": checkpoint.path,
         "rows": checkpoint.rows,
         "counts": dict(checkpoint.counts),
         "seconds": checkpoint.seconds,
-        "state": encode(checkpoint.state, block.place),
+        "state": encode(checkpoint.state, place),
     }
     run = json.dumps(dict(checkpoint.run)).encode() if run is None else run
-    parts = [json.dumps(tree).encode(), run, b"".join(np.ascontiguousarray(a).tobytes() for a in block.arrays)]
+    parts = [json.dumps(tree).encode(), run, b"".join(np.ascontiguousarray(a).tobytes() for a in arrays.values())]
     body = b"\n".join(parts)
     return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
 
@@ -187,7 +168,7 @@ def unpack(raw: bytes) -> Checkpoint | Foreign | None:
         version = str(tree.get("version", "0.1.0"))
         if major(version) != major(__version__):
             return Foreign(sequence, int(tree["path"]), version)
-        state = decode(tree["state"], _Arrays(arrays).fetch, hint=State)
+        state = decode(tree["state"], _fetched(arrays), hint=State)
         counts = {str(name): int(value) for name, value in tree["counts"].items()}
         path, rows, seconds = int(tree["path"]), int(tree["rows"]), float(tree["seconds"])
     except (UnknownError, ValueError, KeyError, TypeError, AttributeError, RecursionError):

@@ -119,40 +119,28 @@ class Ledger:
             bounds = bounds[: wrong[0] + 1] if wrong.size else bounds
         elif bounds[-1] != size or wrong.size:
             raise DamageError("the checksums are damaged")
-        self._bounds, self.rows = bounds, int(bounds[-1])
+        self.bounds, self.rows = bounds, int(bounds[-1])
         self._sums, self._place = rows[:, _STOP:], {name: k for k, name in enumerate(sorted(columns))}
 
-    def covering(self, rows: slice) -> slice:
-        """The rows of the whole blocks that hold these."""
-        if rows.stop <= rows.start:
-            return slice(rows.start, rows.start)
-        first, last = np.searchsorted(self._bounds, (rows.start + 1, rows.stop))
-        return slice(int(self._bounds[first - 1]), int(self._bounds[last]))
-
-    def damaged(self, name: str, values: Array, rows: slice) -> list[tuple[int, int]]:
-        """The blocks (first row, row after the last) of `rows`, whole blocks, whose values are not what was written."""
-        first, last = np.searchsorted(self._bounds, (rows.start, rows.stop))
-        found, column = [], self._place[name]
-        for k, (start, stop) in enumerate(pairwise(self._bounds[first : last + 1].tolist()), first):
-            seed = zlib.crc32(_BOUNDS.pack(start, stop))
-            if digest(values[start - rows.start : stop - rows.start], seed) != self._sums[k, column]:
-                found.append((start, stop))
-        return found
-
     def read(self, name: str, rows: slice, fetch: Callable[[slice], Array]) -> Array:
-        """Rows of a column, checked; `fetch` reads them.
+        """Rows of a column, checked; `fetch` reads them, in whole blocks.
 
         Raises `DamageError` if some of their blocks are not what was written.
         """
-        whole = self.covering(rows)
-        values = fetch(whole)
-        bad = self.damaged(name, values, whole)
+        if rows.stop <= rows.start:
+            return fetch(rows)
+        first, last = (int(k) for k in np.searchsorted(self.bounds, (rows.start + 1, rows.stop)))
+        edges, bad = self.bounds[first - 1 : last + 1].tolist(), []
+        values = fetch(slice(edges[0], edges[-1]))
+        for k, (start, stop) in enumerate(pairwise(edges), first - 1):
+            seed = zlib.crc32(_BOUNDS.pack(start, stop))
+            if digest(values[start - edges[0] : stop - edges[0]], seed) != self._sums[k, self._place[name]]:
+                bad.append((start, stop))
         if bad:
             spans = ", ".join(f"{start} to {stop - 1}" for start, stop in bad[:4]) + (", ..." if len(bad) > 4 else "")
-            lost = sum(stop - start for start, stop in bad)
-            sound = whole.stop - whole.start - lost
+            sound = len(values) - sum(stop - start for start, stop in bad)
             raise DamageError(f"rows {spans} of {name} are not what was written; the other {sound} rows read are sound")
-        return values[rows.start - whole.start : rows.stop - whole.start]
+        return values[rows.start - edges[0] : rows.stop - edges[0]]
 
 
 def of_attributes(attributes: Mapping[str, Any]) -> int:

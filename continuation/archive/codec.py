@@ -17,7 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from continuation.archive.checks import DamageError, digest
-from continuation.archive.datasets import Allowance, dataset, names
+from continuation.archive.hdf5 import Allowance, dataset, names
 
 GROUP = "problem"
 

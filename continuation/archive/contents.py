@@ -6,13 +6,16 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import partial
 from os import PathLike
+from pathlib import Path as File
 from typing import Any, TypeVar
 
+import h5py
 import numpy as np
 from attrs import evolve
 
-from continuation.archive.atomic import as_file, short
+from continuation.archive.atomic import ArchiveError, as_file, is_held, short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import (
     GROUP,
@@ -29,24 +32,26 @@ from continuation.archive.checks import (
 )
 from continuation.archive.codec import GROUP as PROBLEM
 from continuation.archive.codec import read_problem
-from continuation.archive.datasets import COLUMN_BYTES, Allowance, LimitError, dataset, names, subgroup
-from continuation.archive.errors import ArchiveError
-from continuation.archive.files import FAULTS, hdf5
-from continuation.archive.image import Image
-from continuation.archive.locks import is_held
+from continuation.archive.hdf5 import COLUMN_BYTES, Allowance, Image, LimitError, dataset, names, subgroup
 from continuation.archive.schema import (
     EVENT_NAME,
     KINK_COLUMNS,
     ORIGIN_COLUMNS,
+    RESUME,
+    SCHEMA,
+    SLOTS,
     TANGENT_COLUMNS,
+    UNCHECKED,
     Column,
     Layout,
     check_names,
 )
-from continuation.archive.structure import RESUME, SLOTS
 
 Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
+
+FAULTS = (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError, MemoryError, RecursionError)
+"""What h5py raises for a file that is not what it should be."""
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds for which a file that is being written may seem to be damaged, since its writer is in the middle of
@@ -78,7 +83,18 @@ class Contents:
     def _open(self) -> Image:
         self._image = image = Image(self.file)
         self.closed_by_writer, self.size, self.descriptor = image.closed_by_writer, image.length, image.descriptor
-        self._h5, self._datasets = hdf5(image, truncated=self._salvage), dict[str, Any]()
+        if image.missing and not self._salvage:
+            what = f"{self.file}: truncated or damaged, its last {image.missing} bytes are missing"
+            raise ArchiveError(f"{what}; `recover` keeps the rows that are sound")
+        try:
+            self._h5, self._datasets = h5py.File(image, "r", rdcc_nbytes=COLUMN_BYTES), dict[str, Any]()
+            schema, writer = (self._h5.attrs.get(name) for name in ("schema", "library_version"))
+            complete = all(part in self._h5 for part in ("committed_points", "committed_paths"))
+            complete &= schema == UNCHECKED or (GROUP in self._h5 and RECORDS in self._h5[GROUP]) or schema is None
+        except FAULTS as error:
+            what = f"truncated or damaged, HDF5 cannot open it ({short(error)})"
+            raise ArchiveError(f"{self.file}: {what}") from None
+        _check_schema(self.file, schema, writer, complete)
         return image
 
     @property
@@ -216,41 +232,32 @@ class Contents:
 
     def read(self, table: str, name: str, rows: slice) -> Array:
         """Committed rows of a column of the table ``"point"`` or ``"path"``, checked."""
-
-        def fetch(rows: slice) -> Array:
-            return self._fetch(table, name, rows)
-
-        if not self.checked:
-            return self._guarded(lambda: fetch(rows))
-        return self._guarded(lambda: self._ledgers[table].read(name, rows, fetch))
+        fetch = partial(self._fetch, table, name)
+        ledger = self._ledgers.get(table)
+        return self._guarded(lambda: fetch(rows) if ledger is None else ledger.read(name, rows, fetch))
 
     def unsound(self, table: str) -> list[tuple[int, int]]:
         """The blocks of rows of which some column is not what was written, or cannot be read at all."""
         if not self.checked:
             return []
-        ledger, rows = self._ledgers[table], self.committed.points if table == "point" else self.committed.paths
-        found: set[tuple[int, int]] = set()
-        for start in range(0, rows, _STRIDE):
-            whole = ledger.covering(slice(start, min(start + _STRIDE, rows)))
-            for name in self._columns[table]:
-                try:
-                    found.update(ledger.damaged(name, self._fetch(table, name, whole), whole))
-                except FAULTS as error:
-                    self._pass_over(error)
-                    found.update(self._one_by_one(table, name, whole))
-        return sorted(found)
+        bounds, found = self._ledgers[table].bounds.tolist(), []
 
-    def _one_by_one(self, table: str, name: str, rows: slice) -> list[tuple[int, int]]:
-        """The unsound blocks among rows that HDF5 does not read in one go."""
-        found, ledger, start = [], self._ledgers[table], rows.start
-        while start < rows.stop:
-            block = ledger.covering(slice(start, start + 1))
+        def look(first: int, last: int) -> None:
+            """Look for them among some blocks; those that are not sound together are looked at in halves."""
+            rows, middle = slice(bounds[first], bounds[last]), (first + last) // 2
             try:
-                found += ledger.damaged(name, self._fetch(table, name, block), block)
+                for name in self._columns[table]:
+                    self._ledgers[table].read(name, rows, partial(self._fetch, table, name))
             except FAULTS as error:
                 self._pass_over(error)
-                found.append((block.start, block.stop))
-            start = block.stop
+                if last - first == 1:
+                    found.append((rows.start, rows.stop))
+                else:
+                    look(first, middle)
+                    look(middle, last)
+
+        for first in range(0, len(bounds) - 1, _BLOCKS):
+            look(first, min(first + _BLOCKS, len(bounds) - 1))
         return found
 
     def _fetch(self, table: str, name: str, rows: slice) -> Array:
@@ -296,8 +303,24 @@ class Contents:
         return self._guarded(lambda: self._or_else("its problem", read, read_problem(None, False, self.allowance)))
 
 
-_STRIDE = 1 << 16
-"""Rows that are checked at once."""
+_BLOCKS = 256
+"""That are checked at once: of 4 MiB at most each, and of 256 rows mostly."""
+
+
+def _check_schema(name: File, schema: Any, writer: Any, complete: bool) -> None:
+    if schema is None and not complete:
+        raise ArchiveError(f"{name}: is an HDF5 file, but not an archive of paths (it has no attribute `schema`)")
+    kind, _, version = str(schema).rpartition("-")
+    ours, _, newest = SCHEMA.rpartition("-")
+    if kind != ours or not (version.isdecimal() and len(version) < 9):
+        raise ArchiveError(f"{name}: has the schema {str(schema)[:60]!r}, expected {SCHEMA!r}")
+    if int(version) > int(newest):
+        raise ArchiveError(
+            f"{name}: has the newer schema {schema}, this library reads up to {SCHEMA}; "
+            f"upgrade to continuation {str(writer or 'unknown')[:20]} or later, or read it with h5py or xarray"
+        )
+    if not complete:
+        raise ArchiveError(f"{name}: truncated, its writer ended before the structure was complete")
 
 
 def _layout(file: Any, allowance: Allowance) -> Layout:

@@ -1,22 +1,32 @@
-"""Copies of committed rows in a file of their own: what recovery, resuming, merging and export are made of."""
+"""Paths as columns, read from a file or held in memory, and appended elsewhere.
+
+A `Share` is some paths with their points; `append` adds one to a file that grows, `write_copy` makes a new file of
+several. Recovery, resuming, merging, export, diagrams and the parts of a sweep are shares and one of the two.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from functools import partial
 from numbers import Integral
+from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.archive.atomic import beside, like, publish
+from continuation.archive.atomic import ArchiveError, as_file, check_new
 from continuation.archive.contents import Contents
-from continuation.archive.errors import ArchiveError
-from continuation.archive.reader import Archive
-from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Layout, text
-from continuation.archive.store import Store
+from continuation.archive.provenance import history, process
+from continuation.archive.reader import Archive, open_archive
+from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Column, Layout, text
+from continuation.archive.store import Store, put
+from continuation.arguments.checks import complain
 from continuation.status import Status
+
+Block = dict[str, Any]
 
 _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
 """Of what is copied at once, and so of the blocks that a reader checks whole."""
@@ -24,15 +34,27 @@ _BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
 
 @frozen(eq=False)
 class Share:
-    """What is copied of one archive: the rows of its paths from number `first` on, by column, and of their points.
+    """Some paths and their points.
 
-    Of the last path it may be the first points only.
+    `paths`: Rows of the path table, by column. `points`: Which rows of the point table; of the last path it may be the
+    first ones only. `fetch`: (column, rows) -> numbers. `names`: What `event_index` counts. `first`: The number that
+    the first path has in `path_index`. `origin`: The open file, where it is of one.
     """
 
-    source: Contents
+    layout: Layout
+    names: Sequence[str]
     paths: Mapping[str, Any]
     points: slice
+    fetch: Callable[[str, slice], Any]
     first: int = 0
+    origin: Contents | None = None
+
+    @classmethod
+    def of(cls, contents: Contents, paths: Mapping[str, Any], points: slice, first: int = 0) -> Share:
+        """A share of an open file."""
+        return cls(
+            contents.layout, contents.event_names, paths, points, partial(contents.read, "point"), first, contents
+        )
 
     @property
     def size(self) -> int:
@@ -66,7 +88,7 @@ def share_of(archive: Archive, first: int = 0, last: int | None = None, points: 
         paths[column.name] = np.where(own == b"", filled, own)
     begin = archive.rows(first).start if count else 0
     end = begin + points if points is not None else archive.rows(stop - 1).stop if count else 0
-    return Share(contents, paths, slice(begin, end), first)
+    return Share.of(contents, paths, slice(begin, end), first)
 
 
 def interrupt(paths: Mapping[str, Any]) -> None:
@@ -78,7 +100,16 @@ def interrupt(paths: Mapping[str, Any]) -> None:
 
 def leading(shares: Sequence[Share]) -> Contents:
     """The archive of the first point: its settings and problem stand for all; one of failures alone has none."""
-    return next((share.source for share in shares if share.size), shares[0].source)
+    found = next((share for share in shares if share.size), shares[0]).origin
+    assert found is not None
+    return found
+
+
+def append(store: Store, share: Share) -> None:
+    """Add a share that is in memory to a file, in one commit."""
+    held = store.committed
+    points = _numbered(share, store, share.points, held.paths) if share.size else None
+    store.commit(points, held.points, _rows(share, store.layout, held.paths), held.paths)
 
 
 def write_copy(
@@ -89,17 +120,18 @@ def write_copy(
     checkpoints: Mapping[int, bytes] | None = None,
     compression: int = 0,
 ) -> Store:
-    """Concatenate shares into a new file, which is still open.
+    """Concatenate shares of open files into a new one, which is still open.
 
     Raises `ArchiveError` if the archives differ in the number of unknowns, or the file cannot be written.
     """
-    problem = leading(shares).problem()
-    store = Store(part, _joint(shares), {**attributes, "schema": SCHEMA}, problem, compression=compression)
+    layout = _joint(shares)
+    store = Store(part, layout, {**attributes, "schema": SCHEMA}, leading(shares).problem(), compression=compression)
     try:
-        points = paths = 0
-        for share in shares:
-            points, paths = _copy(share, store, points, paths)
-        store.commit(checkpoints=checkpoints)
+        for block in _blocks(shares, store):
+            store.commit(block, store.committed.points)
+        counts = np.cumsum([0, *(len(share.paths["path"]) for share in shares)]).tolist()
+        rows = [_rows(share, layout, number) for share, number in zip(shares, counts)]
+        store.commit(paths=_joined(rows) if counts[-1] else None, checkpoints=checkpoints)
     except BaseException:
         store.close()
         raise
@@ -109,11 +141,11 @@ def write_copy(
 def _joint(shares: Sequence[Share]) -> Layout:
     """One layout that holds them all: a column that only some have is missing elsewhere."""
     head = leading(shares)
-    first, layouts = head.layout, [share.source.layout for share in shares]
-    for share, layout in zip(shares, layouts):
-        if layout.unknowns != first.unknowns and share.size:
+    first, layouts = head.layout, [share.layout for share in shares]
+    for share in shares:
+        if share.layout.unknowns != first.unknowns and share.size and share.origin is not None:
             raise ArchiveError(
-                f"{share.source.file}: holds paths of {layout.unknowns} unknowns, {head.file} of "
+                f"{share.origin.file}: holds paths of {share.layout.unknowns} unknowns, {head.file} of "
                 f"{first.unknowns}; one file holds one number"
             )
     return evolve(
@@ -127,54 +159,144 @@ def _joint(shares: Sequence[Share]) -> Layout:
     )
 
 
-def _copy(share: Share, store: Store, point: int, path: int) -> tuple[int, int]:
-    """Append a share; the numbers of points and paths then."""
-    source, layout, rows = share.source, store.layout, share.points
-    numbers = np.array([store.name_event(name) for name in source.event_names] + [-1], dtype="i2")
-    size = min(max(_BLOCK_BYTES // (8 * (layout.unknowns + 16)), 1), _BLOCK_ROWS)
-    for start in range(rows.start, rows.stop, size):
-        part = slice(start, min(start + size, rows.stop))
-        block = {column.name: source.read("point", column.name, part) for column in source.layout.point_columns}
-        block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
-        if np.any(block["event_index"] >= len(source.event_names)) or np.any(block["event_index"] < -1):
-            raise source.damaged(ValueError("its points refer to events that it does not name"))
-        # The number -1, no event, finds the last entry.
-        block["event_index"] = numbers[block["event_index"]]
-        store.commit(_filled(block, layout, layout.point_columns, part.stop - start), point)
-        point += part.stop - start
+def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
+    """The points of all of them, in blocks of nearly one size: what is small is joined, what is large cut."""
+    size = min(max(_BLOCK_BYTES // (8 * (store.layout.unknowns + 16)), 1), _BLOCK_ROWS)
+    waiting: list[Block] = []
+    held = path = 0
+    for share in shares:
+        for start in range(share.points.start, share.points.stop, size):
+            part = slice(start, min(start + size, share.points.stop))
+            waiting.append(_numbered(share, store, part, path))
+            held += part.stop - part.start
+            if held >= size:
+                yield _joined(waiting)
+                waiting, held = [], 0
+        path += len(share.paths["path"])
+    if waiting:
+        yield _joined(waiting)
+
+
+def _joined(blocks: Sequence[Block]) -> Block:
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+
+
+def _numbered(share: Share, store: Store, rows: slice, path: int) -> Block:
+    """Points as a block of the store's columns, with its numbers of events, the share's first path being `path`."""
+    numbers = np.array([store.name_event(name) for name in share.names] + [-1], dtype="i2")
+    block = {column.name: share.fetch(column.name, rows) for column in share.layout.point_columns}
+    block["path_index"] = (block["path_index"] + (path - share.first)).astype("i4")
+    if share.origin and (np.any(block["event_index"] >= len(share.names)) or np.any(block["event_index"] < -1)):
+        raise share.origin.damaged(ValueError("its points refer to events that it does not name"))
+    # The number -1, no event, finds the last entry.
+    block["event_index"] = numbers[block["event_index"]]
+    return filled(block, store.layout, store.layout.point_columns, rows.stop - rows.start)
+
+
+def _rows(share: Share, layout: Layout, path: int) -> Block:
+    """The share's rows of the path table, numbered from `path` on."""
     count = len(share.paths["path"])
-    if count:
-        columns = {**share.paths, "path": np.arange(path, path + count)}
-        store.commit(paths=_filled(columns, layout, layout.path_columns, count), path=path)
-    return point, path + count
+    columns = {**share.paths, "path": np.arange(path, path + count)}
+    return filled(columns, layout, layout.path_columns, count)
 
 
-def _filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Any], rows: int) -> dict[str, Any]:
+def filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Column], rows: int) -> Block:
     """The block in the columns of the layout; what it lacks is missing (NaN)."""
-    filled = {}
+    whole = {}
     for column in columns:
-        whole = np.full((rows, *layout.width(column)), column.missing, dtype=column.storage)
+        whole[column.name] = np.full((rows, *layout.width(column)), column.missing, dtype=column.storage)
         values = block.get(column.name)
-        if values is not None and values.shape == whole.shape:
-            whole = np.ascontiguousarray(values)
+        if values is not None and values.shape == whole[column.name].shape:
+            whole[column.name] = np.ascontiguousarray(values)
         elif values is not None:
-            whole[:, : values.shape[1]] = values
-        filled[column.name] = whole
-    return filled
+            whole[column.name][:, : values.shape[1]] = values
+    return whole
 
 
-def put(target: File, write: Callable[[File], Store], *, replace: bool = False) -> None:
-    """Write a whole new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
+# -- many files as one -----------------------------------------------------------------------------------------
 
-    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file.
+
+def merge(
+    files: Iterable[str | PathLike[str]], target: str | PathLike[str], *, compression: int = 0, title: str = ""
+) -> File:
+    """Concatenate archives, in the order given: paths are numbered anew, everything else stays as it is.
+
+    Files of killed writers count with what was committed. Each path keeps its homotopy and its source, the columns
+    ``homotopy`` and ``source`` of the path table; the settings and the problem of the first file are those of the new
+    one, which cannot be resumed.
+
+    Parameters
+    ----------
+    files : iterable of path
+    target : path
+        Must not exist.
+    compression : int
+        Level of gzip, 0 to 9.
+    title : str
+
+    Raises
+    ------
+    ValueError
+        If there are no files, or gzip does not know the level.
+    ArchiveError
+        If one is no archive, has another number of unknowns than the first, or a path that another has too, or if
+        `target` exists.
     """
-    with beside(target) as part:
-        store = write(part)
-        try:
-            store.finish()
-        except BaseException:
-            store.close()
-            raise
-        if replace:
-            like(part, target)
-        publish(part, target, replace=replace)
+    if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
+        raise complain(TypeError, "files", "names of archives, in a list", files)
+    files = list(files)
+    if not files:
+        raise ValueError("files: expected at least one archive, found none")
+    check_level(compression)
+    whole = as_file("target", target)
+    check_new(whole)
+    with ExitStack() as stack:
+        archives = [stack.enter_context(open_archive(file)) for file in files]
+        shares = [share_of(archive) for archive in archives]
+        first = leading(shares).attributes
+        names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
+        attributes = {**first, **process(), **history(first, f"merged from {len(archives)} files: {names}")}
+        if title:
+            attributes["title"] = title
+        _refuse_duplicates(archives, shares)
+        put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
+    return whole
+
+
+def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
+    """A path that is in two of the files would count twice in every average."""
+    known: dict[bytes, str] = {}
+    for archive, share in zip(archives, shares):
+        for k, source in enumerate(share.paths["source"]):
+            # The identifier and the number; the name of the file may have been changed since.
+            key = b" ".join(source.split(b" ", 2)[:2])
+            if key in known:
+                raise ArchiveError(f"{archive.file}: its path {k} is {known[key]} as well; expected each path once")
+            known[key] = f"path {k} of {archive.file}"
+
+
+def gather(files: Sequence[File], target: File) -> None:
+    """Merge the parts of a sweep, in the order of its members; those of other sizes than the first keep no points."""
+    with ExitStack() as stack:
+        archives = [stack.enter_context(open_archive(file)) for file in files]
+        places = []
+        for archive in archives:
+            archive.paths.load()
+            places += [(member, archive, k) for k, member in enumerate(archive.paths["member"].tolist())]
+        shares = [share_of(archive, k, k + 1) for _, archive, k in sorted(places, key=lambda place: place[0])]
+        head = leading(shares)
+        shares = [_of_size(share, head.layout.unknowns, target) for share in shares]
+        attributes = {**head.attributes, **process(), **history(head.attributes, f"a sweep of {len(shares)} paths")}
+        put(target, lambda part: write_copy(shares, part, attributes=attributes))
+
+
+def _of_size(share: Share, unknowns: int, target: File) -> Share:
+    """The share; if its paths have another number of unknowns, what they would be in one file: refused."""
+    found = share.layout.unknowns
+    if found == unknowns or not share.size:
+        return share
+    reason = f"ValueError: homotopy: expected {unknowns} unknowns, as in {target} so far, found {found}"
+    paths = dict(share.paths)
+    for name, value in {"status": int(Status.RAISED), "message": text(reason, TEXT), "n_points": 0}.items():
+        paths[name] = np.full_like(paths[name], value)
+    return evolve(share, paths=paths, points=slice(0, 0))

@@ -6,15 +6,15 @@ import csv
 import gzip
 import os
 from collections.abc import Iterable, Mapping
-from io import TextIOWrapper
 from os import PathLike
 from pathlib import Path as File
-from typing import Any, BinaryIO
+from typing import Any
 
 from continuation.archive.atomic import as_file, beside, check_new, publish
-from continuation.archive.copies import check_level, put, share_of, write_copy
+from continuation.archive.copies import check_level, share_of, write_copy
 from continuation.archive.provenance import history
 from continuation.archive.reader import Archive, open_archive
+from continuation.archive.store import put
 from continuation.archive.tables import Table
 
 _ROWS = 4096
@@ -72,26 +72,15 @@ def _export_text(archive: Archive, points: File, paths: File) -> list[File]:
 
 
 def _write_text(part: File, table: Table, compressed: bool) -> None:
-    with part.open("xb") as raw:
-        out = _opened(raw, compressed)
-        try:
-            writer = csv.writer(out)
-            for start in range(0, max(table.size, 1), _ROWS):
-                names, columns = _spread(table.block(slice(start, min(start + _ROWS, table.size))))
-                if not start:
-                    writer.writerow(names)
-                writer.writerows(zip(*columns))
-            out.flush()
-        finally:
-            # Closing gzip's stream ends it, and leaves the file open; closing the other would close the file.
-            (out.close if compressed else out.detach)()
-        raw.flush()
-        os.fsync(raw.fileno())
-
-
-def _opened(raw: BinaryIO, compressed: bool) -> TextIOWrapper:
-    stream: Any = gzip.GzipFile(fileobj=raw, mode="wb") if compressed else raw
-    return TextIOWrapper(stream, encoding="utf-8", newline="")
+    opened: Any = gzip.open if compressed else open
+    with opened(part, "xt", encoding="utf-8", newline="") as out:
+        writer = csv.writer(out)
+        for start in range(0, max(table.size, 1), _ROWS):
+            names, columns = _spread(table.block(slice(start, min(start + _ROWS, table.size))))
+            writer.writerows([names] if not start else [])
+            writer.writerows(zip(*columns))
+    with part.open("rb") as written:
+        os.fsync(written.fileno())
 
 
 def _spread(block: Mapping[str, Any]) -> tuple[list[str], list[Iterable[Any]]]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from copy import deepcopy
+from functools import partial
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
@@ -14,85 +15,70 @@ from typing import Any
 import numpy as np
 from attrs import define, evolve
 
-from continuation.archive import record
 from continuation.archive.atomic import as_file, beside, check_new
-from continuation.archive.copies import put, share_of, write_copy
+from continuation.archive.copies import Share, append, filled, share_of, write_copy
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.recover import own
 from continuation.archive.resume import check_homotopy
-from continuation.archive.rows import Row, parts_of, to_columns
-from continuation.archive.schema import CONTROLLER_STATE, Layout
-from continuation.archive.store import Store, create, publish_live
-from continuation.archive.stored import StoredSteps
-from continuation.archive.tables import Table, dataframe, dataset
-from continuation.path import LocatedEvent, Path
+from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
+from continuation.archive.schema import ORIGIN_COLUMNS, text
+from continuation.archive.store import Store, create, put
+from continuation.archive.tables import StoredSteps, Table, dataframe, dataset
+from continuation.path import Path
 
 
-def rows_of(path: Path, pieces: bool = False) -> list[Row]:
-    """Steps and located events in the order of the path; with the switches and the rays of its kinks if `pieces`."""
-    waiting: list[LocatedEvent] = list(path.events)
-    rows = []
-    for step in path.steps:
-        last = None
-        while waiting and waiting[0].step <= step.index:
-            event = waiting.pop(0)
-            if event.ends_step and event.kind == step.kind:
-                last = event
-            else:
-                rows.append(Row(None, event))
-        rows += [Row(step, last), *(parts_of(last) if pieces else ())]
-    return rows
+def share_of_path(
+    path: Path, homotopy: Any = None, controller: Sequence[float] = (), member: int = 0, pieces: bool = False
+) -> Share:
+    """A finished path as a share; with the switches and rays of kinks if `pieces`."""
+    first = path.steps[0] if path.steps else None
+    tangents = first is not None and bool(np.isfinite(first.tangent).all())
+    unknowns, observed = (1, ()) if first is None else (first.y.size, tuple(first.observed))
+    layout = layout_of(homotopy, unknowns, observed, controller, tangents or pieces)
+    layout = evolve(layout, pieces=pieces or layout.pieces)
+    rows, names = rows_of(path, layout.pieces), list(dict.fromkeys(event.name for event in path.events))
+    points = filled(to_columns(rows, 0, layout, names.index) if rows else {}, layout, layout.point_columns, len(rows))
+    row = {**record_of(path, homotopy, tuple(controller)), "path": 0, "member": member, "n_points": len(rows)}
+    paths = row_columns(row, layout)
+    return Share(layout, names, paths, slice(0, len(rows)), partial(_part, points))
 
 
-def layout_of(path: Path, title: str, pieces: bool = False) -> tuple[Layout, dict[str, Any]]:
-    """What a file has columns for that begins with a path, and its attributes; with those of kinks if `pieces`."""
-    observed = tuple(path.steps[0].observed) if path.steps else ()
-    tangents = bool(path.steps) and bool(np.isfinite(path.steps[0].tangent).all())
-    unknowns = path.steps[0].y.size if path.steps else 1
-    layout = Layout(unknowns, CONTROLLER_STATE, observed, (), tangents or pieces, pieces)
+def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
+    return columns[name][rows]
+
+
+def _sourced(share: Share, number: int, identifier: str, file: File) -> Share:
+    """The share, of which each path says where it was written first."""
+    (column,) = (column for column in ORIGIN_COLUMNS if column.name == "source")
+    source = np.array([text(f"{identifier} {number} {file.name}".strip(), column.length)], dtype=column.storage)
+    return evolve(share, paths={**share.paths, "member": np.array([number]), "source": source})
+
+
+def attributes_of(path: Path, title: str = "") -> dict[str, Any]:
+    """The root attributes of a file that begins with a path."""
     attributes = root_attributes(None, title or "A path", {})
-    return layout, attributes | {**path.labels.attributes(), "references": "\n\n".join(path.references)}
-
-
-def _tables(path: Path) -> tuple[Layout, dict[str, Any], dict[str, Any], list[str], dict[str, Any]]:
-    rows, names = rows_of(path), list(dict.fromkeys(event.name for event in path.events))
-    layout, attributes = layout_of(path, "")
-    row = {**record.of_path(path, None, ()), "path": 0, "member": 0, "n_points": len(rows)}
-    row["source"] = f"{attributes['identifier']} 0"
-    points = to_columns(rows, 0, layout, names.index) if rows else {}
-    return layout, points, record.to_columns(row, layout), names, attributes
+    return {**attributes, **path.labels.attributes(), "references": "\n\n".join(path.references)}
 
 
 def dataset_of(path: Path) -> Any:
     """The path as an `xarray.Dataset`."""
-    layout, points, paths, names, attributes = _tables(path)
-    return dataset(
-        Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]),
-        Table(layout.path_columns, 1, lambda name, rows: paths[name][rows]),
-        names,
-        layout.unknowns,
-        attributes,
-    )
+    share, attributes = share_of_path(path), attributes_of(path)
+    share = _sourced(share, 0, attributes["identifier"], File())
+    points = Table(share.layout.point_columns, share.size, share.fetch)
+    paths = Table(share.layout.path_columns, 1, partial(_part, share.paths))
+    return dataset(points, paths, share.names, share.layout.unknowns, attributes)
 
 
 def dataframe_of(path: Path) -> Any:
     """The path as a `pandas.DataFrame`, with the homotopy's names where it has any, and the events' names."""
-    layout, points, _, names, _ = _tables(path)
-    frame = dataframe(Table(layout.point_columns, len(rows_of(path)), lambda name, rows: points[name][rows]))
-    frame["event"] = [names[k] if k >= 0 else "" for k in points.get("event_index", ())]
+    share = share_of_path(path)
+    frame = dataframe(Table(share.layout.point_columns, share.size, share.fetch))
+    frame["event"] = [share.names[k] if k >= 0 else "" for k in share.fetch("event_index", share.points)]
     called = {f"y_{i}": name for i, name in enumerate(path.labels.names)}
     if path.labels.parameter_name:
         called["parameter"] = path.labels.parameter_name
     return frame.rename(columns=called)
-
-
-def save(path: Path, file: str | PathLike[str], title: str = "") -> None:
-    """Write a path to a new archive.
-
-    Raises `ArchiveError` if it exists, or cannot be written.
-    """
-    save_all([path], file, title)
 
 
 def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -> None:
@@ -103,27 +89,17 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     """
     target = as_file("file", file)
     check_new(target)
-    layout, attributes = layout_of(many[0], title, any(event.switches for path in many for event in path.events))
+    attributes = attributes_of(many[0], title)
+    pieces = any(event.switches for path in many for event in path.events)
+    shares = [share_of_path(path, pieces=pieces) for path in many]
 
     def write(part: Any) -> Store:
-        store = Store(part, layout, attributes)
-        for path in many:
-            append(store, path, f"{attributes['identifier']} {store.committed.paths} {target.name}")
+        store = Store(part, shares[0].layout, attributes)
+        for number, share in enumerate(shares):
+            append(store, _sourced(share, number, attributes["identifier"], target))
         return store
 
     put(target, write)
-
-
-def append(store: Store, path: Path, source: str) -> Any:
-    """Write a path behind those that a file holds, in one commit; the roles of its rows.
-
-    `source` is where it was written first.
-    """
-    held, rows = store.committed, rows_of(path, store.layout.pieces)
-    row = {**record.of_path(path, None, ()), "path": held.paths, "member": held.paths, "n_points": len(rows)}
-    points = to_columns(rows, held.paths, store.layout, store.name_event) if rows else {}
-    store.commit(points, held.points, record.to_columns({**row, "source": source}, store.layout), held.paths)
-    return points.get("role", ())
 
 
 @define(eq=False)
@@ -156,24 +132,26 @@ class Growing:
             for number, path in enumerate(source):
                 # A point that was read is part of an array, which would stay in memory with it.
                 ends = path if self.keep == "all" else deepcopy(evolve(path, steps=[path.steps[0], path.steps[-1]]))
-                yield path, self._kept(ends, number, source.points.some("role", source.rows(number)))
+                yield path, self._kept(ends, number, source.points["role"][source.rows(number)])
             attributes = {**source.attributes, **process(), **history(source.attributes, "went on")}
             store = write_copy([share_of(source)], part, attributes=attributes)
-            self._store, self._identifier = publish_live(store, target, replace=True), attributes["identifier"]
+            store.publish(target, replace=True)
+            self._store, self._identifier = store, attributes["identifier"]
 
     def add(self, path: Path) -> Path:
         """One more path, which comes back as it is kept; the first makes the file."""
+        share = share_of_path(path, pieces=self.pieces)
         if self._store is None:
-            layout, attributes = layout_of(path, self.title, self.pieces)
-            self._store, self._identifier = create(self.file, layout, attributes), attributes["identifier"]
+            attributes = attributes_of(path, self.title)
+            self._store, self._identifier = create(self.file, share.layout, attributes), attributes["identifier"]
         number = self._store.committed.paths
-        roles = append(self._store, path, f"{self._identifier} {number} {self.file.name}")
-        return self._kept(path, number, roles)
+        append(self._store, _sourced(share, number, self._identifier, self.file))
+        return self._kept(path, number, share.fetch("role", share.points))
 
     def _kept(self, path: Path, number: int, roles: Any) -> Path:
         if self.keep == "all":
             return path
-        steps: Any = StoredSteps(open_archive, self.file, number, 0)
+        steps: Any = StoredSteps(open_archive, self.file, number)
         steps.known(roles, (path.steps[0], path.steps[-1]))
         return evolve(path, steps=steps)
 

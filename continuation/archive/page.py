@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from continuation.archive.atomic import ArchiveError
 from continuation.archive.checkpoint import Checkpoint
-from continuation.archive.errors import ArchiveError
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES
@@ -75,15 +75,11 @@ def _fitted(line: str, width: int) -> list[str]:
 
 
 def _page(archive: Archive) -> str:
-    parts = [_head(archive)]
-    if not len(archive):
-        parts.append("No path was begun.")
-    elif len(archive) <= _DETAILED:
-        parts += [_one_path(archive, number) for number in range(len(archive))]
-    else:
-        parts.append(_many_paths(archive))
-    hint = _hint(archive)
-    return "\n\n".join([*parts, hint] if hint else parts) + "\n"
+    few = range(len(archive) if len(archive) <= _DETAILED else 0)
+    parts = [_head(archive), *(_one_path(archive, number) for number in few)]
+    if not few:
+        parts.append(_many_paths(archive) if len(archive) else "No path was begun.")
+    return "\n\n".join(filter(None, (*parts, _hint(archive)))) + "\n"
 
 
 # -- what ran -------------------------------------------------------------------------------------------------
@@ -92,7 +88,7 @@ def _page(archive: Archive) -> str:
 def _head(archive: Archive) -> str:
     about = archive.attributes
     title = str(about.get("title", ""))
-    homotopy = " ".join(filter(None, (about.get("homotopy", ""), _within(about.get("homotopy_distribution", "")))))
+    homotopy = f"{about.get('homotopy', '')} ({about.get('homotopy_distribution', '')})".removesuffix(" ()")
     held = f"{_plural(len(archive), 'path')}, {_plural(archive.points.size, 'point')}"
     settings = json.loads(about.get("settings", "{}"))
     versions = ", ".join(f"{name} {about.get(f'{key}_version', '?')}" for name, key in _SOFTWARE.items())
@@ -119,15 +115,14 @@ def _shown(tree: Any) -> str:
     if "class" in tree:
         name = tree["class"].rpartition(":")[2].rpartition(".")[2]
         return f"{name}({_fields(tree.get('fields') or tree.get('data', {}))})"
-    for kind in ("tuple", "list"):
-        if kind in tree:
-            return ", ".join(_shown(item) for item in tree[kind])
+    items = tree.get("tuple", tree.get("list"))
+    if items is not None:
+        return ", ".join(map(_shown, items))
     if "array" in tree:
         place = tree["array"]
         return str(place.get("values", f"array of shape {tuple(place.get('shape', ()))}"))
-    if "dict" in tree:
-        return _fields(tree)
-    return str(tree.get("function", f"sparse matrix of shape {tuple(tree.get('shape', ()))}"))
+    sparse = f"sparse matrix of shape {tuple(tree.get('shape', ()))}"
+    return _fields(tree) if "dict" in tree else str(tree.get("function", sparse))
 
 
 def _fields(tree: Any) -> str:
@@ -179,15 +174,18 @@ def _course(archive: Archive, number: int, path: Path) -> list[str]:
 
 
 def _events(path: Path) -> list[str]:
-    if not path.events:
-        return ["  no events"]
-    lines = ["", f"  {'event':<24}{'lambda':>16}{'arclength':>14}{'residual':>10}  y"]
-    lines += [
+    head = f"  {'event':<24}{'lambda':>16}{'arclength':>14}{'residual':>10}  y"
+    lines = [
         f"  {e.name[:23]:<24}{e.lam:>16.10g}{e.arclength:>14.8g}{e.residual_norm:>10.1e}  {_vector(e.y)}"
-        for e in path.events[:_LISTED]
+        for e in path.events
     ]
-    more = len(path.events) - _LISTED
-    return [*lines, f"  ... and {more} more"] if more > 0 else lines
+    return ["", head, *_first(lines)] if lines else ["  no events"]
+
+
+def _first(lines: list[str]) -> list[str]:
+    """As many as are listed."""
+    more = len(lines) - _LISTED
+    return [*lines[:_LISTED], f"  ... and {more} more"] if more > 0 else lines
 
 
 def _many_paths(archive: Archive) -> str:
@@ -213,12 +211,12 @@ def _many_paths(archive: Archive) -> str:
 def _failures(archive: Archive) -> list[str]:
     """Paths that ended by an error, with its text."""
     rows = np.flatnonzero(np.isin(archive.paths["status"], [int(status) for status in UNFINISHED]))
-    lines = ["", "Not finished", "------------"] if rows.size else []
-    for row in rows[:_LISTED]:
-        said = archive.paths["message"][row].decode(errors="replace")
-        message = said or "still being traced, or its writer was killed"
-        lines.append(f"  path {row} (member {archive.paths['member'][row]}): {message}")
-    return [*lines, f"  ... and {rows.size - _LISTED} more"] if rows.size > _LISTED else lines
+    messages, members = archive.paths["message"], archive.paths["member"]
+    nothing = "still being traced, or its writer was killed"
+    said = [
+        f"  path {row} (member {members[row]}): {messages[row].decode(errors='replace') or nothing}" for row in rows
+    ]
+    return ["", "Not finished", "------------", *_first(said)] if said else []
 
 
 def _hint(archive: Archive) -> str:
@@ -285,13 +283,6 @@ def _plural(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def _within(text: str) -> str:
-    return f"({text})" if text else ""
-
-
 def _bytes(size: float) -> str:
-    for unit in ("bytes", "KiB", "MiB"):
-        if size < 1024:
-            return f"{size:.0f} {unit}" if unit == "bytes" else f"{size:.1f} {unit}"
-        size /= 1024
-    return f"{size:.2f} GiB"
+    power = min((int(size).bit_length() - 1) // 10, 3) if size else 0
+    return f"{size / 1024**power:.{power and 1}f} {('bytes', 'KiB', 'MiB', 'GiB')[power]}"

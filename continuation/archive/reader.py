@@ -12,14 +12,12 @@ from typing import Any, overload
 
 import numpy as np
 
-from continuation.archive import record
 from continuation.archive.checkpoint import Checkpoint, Foreign, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.rows import from_columns
+from continuation.archive.rows import Record, from_columns, record_of, row_columns
 from continuation.archive.schema import COUNT_NAMES
-from continuation.archive.stored import events as events_of
-from continuation.archive.stored import stored_path
-from continuation.archive.tables import Selection, Table, dataframe, dataset, selected
+from continuation.archive.tables import Table, dataframe, dataset, kept_whole, stored_path
+from continuation.archive.tables import events as events_of
 from continuation.arguments.checks import complain
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
@@ -73,7 +71,7 @@ class Archive(Sequence[Path]):
         rest = self._committed_points - int(self._first_rows[-1])
         if rest < 0 or np.any(lengths < 0):
             raise self.contents.damaged(ValueError("its paths have other lengths than its points"))
-        self._unended: record.Record | None = None
+        self._unended: Record | None = None
         if rest:
             self._first_rows = np.append(self._first_rows, self._committed_points)
             self._unended = self._record_of_unended(rest)
@@ -121,29 +119,39 @@ class Archive(Sequence[Path]):
         ValueError
             For another `keep` than ``"all"`` or ``"ends"``.
         """
-        if keep not in ("all", "ends"):
-            raise ValueError(f'keep: expected "all" or "ends", found {keep!r}')
+        whole = kept_whole(keep)
         if not isinstance(index, Integral):
             raise complain(TypeError, "index", "an integer or a slice", index)
         if not -len(self) <= index < len(self):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         index %= len(self)
+        rows, row = self.rows(index), self.paths.block(slice(index, index + 1))
+        if not whole:
+            return self._path(index, row, None)
+        self._take(rows)
+        return self._path(index, row, self.points.block(rows))
+
+    def _take(self, rows: slice) -> None:
+        """Count the steps that are made of rows; `ArchiveError` if they are too many."""
         try:
-            return self._path(index, keep == "all")
+            size = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
+            self.contents.allowance.take("the steps of the path", size)
+        except ValueError as error:
+            raise self.contents.damaged(error) from error
+
+    def _path(self, index: int, row: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
+        """A path of its row of the one table, and of its rows of the other if they are to be in memory."""
+        try:
+            return self._made(index, {name: column[0] for name, column in row.items()}, points)
         except (ValueError, LookupError) as error:
             raise self.contents.damaged(error) from error
 
-    def _path(self, index: int, whole: bool) -> Path:
+    def _made(self, index: int, row: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
         steps: Any
-        if whole:
-            rows = self.rows(index)
-            points = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
-            self.contents.allowance.take("the steps of the path", points)
-            block = self.points.block(rows)
-            steps, events = from_columns(block, self.event_names, self.layout.observed)
+        if points is not None:
+            steps, events = from_columns(points, self.event_names, self.layout.observed)
         else:
             steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
-        row = {name: column[0] for name, column in self.paths.block(slice(index, index + 1)).items()}
         end_error, winding = float(row["end_error"]), int(row["winding_number"])
         return Path(
             steps,
@@ -159,14 +167,19 @@ class Archive(Sequence[Path]):
         )
 
     def __iter__(self) -> Iterator[Path]:
-        at_once = _AT_ONCE // (2 * self.layout.unknowns + len(self.points))
-        stop = 0
-        for i in range(len(self)):
-            if i == stop:
-                stop = max(i + 1, int(np.searchsorted(self._first_rows, self._first_rows[i] + at_once, "right")) - 1)
-                self.paths.look_ahead(slice(i, stop))
-                self.points.look_ahead(slice(self.rows(i).start, self.rows(stop - 1).stop))
-            yield self.path(i)
+        # In runs of paths: many short reads cost much more.
+        at_once, stop = _AT_ONCE // (2 * self.layout.unknowns + len(self.points)), 0
+        while stop < len(self):
+            start, begin = stop, int(self._first_rows[stop])
+            stop = max(start + 1, int(np.searchsorted(self._first_rows, begin + at_once, "right")) - 1)
+            paths, points = (
+                self.paths.block(slice(start, stop)),
+                self.points.block(slice(begin, self.rows(stop - 1).stop)),
+            )
+            for k in range(start, stop):
+                rows = slice(self.rows(k).start - begin, self.rows(k).stop - begin)
+                row = {name: column[k - start : k - start + 1] for name, column in paths.items()}
+                yield self._path(k, row, {name: column[rows] for name, column in points.items()})
 
     def __repr__(self) -> str:
         state = "" if self.closed_by_writer else ", not closed by its writer"
@@ -206,34 +219,6 @@ class Archive(Sequence[Path]):
             raise self.contents.damaged(error) from error
 
     # -- views ------------------------------------------------------------------------------------------------
-
-    def select(
-        self,
-        *,
-        status: Status | Sequence[Status] | None = None,
-        kind: int | None = None,
-        event: str | None = None,
-        parameter: tuple[float, float] | None = None,
-    ) -> Selection:
-        """Points that satisfy all that is asked, and the paths that have such points.
-
-        Parameters
-        ----------
-        status : Status or sequence of Status
-            Points of paths that ended so. With nothing else asked, paths without points are among the selected.
-        kind : int
-            Points of this `continuation.Kind`, as ``Kind.TURNING_POINT``.
-        event : str
-            Points at which this event was located.
-        parameter : tuple of two floats
-            Points whose parameter lies within, ends included.
-
-        Raises
-        ------
-        TypeError, ValueError
-            If one of them is nothing of its kind, or the event does not occur in the file at all.
-        """
-        return selected(self, status, kind, event, parameter)
 
     def to_xarray(self) -> Any:
         """The committed rows as an `xarray.Dataset`, as ``xarray.open_dataset(file)`` has them."""
@@ -287,25 +272,25 @@ class Archive(Sequence[Path]):
         committed = slice(min(rows.start, self._committed_paths), min(rows.stop, self._committed_paths))
         values = self.contents.read("path", name, committed)
         if rows.stop > self._committed_paths and self._unended is not None:
-            values = np.concatenate((values, record.to_columns(self._unended, self.layout)[name]))
+            values = np.concatenate((values, row_columns(self._unended, self.layout)[name]))
         return values
 
-    def _record_of_unended(self, rows: int) -> record.Record:
+    def _record_of_unended(self, rows: int) -> Record:
+        """A row for the path that has none, as far as its checkpoint tells."""
         number = self._committed_paths
         member = int(self._fetch_path("member", slice(number - 1, number))[0]) + 1 if number else 0
-        row = {**record.of_path(Path(), None, ()), "path": number, "member": member, "n_points": rows}
+        row = {**record_of(Path(), None, ()), "path": number, "member": member, "n_points": rows}
+        # An older checkpoint than the last is good to resume from, and tells the work of then.
+        row |= {**dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         self._unended = row
         checkpoint = self.checkpoint()
-        if checkpoint is not None and checkpoint.path == number:
-            told = checkpoint.run.get("member")
-            row["member"] = number if told is None else int(told)
-        mine = checkpoint is not None and checkpoint.path == number
-        if checkpoint is not None and mine and self._last_checkpoint in (None, checkpoint.sequence):
+        if checkpoint is None or checkpoint.path != number:
+            return row
+        told = checkpoint.run.get("member")
+        row["member"] = number if told is None else int(told)
+        if self._last_checkpoint in (None, checkpoint.sequence):
             row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
             row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
-        else:
-            # An older checkpoint is good to resume from, and tells the work of then.
-            row |= {**dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         return row
 
 

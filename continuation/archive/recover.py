@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path as File
@@ -12,18 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from continuation.archive import record
-from continuation.archive.atomic import as_file
+from continuation.archive.atomic import ArchiveError, Lock, as_file, locked
 from continuation.archive.checkpoint import Checkpoint, pack
 from continuation.archive.contents import Contents
-from continuation.archive.copies import Share, interrupt, put, share_of, write_copy
-from continuation.archive.errors import ArchiveError
-from continuation.archive.files import check_writable
-from continuation.archive.locks import Lock, locked
+from continuation.archive.copies import Share, filled, interrupt, share_of, write_copy
 from continuation.archive.provenance import history
 from continuation.archive.reader import open_archive
-from continuation.archive.schema import TEXT, text
-from continuation.archive.structure import SLOTS
+from continuation.archive.rows import record_of, row_columns
+from continuation.archive.schema import SLOTS, TEXT, text
+from continuation.archive.store import put
 from continuation.path import Path
 from continuation.status import Kind, Status
 
@@ -33,25 +30,18 @@ Spans = Sequence[tuple[int, int]]
 def salvaged(contents: Contents, lost: Mapping[str, Spans]) -> list[Share]:
     """The sound rows, path by path: each from its first point to the one before its first damaged block.
 
-    `lost` has the unsound blocks of the tables ``"point"`` and ``"path"``.
+    `lost` has the unsound blocks of the tables ``"point"`` and ``"path"``. Of a file without rows there is one share.
     """
-    committed = contents.committed
-    sound = _outside(lost["point"], committed.points)
+    committed, layout = contents.committed, contents.layout
     rows = _outside(lost["path"], committed.paths)
-    runs = dict(_runs(contents, sound))
+    runs = dict(_runs(contents, _outside(lost["point"], committed.points)))
     shares = []
     for number in sorted({*runs, *np.flatnonzero(rows).tolist()}):
         points = runs.get(number, slice(0, 0))
         own = number < committed.paths and bool(rows[number])
-        shares.append(Share(contents, _row(contents, number, own, points.stop - points.start), points, number))
-    return shares
-
-
-def nothing(contents: Contents) -> Share:
-    """No row at all, of a file to which none was committed."""
-    columns = contents.layout.path_columns
-    empty = {column.name: contents.read("path", column.name, slice(0, 0)) for column in columns}
-    return Share(contents, empty, slice(0, 0))
+        shares.append(Share.of(contents, _row(contents, number, own, points.stop - points.start), points, number))
+    nothing = Share.of(contents, filled({}, layout, layout.path_columns, 0), slice(0, 0))
+    return shares or ([] if any(lost.values()) or any(contents.cut_off.values()) else [nothing])
 
 
 def _outside(spans: Spans, size: int) -> np.ndarray[Any, Any]:
@@ -80,8 +70,8 @@ def _row(contents: Contents, number: int, own: bool, points: int) -> dict[str, A
     if own:
         row = {column.name: contents.read("path", column.name, slice(number, number + 1)) for column in columns}
     else:
-        empty = {**record.of_path(Path(), None, ()), "path": number, "member": number, "n_points": points}
-        row = record.to_columns(empty, contents.layout)
+        empty = {**record_of(Path(), None, ()), "path": number, "member": number, "n_points": points}
+        row = row_columns(empty, contents.layout)
     if not own or row["n_points"][0] != points:
         row["status"][:], row["n_points"][:] = int(Status.INTERRUPTED), points
         row["message"][:] = text(f"{Status.INTERRUPTED} The rest of it was damaged.", TEXT)
@@ -113,40 +103,31 @@ def recover(file: str | PathLike[str], *, force: bool = False) -> File:
         If it is no archive, its structure is damaged, it is read-only, or is being written.
     """
     name = as_file("file", file)
-    with closing(Contents(name, salvage=True)) as contents:
+    with ExitStack() as stack:
+        contents = stack.enter_context(closing(Contents(name, salvage=True)))
         lost = {table: contents.unsound(table) for table in ("point", "path")}
-        damaged = any(lost.values()) or any(contents.cut_off.values())
-        if not damaged and not contents.flaws:
-            return _ended(name, force)
-        real = File(os.path.realpath(name))
-        with closing(own(contents, real, force=force)):
+        damaged, slots = any(lost.values()) or any(contents.cut_off.values()), dict[int, bytes]()
+        if damaged or contents.flaws:
             shares = salvaged(contents, lost)
-            if not shares and not damaged:
-                shares = [nothing(contents)]
-            if not shares:
-                raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
             dropped = sum(stop - start for start, stop in lost["point"]) + contents.cut_off["point"]
-            what = f"recovered: {'; '.join(contents.flaws) or 'damaged'}; {dropped} points were not what was written"
-            attributes = _legible({**contents.attributes, **history(contents.attributes, what)})
-            # What is dropped may be worth more to somebody else than it is to us.
-            if damaged:
-                _keep_aside(real)
-            put(real, lambda part: write_copy(shares, part, attributes=attributes), replace=True)
-    return name
-
-
-def _ended(name: File, force: bool) -> File:
-    """A sound file, closed, with its last path ended."""
-    with open_archive(name) as archive:
-        if archive.closed_by_writer and (not len(archive) or archive.paths["status"][-1] != Status.TRACING):
-            return name
-        real = File(os.path.realpath(name))
-        with closing(own(archive.contents, real, force=force)):
-            attributes = {**archive.attributes, **history(archive.attributes, "recovered after its writer was killed")}
-            share = share_of(archive)
-            interrupt(share.paths)
+            flaws = "; ".join(contents.flaws) or "damaged"
+            what = f"recovered: {flaws}; {dropped} points were not what was written"
+        else:
+            archive = stack.enter_context(open_archive(name))
+            if archive.closed_by_writer and (not len(archive) or archive.paths["status"][-1] != Status.TRACING):
+                return name
+            shares, what = [share_of(archive)], "recovered after its writer was killed"
+            interrupt(shares[0].paths)
             slots = kept(archive.checkpoint())
-            put(real, lambda part: write_copy([share], part, attributes=attributes, checkpoints=slots), replace=True)
+        real = File(os.path.realpath(name))
+        stack.enter_context(closing(own(contents, real, force=force)))
+        if not shares:
+            raise ArchiveError(f"{name}: is damaged, and none of its rows is sound")
+        attributes = _legible({**contents.attributes, **history(contents.attributes, what)})
+        # What is dropped may be worth more to somebody else than it is to us.
+        if damaged:
+            _keep_aside(real)
+        put(real, lambda part: write_copy(shares, part, attributes=attributes, checkpoints=slots), replace=True)
     return name
 
 
@@ -180,5 +161,9 @@ def own(contents: Contents, file: File, *, force: bool = False) -> Lock:
 
     Raises `ArchiveError` if it may not be written, is being written, or was replaced since it was opened.
     """
-    check_writable(file)
+    # The mode too, since root may write everything: who took the right away meant it.
+    if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
+        raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")
+    if not os.access(file.parent, os.W_OK):
+        raise ArchiveError(f"{file}: the directory {file.parent} may not be written; copy the file to another one")
     return locked(file, contents.descriptor, f"process {contents.attributes.get('process', 'unknown')}", force=force)

@@ -8,21 +8,19 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from os import PathLike
 from pathlib import Path as File
-from typing import Any, Unpack
+from typing import Any, Unpack, cast
 
 import numpy as np
 
-from continuation.archive.atomic import as_file, beside, check_new, short
+from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, is_held, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
 from continuation.archive.copies import share_of, write_copy
-from continuation.archive.errors import ArchiveError
-from continuation.archive.locks import is_held
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.recover import kept, own
 from continuation.archive.schema import ACCEPTED
-from continuation.archive.store import Store, publish_live
-from continuation.archive.stored import kept_every, stored_path
+from continuation.archive.store import Store
+from continuation.archive.tables import kept_whole, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
@@ -99,7 +97,7 @@ def resume(
     target = File(os.path.realpath(name)) if archive is None else as_file("archive", archive)
     if archive is not None:
         check_new(target)
-    every = kept_every(keep)
+    whole_path = kept_whole(keep)
     each("observers", observers, OBSERVER)
     for option in ("start", "state"):
         if option in options:
@@ -113,33 +111,37 @@ def resume(
             raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
         tracer = _tracer(source, checkpoint, known, homotopy, options)
-        rows = source.rows(checkpoint.path).start + checkpoint.rows
-        residual = source.points.some("residual_norm", slice(rows - 1, rows))
-        check_homotopy(tracer.homotopy, checkpoint.state.here.u, float(residual[0]))
-        roles = source.points.some("role", slice(source.rows(checkpoint.path).start, rows))
-        before = source.path(checkpoint.path, keep="all" if every == 1 else "ends")
+        begin = source.rows(checkpoint.path).start
+        rows = begin + checkpoint.rows
+        check_homotopy(
+            tracer.homotopy,
+            checkpoint.state.here.u,
+            float(source.points.some("residual_norm", slice(rows - 1, rows))[0]),
+        )
+        # As many as the file has up to there: with `save_every` these are fewer than were taken.
+        written = int(np.count_nonzero(source.points.some("role", slice(begin, rows)) == ACCEPTED))
+        before = source.path(checkpoint.path, keep=keep)
         store = _beginning(source, checkpoint, rows, target, archive is None)
-    # As many as the file has up to there: with `save_every` these are fewer than were taken.
-    written = int(np.count_nonzero(roles == ACCEPTED))
-    if every == 1:
+    tracer.path.events[:] = [event for event in before.events if event.step < written]
+    if whole_path:
         tracer.path.steps[:] = before.steps[:written]
     else:
-        tracer.path.steps = _stored(store.file, checkpoint, every)
-    tracer.path.events[:] = [event for event in before.events if event.step < written]
-    log = PathLog.continued(store, rows, checkpoint, tracer, every, source.attributes.get("identifier", ""))
+        with open_archive(store.file) as held:
+            tracer.path.steps = cast("Any", stored_path(held, open_archive, store.file, checkpoint.path))
+    log = PathLog.continued(store, rows, checkpoint, tracer, whole_path, source.attributes.get("identifier", ""))
     tracer.observers = (log, *observers)
     try:
-        _run(tracer, checkpoint)
+        steps = iter(tracer)
+        # The first thing a resumed tracer does is to factor again; an uninterrupted one did not pay for that.
+        next(steps)
+        for counter, count in checkpoint.counts.items():
+            setattr(tracer.counts, counter, count)
+        for _ in steps:
+            pass
     finally:
         log.close()
         tracer.path.seconds += checkpoint.seconds
     return tracer.path
-
-
-def _stored(file: File, checkpoint: Checkpoint, every: int) -> Any:
-    """The steps up to the checkpoint, in the new file."""
-    with open_archive(file) as archive:
-        return stored_path(archive, open_archive, file, checkpoint.path, every)
 
 
 def _tracer(
@@ -160,38 +162,26 @@ def _tracer(
         raise ArchiveError(f"{source.file}: what it stores cannot be used ({short(error)})") from None
 
 
-def _run(tracer: Tracer, checkpoint: Checkpoint) -> None:
-    steps = iter(tracer)
-    # The first thing a resumed tracer does is to factor again; an uninterrupted one did not pay for that.
-    next(steps)
-    for name, count in checkpoint.counts.items():
-        setattr(tracer.counts, name, count)
-    for _ in steps:
-        pass
-
-
 def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     if not len(source):
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
-    status = source.status(last)
+    status, checkpoint, version = source.status(last), source.checkpoint(), source.foreign_version()
     if status not in RESUMABLE:
-        raise ArchiveError(f"{source.file}: path {last} has ended ({status.name}), there is nothing to resume")
-    if status is Status.BUDGET_EXHAUSTED and "budget" not in options:
-        raise ArchiveError(
-            f"{source.file}: the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
-        )
-    checkpoint = source.checkpoint()
-    if checkpoint is not None and checkpoint.path == last:
+        said = f"path {last} has ended ({status.name}), there is nothing to resume"
+    elif status is Status.BUDGET_EXHAUSTED and "budget" not in options:
+        said = f"the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
+    elif checkpoint is not None and checkpoint.path == last:
         return checkpoint
-    version = source.foreign_version()
-    if version:
-        raise ArchiveError(
-            f"{source.file}: the state of path {last} is that of version {version:.20}, and resumes within its major "
+    elif version:
+        said = (
+            f"the state of path {last} is that of version {version:.20}, and resumes within its major "
             f"version, which is not that of {__version__}; go on from its last point by "
             f"trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
         )
-    raise ArchiveError(f"{source.file}: path {last} has no state to resume from; trace it again")
+    else:
+        said = f"path {last} has no state to resume from; trace it again"
+    raise ArchiveError(f"{source.file}: {said}")
 
 
 def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any]) -> Any:
@@ -205,9 +195,7 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
         if tree.get("problem"):
             text, arrays = source.problem()
             tree, fetch = json.loads(text), arrays.__getitem__
-        if "unstorable" in tree:
-            raise UnknownError(tree["unstorable"])
-        return decode(tree, fetch, known)
+        return decode(_storable(tree), fetch, known)
     except (UnknownError, KeyError, AttributeError, TypeError, ValueError, RecursionError) as error:
         reason = f"the homotopy cannot be made from the file ({short(error)}); pass homotopy= or --homotopy"
         raise ArchiveError(f"{source.file}: {reason}") from None
@@ -216,20 +204,22 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
 def _options(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
 ) -> dict[str, Any]:
-    stored = {}
-    trees: Any = checkpoint.run.get("options")
+    stored, trees = {}, checkpoint.run.get("options")
     for name in OPTIONS:
         if name in given or (name in _YOUNGER and trees is not None and name not in trees):
             continue
         try:
-            tree = trees[name]
-            if isinstance(tree, dict) and "unstorable" in tree:
-                raise UnknownError(tree["unstorable"])
-            stored[name] = decode(tree, whole, known)
+            stored[name] = decode(_storable(cast("Any", trees)[name]), whole, known)
         except (UnknownError, KeyError, TypeError) as error:
             reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
             raise ArchiveError(f"{source.file}: {reason}") from None
     return {"box": None, **stored, **given}
+
+
+def _storable(tree: Any) -> Any:
+    if isinstance(tree, dict) and "unstorable" in tree:
+        raise UnknownError(tree["unstorable"])
+    return tree
 
 
 def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
@@ -263,4 +253,5 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     share = share_of(source, last=checkpoint.path, points=rows)
     with beside(target) as part:
         store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
-        return publish_live(store, target, replace=replace)
+        store.publish(target, replace=replace)
+        return store

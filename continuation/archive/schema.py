@@ -1,13 +1,19 @@
-"""The schema `continuation-path-2`: names, types, units and meanings of everything in the two tables."""
+"""The schema `continuation-path-2`: names, types, units and meanings of everything in the two tables, and the datasets
+that hold them, made all at once, as every netCDF-4 tool reads them.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import h5py
 import numpy as np
 from attrs import field, frozen
 
+from continuation.archive.checks import GROUP, RECORDS, blank
+from continuation.archive.checks import width as width_of_sums
 from continuation.counts import Counts
 from continuation.status import Kind, Status
 
@@ -205,16 +211,8 @@ def check_names(prefix: str, names: Iterable[str]) -> None:
     for name in names:
         if not isinstance(name, str) or not name or not name.isprintable() or "/" in name or name != name.strip():
             raise ValueError(f"{prefix}: expected names of printable characters without a slash, found {name!r:.60}")
-        if len(name.encode(errors="replace")) > _COLUMN_NAME or not _encodable(name):
+        if len(name.encode()) > _COLUMN_NAME:
             raise ValueError(f"{prefix}: expected names of at most {_COLUMN_NAME} bytes of UTF-8, found {name!r:.60}")
-
-
-def _encodable(name: str) -> bool:
-    try:
-        name.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
 
 
 _COLUMN_NAME = 100
@@ -225,3 +223,61 @@ def text(value: str, length: int) -> bytes:
     """UTF-8 of at most `length` bytes, cut between characters."""
     raw = value.encode(errors="replace")
     return raw if len(raw) <= length else raw[:length].decode(errors="ignore").encode()
+
+
+# -- datasets --------------------------------------------------------------------------------------------------
+
+
+SLOTS = 2
+RESUME = "resume"
+
+_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
+_CHUNKS = {"point": 64, "path": 8, "event": 16}
+_CHUNK_BYTES = 1 << 13
+"""A chunk, of so many rows or bytes at most, takes its whole room from its first row on: with 512 KiB eight points of
+100 unknowns take 600 KB."""
+
+
+def chunk_rows(width: tuple[int, ...], most: int) -> int:
+    """Rows a chunk, each of so many numbers: 8 KiB at most, a power of two."""
+    fitting = max(_CHUNK_BYTES // (8 * max(math.prod(width), 1)), 1)
+    return int(min(most, 1 << (fitting.bit_length() - 1)))
+
+
+def build(file: Any, layout: Layout, compression: int) -> None:
+    """Make all the datasets of a new file, without rows.
+
+    `compression`: Level of gzip; 0 for none.
+    """
+    filters = {"compression": "gzip", "compression_opts": compression, "shuffle": True} if compression else {}
+
+    def grows(name: str, dtype: Any, chunk: int, width: tuple[int, ...] = (), **more: Any) -> Any:
+        shapes = {"shape": (0, *width), "maxshape": (None, *width), "chunks": (chunk, *width)}
+        return file.create_dataset(name, dtype=dtype, **shapes, **more)
+
+    # Dimensions without a variable, as netCDF knows them, and the two that have one.
+    for name in ("point", "event"):
+        grows(name, ">f4", _CHUNKS[name]).make_scale(_NO_VARIABLE.format(0))
+    file.create_dataset("controller", (layout.controller,), ">f4").make_scale(_NO_VARIABLE.format(layout.controller))
+    grows("path", "i8", _CHUNKS["path"]).make_scale("path")
+    component = file.create_dataset("component", data=np.arange(layout.unknowns, dtype=COMPONENT.dtype))
+    component.attrs.update(COMPONENT.attributes)
+    component.make_scale("component")
+    for column in (*layout.point_columns, *layout.path_columns, EVENT_NAME):
+        width, length, own = layout.width(column), column.length, column.name in file
+        if not own:
+            dtype = h5py.string_dtype("utf-8", length) if length else column.dtype
+            chunk = chunk_rows(width, _CHUNKS[column.dimensions[0]])
+            grows(column.name, dtype, chunk, width, **({} if length else filters))
+        file[column.name].attrs.update(column.attributes)
+        for axis, dimension in enumerate(() if own else column.dimensions):
+            file[column.name].dims[axis].attach_scale(file[dimension])
+    for name, what in (("points", "rows of the point table"), ("paths", "rows of the path table")):
+        counter = file.create_dataset(f"committed_{name}", (), "i8")
+        counter.attrs.update({"units": "1", "long_name": f"valid {what}"})
+    for table, columns, chunk in (("point", layout.point_columns, 16), ("path", layout.path_columns, _CHUNKS["path"])):
+        grows(f"{GROUP}/{table}", "u4", chunk, (width_of_sums([column.name for column in columns]),))
+    grows(f"{GROUP}/event", "u4", _CHUNKS["event"])
+    file[GROUP].create_dataset(RECORDS, data=blank())
+    slots = file.create_dataset(f"{RESUME}/slots", (SLOTS, 0), "u1", maxshape=(SLOTS, None), chunks=(1, 1 << 12))
+    slots.attrs["long_name"] = "two alternating checkpoints: sequence u8, length u8, CRC-32 u4, JSON, JSON, arrays"

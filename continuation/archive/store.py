@@ -7,9 +7,11 @@ readable at every moment, the records (`continuation.archive.checks`) say how mu
 from __future__ import annotations
 
 import os
+import resource
 import weakref
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from io import BytesIO
 from pathlib import Path as File
 from typing import Any
 
@@ -17,40 +19,35 @@ import h5py
 import numpy as np
 from h5py import h5s
 
-from continuation.archive.atomic import beside, check_new, like, publish, short
+from continuation.archive.atomic import ArchiveError, Lock, beside, check_new, like, publish, short
 from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import GROUP, PLACES, RECORD_BYTES, RECORDS, Committed, digest, of_attributes, seal
 from continuation.archive.codec import write_problem
-from continuation.archive.errors import ArchiveError
-from continuation.archive.image import HEAD_BYTES, Sink, stated_length, to_nowhere
-from continuation.archive.locks import Lock
-from continuation.archive.schema import EVENT_NAME, NAME, Layout, text
-from continuation.archive.structure import RESUME, SLOTS, build
+from continuation.archive.hdf5 import HEAD_BYTES, stated_length
+from continuation.archive.schema import EVENT_NAME, NAME, RESUME, SLOTS, Layout, build, text
 
 
 def create(target: File, *arguments: Any, **options: Any) -> Store:
-    """A new file, live from the moment on at which it has its name; arguments as for `Store`.
+    """A new file, under its name from the moment on at which it can be read; arguments as for `Store`.
 
     Raises `ArchiveError` if the file exists or cannot be made.
     """
     check_new(target)
     with beside(target) as part:
-        return publish_live(Store(part, *arguments, **options), target)
+        store = Store(part, *arguments, **options)
+        store.publish(target)
+        return store
 
 
-def publish_live(store: Store, target: File, *, replace: bool = False) -> Store:
-    """Let a file written beside go live, and give it its name, as `publish` does."""
-    part = store.file
-    try:
-        store.go_live()
-        if replace:
-            like(part, target)
-        publish(part, target, replace=replace)
-    except BaseException:
-        store.close()
-        raise
-    store.file = target
-    return store
+def put(target: File, write: Callable[[File], Store], *, replace: bool = False) -> None:
+    """Write a whole new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
+
+    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file.
+    """
+    with beside(target) as part:
+        store = write(part)
+        store.close(sync=True)
+        store.publish(target, replace=replace)
 
 
 LIBVER = ("v110", "v110")
@@ -62,7 +59,7 @@ Block = Mapping[str, np.ndarray[Any, Any]]
 
 
 class Store:
-    """A file being written. HDF5 writes it through `Sink`; it is finished so, or goes live under SWMR.
+    """A file being written, which can be read while it grows, survives a kill, and is locked until it is closed.
 
     The part must not exist. `problem` is what `problem_data` returned, `compression` a level of gzip or 0, and a
     durable store waits for the disk at each commit; `file` is its name in messages. Raises `ArchiveError` if it cannot
@@ -84,52 +81,45 @@ class Store:
         self.durable = durable
         self.events: list[str] = []
         self._committed = Committed(sequence=1)
-        self._lock: Lock | None = None
         self._abandoned, self._process = False, os.getpid()
-        self._sink: Sink | None = Sink(part)
-        # Without a cache HDF5 writes what it is given; 1 MiB for each column, kept for nothing, would be 25 MiB.
-        self._cache = {} if compression else {"rdcc_nbytes": 0}
-        self._h5 = h5py.File(self._sink, "w", libver=LIBVER, **self._cache)
-        try:
-            self._h5.attrs.update(attributes)
-            build(self._h5, layout, compression)
+        # Made in memory: HDF5 ends the process where a write fails while it closes a file.
+        made = BytesIO()
+        with h5py.File(made, "w", libver=LIBVER) as new:
+            new.attrs.update(attributes)
+            build(new, layout, compression)
             if problem is not None:
-                write_problem(self._h5, *problem)
-            self._h5[GROUP].attrs["attributes"] = np.uint32(of_attributes(dict(self._h5.attrs)))
-            self._bind()
-            self._sink.check()
+                write_problem(new, *problem)
+            new[GROUP].attrs["attributes"] = np.uint32(of_attributes(dict(new.attrs)))
+        with part.open("xb") as file:
+            file.write(made.getbuffer())
+            if durable:
+                file.flush()
+                os.fsync(file.fileno())
+        self._lock = Lock(part)
+        try:
+            # Without a cache HDF5 writes what it is given; 1 MiB for each column, kept for nothing, would be 25 MiB.
+            self._h5 = h5py.File(part, "r+", libver=LIBVER, **({} if compression else {"rdcc_nbytes": 0}))
         except BaseException:
-            self.close()
+            self._lock.close()
             raise
-
-    def _bind(self) -> None:
-        columns = (*self.layout.point_columns, *self.layout.path_columns, EVENT_NAME)
+        _LIVE.add(self)
+        columns = (*layout.point_columns, *layout.path_columns, EVENT_NAME)
         self._data = {name: self._h5[name] for name in (*(column.name for column in columns), "point", "event")}
         self._counters = {name: self._h5[f"committed_{name}"] for name in ("points", "paths")}
         self._checks = {name: self._h5[GROUP][name] for name in (*_TABLES, "event", RECORDS)}
         self._slots = self._h5[RESUME]["slots"]
-
-    def go_live(self) -> None:
-        """From now on the file can be read while it grows, survives a kill, and is locked."""
-        self.finish(sync=self.durable)
-        self._lock = Lock(self.file)
-        self._h5 = h5py.File(self.file, "r+", libver=LIBVER, **self._cache)
-        _LIVE.add(self)
-        self._bind()
         self._h5.swmr_mode = True
 
-    def finish(self, *, sync: bool = True) -> None:
-        """Close the file, on the disk when this returns; `OSError` if some of it could not be written."""
-        sink = self._sink
-        assert sink is not None
+    def publish(self, target: File, *, replace: bool = False) -> None:
+        """Give the file its name, as `continuation.archive.atomic.publish` does; it is closed where that fails."""
         try:
-            self._h5.close()
-            sink.check()
-            if sync:
-                os.fsync(sink.descriptor)
-        finally:
-            sink.close()
-            self._sink = None
+            if replace:
+                like(self.file, target)
+            publish(self.file, target, replace=replace)
+        except BaseException:
+            self.close()
+            raise
+        self.file = target
 
     # -- writing ----------------------------------------------------------------------------------------------
 
@@ -224,23 +214,21 @@ class Store:
 
     def _flush(self) -> None:
         self._h5.flush()
-        if self._sink is not None:
-            self._sink.check()
-        elif self.durable:
+        if self.durable:
             os.fsync(self._h5.id.get_vfd_handle())
 
-    def close(self) -> None:
-        """Close the file."""
+    def close(self, *, sync: bool = False) -> None:
+        """Close the file, on the disk when this returns if `sync`; a second call does nothing."""
         try:
             self._h5.close()
+            if sync:
+                os.fsync(self._lock.descriptor)
         except (OSError, RuntimeError):
             # Of what was given up nothing more is expected.
             if not self._abandoned:
                 raise
         finally:
-            for held in (self._sink, self._lock):
-                if held is not None:
-                    held.close()
+            self._lock.close()
 
     @property
     def ours(self) -> bool:
@@ -249,8 +237,8 @@ class Store:
 
     def disown(self) -> None:
         """Let HDF5 write nowhere what it still has, in a process that is not to write."""
-        if self._sink is None and self._h5:
-            to_nowhere(self._h5.id.get_vfd_handle())
+        if self._h5:
+            _to_nowhere(self._h5.id.get_vfd_handle())
             self._abandoned = True
 
     def abandon(self) -> None:
@@ -258,8 +246,6 @@ class Store:
 
         A write that fails while it closes a file ends the process.
         """
-        if self._sink is not None:
-            return
         descriptor = self._h5.id.get_vfd_handle()
         with suppress(OSError), self.file.open("rb") as head:
             # The length that the file says it has may be beyond what could be written; zeros do for what is missing.
@@ -273,12 +259,28 @@ _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
 
 
 def _in_child() -> None:
-    """A forked child has its parent's files open, and HDF5 would write to them when the child ends."""
+    """A forked child has its parent's files open, and HDF5 would write to them when the child ends.
+
+    It shares its parent's locks too, and would keep them when the parent is gone.
+    """
     for store in list(_LIVE):
         store.disown()
+        store._lock.close()
 
 
 os.register_at_fork(after_in_child=_in_child)
+
+
+def _to_nowhere(descriptor: int) -> None:
+    """Let the descriptor of a file stand for another file, which is thrown away."""
+    # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
+    limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+    if limited or not hasattr(os, "memfd_create"):
+        nowhere = os.open(os.devnull, os.O_RDWR)
+    else:
+        nowhere = os.memfd_create("abandoned")
+    os.dup2(nowhere, descriptor, inheritable=False)
+    os.close(nowhere)
 
 
 def _rows(block: Block | None) -> int:

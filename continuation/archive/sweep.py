@@ -1,14 +1,16 @@
-"""`trace_many`: many paths, one after another or over any executor, kept whatever happens to some of them."""
+"""`trace_many`: many paths, one after another or over any executor, kept whatever happens to some of them.
+
+A worker traces one homotopy and sends back its path, as a share of columns where there is an archive. This process
+alone writes: what is lost with a worker is one path, and a kill of this process leaves those that came.
+"""
 
 from __future__ import annotations
 
-import os
 import secrets
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import suppress
-from itertools import pairwise
+from contextlib import ExitStack, suppress
 from multiprocessing.process import BaseProcess
 from os import PathLike
 from pathlib import Path as File
@@ -17,19 +19,24 @@ from typing import Any, Unpack
 from attrs import define, field
 
 from continuation.archive.atomic import as_file, check_new
-from continuation.archive.merge import THREAD_SECONDS, collect, end_repeats, finished
+from continuation.archive.codec import problem_data
+from continuation.archive.copies import Share, append, gather
+from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
-from continuation.archive.workers import Batch, Result, failed, work
+from continuation.archive.schema import Layout
+from continuation.archive.store import Store, create
+from continuation.archive.workers import Result, Task, Watch, begun, failed, interrupts, kept, work
+from continuation.archive.writer import PathLog
 from continuation.arguments.checks import complain, instance_with, is_number
 from continuation.path import Path
 from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
+from continuation.step.tracer import Tracer
 
 Progress = Callable[[int, int], None]
-_PARTS_PER_WORKER = 4
 _GRACE = 0.5
-"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s; the rest is for the files."""
+"""Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s; the rest is for the answer."""
 
 
 def trace_many(
@@ -56,8 +63,9 @@ def trace_many(
     executor : concurrent.futures.Executor, optional
         A process pool, dask's ``Client.get_executor()``, ...; without one, the calling process does it all.
     archive : path, optional
-        One file with all paths. Workers write files of their own, ``name.sweep-xxxxxxxx.0001.h5``, ..., which are
-        merged into it and removed. If this process is killed they stay, to be merged, and the sweep can be run again.
+        One file with all paths. Those of an executor are kept in ``name.sweep-xxxxxxxx.1.h5`` as they come (each
+        number of unknowns has a file), and are put in order at the end. If this process is killed they stay there, and
+        the sweep can be run again.
     progress : callable, optional
         ``progress(done, total)``, called in this process; `continuation.step.progress.SweepProgress` shows it.
     timeout : float, optional
@@ -100,13 +108,12 @@ def trace_many(
         if not tasks:
             raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
     report = progress or (lambda done, total: None)
-    if executor is None:
-        result = work(Batch(tasks, 0, target, None, options), lambda done: report(done, len(tasks)))
-        if result.stopped:
-            raise _interrupted(result.paths)
-    else:
-        result = _spread(executor, tasks, target, report, timeout, options)
-    return result.paths if target is None else open_archive(target)
+    paths = (
+        _serial(tasks, target, report, options)
+        if executor is None
+        else _spread(executor, tasks, target, report, timeout, options)
+    )
+    return paths if target is None else open_archive(target)
 
 
 def _interrupted(paths: Sequence[Path]) -> Interrupted:
@@ -114,59 +121,90 @@ def _interrupted(paths: Sequence[Path]) -> Interrupted:
     return Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
 
 
-# -- over an executor -----------------------------------------------------------------------------------------
+# -- one after another, or over an executor --------------------------------------------------------------------
+
+
+def _serial(tasks: list[Any], target: File | None, report: Progress, options: Options) -> list[Path]:
+    """One after another, into a log of them all."""
+    paths: list[Path] = []
+    with ExitStack() as stack:
+        log = None if target is None else stack.enter_context(PathLog(target))
+        for number, homotopy in enumerate(tasks):
+            if log is not None:
+                log.member = number
+            tracer, stopped = begun(homotopy, Watch(log=log), options), False
+            if isinstance(tracer, Tracer):
+                stopped = interrupts(tracer)
+            if log is None:
+                paths.append(tracer.path if isinstance(tracer, Tracer) else failed(tracer))
+            elif isinstance(tracer, Tracer):
+                log.end(tracer)
+            else:
+                log.failure(homotopy, tracer)
+            if stopped:
+                raise _interrupted(paths)
+            report(number + 1, len(tasks))
+    return paths
 
 
 def _spread(
     executor: Executor, tasks: list[Any], target: File | None, report: Progress, timeout: float | None, options: Options
-) -> Result:
-    # A worker may run in another directory, on another machine.
-    target = None if target is None else target.absolute()
+) -> list[Path]:
     token = secrets.token_hex(4)
     sign = f"continuation-{token}.stop" if target is None else f"{target.stem}.sweep-{token}.stop"
-    stop = (File(tempfile.gettempdir()) if target is None else target.parent) / sign
-    parts = len(tasks) if timeout is not None else _parts(executor, len(tasks))
-    batches = _batches(tasks, max(parts, 1), target, token, stop, options)
-    run = _Run(executor, batches, report, timeout)
-    try:
-        run.begin()
-        run.mend()
-        if target is not None and not run.errors():
-            end_repeats(target, token, stop)
-    except KeyboardInterrupt:
-        run.stop(stop)
-    finally:
-        with suppress(OSError):
-            stop.unlink()
-    found = run.results
-    stopped = run.stopped or any(result.stopped for result in found.values() if isinstance(result, Result))
-    if target is not None:
-        collect(batches, run.errors(), target, token, stopped)
+    # A worker may run in another directory, on another machine.
+    stop = (File(tempfile.gettempdir()) if target is None else target.absolute().parent) / sign
+    work_of = [Task(homotopy, k, stop, target is not None, options) for k, homotopy in enumerate(tasks)]
+    with ExitStack() as stack:
+        run = _Run(executor, work_of, report, timeout, None if target is None else target.absolute(), token, stack)
+        stopped = False
+        try:
+            run.begin()
+        except KeyboardInterrupt:
+            stopped = True
+            run.stop()
+        finally:
+            with suppress(OSError):
+                stop.unlink()
+    if target is not None and run.parts:
+        files = [store.file for store in run.parts.values()]
+        gather(files, target)
+        for file in files:
+            file.unlink()
+    paths = [run.paths[number] for number in sorted(run.paths)]
     if stopped:
-        raise _interrupted([path for k in sorted(found) for path in getattr(found[k], "paths", ())])
-    return Result([] if target is not None else run.paths())
+        raise _interrupted(paths)
+    return paths
 
 
 @define(eq=False)
 class _Run:
-    """The batches of a sweep on their way: a result or an exception for each, and for single homotopies done again."""
+    """A sweep on its way: what is awaited, and the paths that came, in memory or in a file for each layout."""
 
     executor: Executor
-    batches: Sequence[Batch]
+    tasks: Sequence[Task]
     report: Progress
     timeout: float | None
-    results: dict[int, Result | BaseException] = field(factory=dict)
-    again: dict[int, Result | BaseException] = field(factory=dict)
+    target: File | None
+    token: str
+    stack: ExitStack
+    paths: dict[int, Path] = field(factory=dict)
+    parts: dict[Layout, Store] = field(factory=dict)
     futures: dict[Future[Result], int] = field(factory=dict)
-    processes: list[BaseProcess] = field(factory=list)
-    stopped: bool = False
     done: int = 0
 
     def begin(self) -> None:
-        """Submit all of it and wait; workers that hang past the timeout are ended with their processes."""
-        for k, batch in enumerate(self.batches):
-            self.futures[self.executor.submit(work, batch)] = k
-        self.processes = _processes(self.executor)
+        """Submit all of it and wait; workers that hang past the timeout are ended with their processes.
+
+        What was lost with a worker is done again, each in a process of its own: one that ends its process takes no
+        other with it.
+        """
+        lost: dict[int, BaseException] = {}
+        for task in self.tasks:
+            try:
+                self.futures[self.executor.submit(work, task)] = task.number
+            except BrokenExecutor as error:
+                lost[task.number] = error
         waiting = set(self.futures)
         while waiting:
             ended, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
@@ -177,137 +215,90 @@ class _Run:
                     continue
                 ended, waiting = wait(waiting)
             for future in ended:
-                self._take(future)
                 # Dask does again what is lost with a worker while somebody holds its future.
-                del self.futures[future]
+                number, found = self.futures.pop(future), _outcome(future)
+                if isinstance(found, BrokenExecutor):
+                    lost[number] = found
+                else:
+                    self.add(number, found)
             del ended
+        lost |= {number: self._late() for number in self.futures.values()}
+        for number in sorted(lost):
+            self.add(number, self._alone(self.tasks[number], lost[number]))
 
-    def _take(self, future: Future[Result]) -> None:
-        k = self.futures[future]
-        self.results[k] = _outcome(future)
-        if isinstance(self.results[k], Result):
-            self._count(len(self.batches[k].homotopies))
+    def add(self, number: int, found: Result) -> None:
+        """What came of a homotopy; `KeyboardInterrupt` where Ctrl-C reached its worker."""
+        if found is None:
+            raise KeyboardInterrupt
+        self.keep(number, found)
+        self.done += 1
+        self.report(self.done, len(self.tasks))
 
-    def _count(self, number: int) -> None:
-        self.done += number
-        self.report(self.done, sum(len(batch.homotopies) for batch in self.batches))
+    def keep(self, number: int, found: Path | Share | BaseException) -> None:
+        """Put a path where it stays."""
+        if isinstance(found, BaseException):
+            found = kept(failed(found), self.tasks[number])
+        if isinstance(found, Path):
+            self.paths[number] = found
+        else:
+            append(self.parts.get(found.layout) or self._part(found, self.tasks[number]), found)
 
-    def mend(self) -> None:
-        """Do again, one by one, what was lost with a worker, or with a batch that could not be sent to one.
+    def _part(self, share: Share, task: Task) -> Store:
+        """The file for all paths of a layout."""
+        assert self.target is not None
+        # A homotopy that has points was harmless to make a tracer of.
+        tracer = Tracer(task.homotopy, **task.options) if share.size else None
+        name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
+        problem = problem_data(task.homotopy) if share.size else None
+        store = create(self.target.with_name(name), share.layout, root_attributes(tracer, "", {}), problem)
+        self.stack.callback(store.close)
+        self.parts[share.layout] = store
+        return store
 
-        Where the executor is broken each homotopy gets a process of its own, so that one that ends its process takes no
-        other with it.
-        """
-        if any(isinstance(found, BrokenExecutor) for found in self.results.values()):
-            self._join()
-        lost = f"took longer than {self.timeout:g} s" if self.timeout else "was never begun"
-        for k, batch in enumerate(self.batches):
-            error = self.results.setdefault(k, TimeoutError(lost))
-            if isinstance(error, Result):
-                continue
-            written = finished(batch)
-            for i in range(len(batch.homotopies)):
-                if batch.first + i not in written:
-                    self.again[batch.first + i] = self._alone(batch.single(i), error)
-                self._count(1)
+    def _late(self) -> TimeoutError:
+        return TimeoutError(f"took longer than {self.timeout:g} s")
 
-    def _join(self) -> None:
-        """Wait for processes that were ended, or are by their pool: their files are at rest after that."""
-        for process in self.processes:
-            process.join()
-
-    def _alone(self, batch: Batch, error: BaseException) -> Result | BaseException:
-        if isinstance(error, TimeoutError):
+    def _alone(self, task: Task, error: BaseException) -> Result:
+        if not (isinstance(error, BrokenExecutor) and isinstance(self.executor, ProcessPoolExecutor)):
             return error
-        if not isinstance(error, BrokenExecutor):
-            return _waited(self.executor.submit(work, batch), self.timeout)
-        if not isinstance(self.executor, ProcessPoolExecutor):
-            return error
-        context = getattr(self.executor, "_mp_context", None)
-        alone = ProcessPoolExecutor(1, mp_context=context)
+        alone = ProcessPoolExecutor(1, mp_context=getattr(self.executor, "_mp_context", None))
         try:
-            found = _waited(alone.submit(work, batch), self.timeout)
-        except BaseException:
+            future = alone.submit(work, task)
+            return _outcome(future) if wait([future], timeout=self.timeout).done else self._late()
+        finally:
             _end_processes(alone)
-            raise
-        if isinstance(found, TimeoutError):
-            _end_processes(alone)
-        alone.shutdown()
-        return found
+            alone.shutdown()
 
-    def stop(self, sign: File) -> None:
-        """Let the workers end their paths, and those that do not do so soon, with their processes."""
-        self.stopped = True
+    def stop(self) -> None:
+        """Let the workers end their paths, and those that do not do so soon, with their processes; keep what is done.
+
+        Threads, which cannot be ended, end by themselves.
+        """
         with suppress(OSError):
-            sign.touch()
+            self.tasks[0].stop.touch()
         for future in self.futures:
             future.cancel()
-        if wait(self.futures, timeout=_GRACE).not_done:
-            ended = _end_processes(self.executor)
-            self._join()
-            wait(self.futures, timeout=_GRACE / 4 if ended else THREAD_SECONDS)
-        for future, k in self.futures.items():
-            if future.done():
-                self.results[k] = _outcome(future)
-
-    def errors(self) -> dict[int, BaseException]:
-        """By the number of the homotopy."""
-        return {number: found for number, found in self.again.items() if isinstance(found, BaseException)}
-
-    def paths(self) -> list[Path]:
-        """All the paths, in the order of the homotopies."""
-        paths: list[Path] = []
-        for k, batch in enumerate(self.batches):
-            result = self.results[k]
-            if isinstance(result, Result):
-                paths += result.paths
-                continue
-            for i in range(len(batch.homotopies)):
-                found = self.again[batch.first + i]
-                paths += found.paths if isinstance(found, Result) else [failed(found)]
-        return paths
+        if wait(self.futures, timeout=_GRACE).not_done and _end_processes(self.executor):
+            wait(self.futures, timeout=_GRACE)
+        for future, number in self.futures.items():
+            found = _outcome(future) if future.done() else None
+            if isinstance(found, (Path, Share)):
+                self.keep(number, found)
 
 
-def _waited(future: Future[Result], timeout: float | None) -> Result | BaseException:
-    if not wait([future], timeout=timeout).done:
-        future.cancel()
-        return TimeoutError(f"took longer than {timeout:g} s")
-    return _outcome(future)
-
-
-def _outcome(future: Future[Result]) -> Result | BaseException:
-    if future.cancelled():
-        return Result([], stopped=True)
-    error = future.exception()
+def _outcome(future: Future[Result]) -> Result:
+    error = None if future.cancelled() else future.exception()
+    if future.cancelled() or isinstance(error, KeyboardInterrupt):
+        return None
     return future.result() if error is None else error
 
 
 def _end_processes(executor: Executor) -> bool:
     """End the processes of a pool, whose homotopies do not come back; False where it has none of its own."""
-    processes = _processes(executor)
+    processes: list[BaseProcess] = []
+    if isinstance(executor, ProcessPoolExecutor):
+        processes = list((getattr(executor, "_processes", None) or {}).values())
     for process in processes:
         process.kill()
+        process.join()
     return bool(processes)
-
-
-def _processes(executor: Executor) -> list[BaseProcess]:
-    processes = getattr(executor, "_processes", None) if isinstance(executor, ProcessPoolExecutor) else None
-    return list((processes or {}).values())
-
-
-def _parts(executor: Executor, tasks: int) -> int:
-    workers = getattr(executor, "_max_workers", None) or os.cpu_count() or 1
-    return max(min(_PARTS_PER_WORKER * int(workers), tasks), 1)
-
-
-def _batches(
-    tasks: list[Any], parts: int, target: File | None, token: str, stop: File, options: Options
-) -> list[Batch]:
-    """Consecutive homotopies of nearly equal number, each with the file that its worker writes."""
-    bounds = [len(tasks) * k // parts for k in range(parts + 1)]
-    batches = []
-    for k, (first, last) in enumerate(pairwise(bounds)):
-        name = f"{target.stem}.sweep-{token}.{k + 1:04d}{target.suffix}" if target is not None else ""
-        file = target.with_name(name) if target is not None else None
-        batches.append(Batch(tasks[first:last], first, file, stop, options))
-    return batches

@@ -1,18 +1,22 @@
-"""The two tables of an archive, read column by column when asked for: chosen rows, xarray datasets, pandas frames."""
+"""What an archive is seen as: two tables that are read column by column when asked for, for xarray and pandas too; and
+the steps of a path that stay in the file, so that a long path needs no memory.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from numbers import Integral
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
+from itertools import pairwise
 from pathlib import Path as File
-from typing import Any, Protocol
+from typing import Any, overload
 
 import numpy as np
 
-from continuation.archive.schema import COMPONENT, EVENT_NAME, KINK_PART, Column
-from continuation.arguments.checks import complain, is_number
-from continuation.path import Path
-from continuation.status import Status
+from continuation.archive.rows import from_columns
+from continuation.archive.schema import ACCEPTED, COMPONENT, EVENT_NAME, Column
+from continuation.arguments.checks import complain
+from continuation.path import LocatedEvent, Step
 
 Fetch = Callable[[str, slice], np.ndarray[Any, Any]]
 
@@ -28,19 +32,16 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         Rows.
     """
 
-    def __init__(self, columns: tuple[Column, ...], rows: int, fetch: Fetch, chosen: Any = None) -> None:
+    def __init__(self, columns: tuple[Column, ...], rows: int, fetch: Fetch) -> None:
         self.columns = {column.name: column for column in columns}
-        self.size = rows if chosen is None else len(chosen)
-        self._rows, self._fetch, self._chosen = rows, fetch, chosen
+        self.size, self._fetch = rows, fetch
         self._read: dict[str, np.ndarray[Any, Any]] = {}
-        self._ahead, self._near = slice(-1, -1), dict[str, np.ndarray[Any, Any]]()
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         if name not in self.columns:
             raise KeyError(f"column: expected one of {', '.join(self.columns)}, found {name!r}")
         if name not in self._read:
-            values = self._fetch(name, slice(0, self._rows))
-            self._read[name] = values if self._chosen is None else values[self._chosen]
+            self._read[name] = self._fetch(name, slice(0, self.size))
         return self._read[name]
 
     def __iter__(self) -> Iterator[str]:
@@ -58,7 +59,6 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         Parameters
         ----------
         rows : slice
-            Of all rows, also where this table is a choice of them.
 
         Returns
         -------
@@ -81,37 +81,12 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         """
         if name in self._read:
             return self._read[name][rows]
-        first = self._ahead.start
-        if first <= rows.start and rows.stop <= self._ahead.stop:
-            return self._near[name][rows.start - first : rows.stop - first]
         return self._fetch(name, rows)
-
-    def look_ahead(self, rows: slice) -> None:
-        """Read some rows of all columns, and remember them until others are read ahead.
-
-        Parameters
-        ----------
-        rows : slice
-        """
-        self._ahead, self._near = rows, {name: self._fetch(name, rows) for name in self.columns}
 
     def load(self) -> None:
         """Read everything."""
         for name in self.columns:
             self[name]
-
-    def choose(self, rows: Any) -> Table:
-        """The table of these rows only (numbers of all rows, in order).
-
-        Parameters
-        ----------
-        rows : array_like of int
-
-        Returns
-        -------
-        Table
-        """
-        return Table(tuple(self.columns.values()), self._rows, self._fetch, rows)
 
 
 def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, attributes: Mapping[str, Any]) -> Any:
@@ -146,82 +121,152 @@ def _text(values: Any) -> Any:
     return np.char.decode(values, "utf-8", "replace") if values.dtype.kind == "S" else values
 
 
-class OpenArchive(Protocol):
-    """What is asked of `continuation.archive.Archive` by the modules below it."""
-
-    file: File
-    points: Table
-    paths: Table
-    event_names: tuple[str, ...]
-    attributes: dict[str, Any]
-    layout: Any
-
-    def __len__(self) -> int: ...
-
-    def path(self, index: int) -> Path:
-        """One of its paths."""
-        ...
-
-    def rows(self, index: int) -> slice:
-        """The path's rows."""
-        ...
+# -- steps that stay in the file -------------------------------------------------------------------------------
 
 
-class Selection:
-    """Some points of an archive, and the paths they belong to."""
+_WINDOW = 4096
+"""Steps that are read at once."""
 
-    def __init__(self, archive: OpenArchive, points: Any, paths: Any) -> None:
-        self.archive = archive
-        self.numbers: list[int] = paths.tolist()
-        self.points = archive.points.choose(points)
-        self.paths = archive.paths.choose(paths)
+_COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
+"""What of a step is a column of the file. A tangent may be in memory alone."""
+
+Opener = Callable[[File], AbstractContextManager[Any]]
+"""Opens an archive: `continuation.archive.open_archive`, which this module is too low to know."""
+
+
+def kept_whole(keep: str) -> bool:
+    """Whether ``"all"`` steps stay in memory, or the ``"ends"`` alone; `ValueError` for anything else."""
+    if keep not in ("all", "ends"):
+        raise complain(ValueError, "keep", '"all" or "ends"', keep)
+    return keep == "all"
+
+
+class StoredSteps(Sequence[Step]):
+    """The steps of a path as a sequence: the first and the last ones in memory, the others read from the file.
+
+    While the path is traced, `append` adds to it, and what is not yet committed is in memory. A step that is read has
+    the segment to the step before only if the archive holds tangents.
+    """
+
+    def __init__(self, opener: Opener, file: File, path: int) -> None:
+        self._opener, self._file, self._path = opener, file, path
+        self._first: Step | None = None
+        self._last: list[Step] = []
+        self._located: list[int] = []
+        self._count = 0
+
+    # -- while it grows ---------------------------------------------------------------------------------------
+
+    def append(self, step: Step) -> None:
+        """The next step."""
+        self._first = self._first or step
+        self._last.append(step)
+        self._count += 1
+
+    def locate(self, after: bool = False) -> None:
+        """An event has got a row of its own, before the last step; or, `after` it, a part of a kink has."""
+        self._located.append(self._count - (not after))
+
+    def committed(self) -> None:
+        """The file holds all of it: only the last step is still held, and the first."""
+        self._last = self._last[-1:]
+
+    def known(self, roles: Any, ends: Sequence[Step]) -> None:
+        """Begin with what a file holds already: the roles of the path's rows, and its first and last step."""
+        places = np.flatnonzero(roles != ACCEPTED)
+        self._located = (places - np.arange(len(places))).tolist()
+        self._count = len(roles) - len(places)
+        self._first, self._last = next(iter(ends), None), list(ends[-1:])
+
+    # -- the sequence -----------------------------------------------------------------------------------------
 
     def __len__(self) -> int:
-        return len(self.numbers)
+        return self._count
 
-    def __iter__(self) -> Iterator[Path]:
-        return (self.archive.path(number) for number in self.numbers)
+    @overload
+    def __getitem__(self, index: int) -> Step: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Step]: ...
+
+    def __getitem__(self, index: int | slice) -> Step | list[Step]:
+        if isinstance(index, slice):
+            wanted = range(*index.indices(self._count))
+            first = min(wanted, default=0)
+            between = list(self._between(first, max(wanted, default=-1) + 1))
+            return [between[i - first] for i in wanted]
+        if not -self._count <= index < self._count:
+            raise IndexError(f"index: expected a step below {self._count}, found {index}")
+        index %= self._count
+        return self._first if not index and self._first else next(self._between(index, index + 1))
+
+    def __iter__(self) -> Iterator[Step]:
+        return self._between(0, self._count)
 
     def __repr__(self) -> str:
-        return f"<Selection of {self.archive.file}: {len(self)} paths, {self.points.size} points>"
+        held = {id(step) for step in (self._first, *self._last) if step is not None}
+        return f"<{self._count} steps in {self._file}, {len(held)} of them in memory>"
 
-    def to_xarray(self) -> Any:
-        """The selected points and paths as an `xarray.Dataset`; ``path_index`` keeps the numbers of the file."""
-        archive = self.archive
-        return dataset(self.points, self.paths, archive.event_names, archive.layout.unknowns, archive.attributes)
+    def column(self, name: str) -> Any:
+        """One number or vector of all steps, as an array: ``u``, ``tangent`` or ``arclength``."""
+        fields, begin = _COLUMNS.get(name, ()), self._count - len(self._last)
+        if not fields or not begin:
+            return np.array([getattr(step, name) for step in self])
+        with self._opener(self._file) as archive:
+            # To make steps of them takes 14 times as long.
+            first = archive.rows(self._path).start
+            rows = slice(first, first + self._row(begin - 1) + 1)
+            steps = archive.points.some("role", rows) == ACCEPTED
+            found = [archive.points.some(field, rows)[steps] for field in fields]
+        stored = found[0] if len(found) == 1 else np.column_stack(found)
+        return np.concatenate((stored, [getattr(step, name) for step in self._last]))
 
-    def to_dataframe(self) -> Any:
-        """The selected points as a `pandas.DataFrame`."""
-        return dataframe(self.points)
+    def _between(self, start: int, stop: int) -> Iterator[Step]:
+        begin = self._count - len(self._last)
+        while start < min(stop, begin):
+            # One row more, for the segment from the step before.
+            before, end = max(start - 1, 0), min(start + _WINDOW, stop, begin)
+            with self._opener(self._file) as archive:
+                steps, _ = window(archive, self._path, self._row(before), self._row(end - 1) + 1, before)
+            yield from steps[start - before :]
+            start = end
+        yield from self._last[start - begin : max(stop - begin, 0)]
+
+    def _row(self, index: int) -> int:
+        """Of a step among the path's rows: each event before it has one too."""
+        return index + bisect_left(self._located, index + 1)
 
 
-def selected(archive: OpenArchive, status: Any, kind: Any, event: Any, parameter: Any) -> Selection:
-    """What `Archive.select` returns, with its arguments.
+def window(archive: Any, path: int, start: int, stop: int, index: int) -> tuple[list[Step], list[LocatedEvent]]:
+    """Steps and events of some rows of a path of an `Archive`; `index` is that of the first step among them."""
+    first = archive.rows(path).start
+    block = archive.points.block(slice(first + start, first + stop))
+    return from_columns(block, archive.event_names, archive.layout.observed, index)
 
-    Raises `TypeError` or `ValueError` if one of them is nothing of its kind, or the event does not occur in the file at
-    all.
-    """
-    paths = np.ones(len(archive), dtype=bool)
-    if status is not None:
-        wanted = list(status) if isinstance(status, Iterable) else [status]
-        if not all(isinstance(one, Status) for one in wanted):
-            raise complain(TypeError, "status", "a Status, or several", status)
-        paths = np.isin(archive.paths["status"], [int(one) for one in wanted])
-    points = paths[archive.points["path_index"]] & (archive.points["role"] != KINK_PART)
-    if kind is not None:
-        if not isinstance(kind, Integral):
-            raise complain(TypeError, "kind", "a Kind", kind)
-        points &= archive.points["kind"] == kind
-    if event is not None:
-        if event not in archive.event_names:
-            raise ValueError(f"event: expected one of {', '.join(archive.event_names)}, found {event!r}")
-        points &= archive.points["event_index"] == archive.event_names.index(event)
-    if parameter is not None:
-        if not isinstance(parameter, Sequence) or len(parameter) != 2 or not all(map(is_number, parameter)):
-            raise complain(TypeError, "parameter", "two numbers, the ends of an interval", parameter)
-        low, high = parameter
-        points &= (archive.points["parameter"] >= low) & (archive.points["parameter"] <= high)
-    if kind is not None or event is not None or parameter is not None:
-        paths = np.zeros(len(archive), dtype=bool)
-        paths[archive.points["path_index"][points]] = True
-    return Selection(archive, np.flatnonzero(points), np.flatnonzero(paths))
+
+def events(archive: Any, path: int) -> list[LocatedEvent]:
+    """The events of a path of an `Archive`, without its steps."""
+    rows = archive.rows(path)
+    numbers = archive.points.some("event_index", rows)
+    # Windows begin with a step: a kink and its parts stay together.
+    begins = np.flatnonzero(archive.points.some("role", rows) == ACCEPTED)[::_WINDOW].tolist()
+    found: list[LocatedEvent] = []
+    for k, (start, stop) in enumerate(pairwise([*begins, len(numbers)])):
+        if np.any(numbers[start:stop] >= 0):
+            found += window(archive, path, start, stop, k * _WINDOW)[1]
+    return found
+
+
+def stored_path(archive: Any, opener: Opener, file: File, path: int) -> StoredSteps:
+    """The steps of a path of an `Archive`, of which only the ends are in memory."""
+    rows = archive.rows(path)
+    roles = archive.points.some("role", rows)
+    steps, accepted = StoredSteps(opener, file, path), np.flatnonzero(roles == ACCEPTED).tolist()
+    ends: list[Step] = []
+    if accepted:
+        last = len(accepted) - 1
+        ends += window(archive, path, accepted[0], accepted[0] + 1, 0)[0]
+        # With the row before, for the segment from there.
+        ends += window(archive, path, accepted[last - 1], rows.stop - rows.start, last - 1)[0][1:2] if last else []
+    steps.known(roles, ends)
+    return steps

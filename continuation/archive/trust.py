@@ -30,7 +30,6 @@ _MODULES = (
     *(budget, controllers, correctors, curve, events, box, branch_point),
     *(family, functions, metric, predictors, stability, tolerance),
 )
-_REAL = "fiub"
 
 
 class UnknownError(LookupError):
@@ -194,35 +193,27 @@ def _fits(value: Any, hint: Any) -> bool:
 
 
 def _is(value: Any, hint: Any) -> bool:
-    origin = typing.get_origin(hint) or hint
-    if hint is Any:
-        return True
-    if hint is None or hint is type(None):
-        return value is None
+    origin, arguments = typing.get_origin(hint) or hint, typing.get_args(hint)
     if origin is typing.Literal:
-        return value in typing.get_args(hint)
+        return value in arguments
     if origin in (typing.ClassVar, typing.Final):
-        return _fits(value, typing.get_args(hint)[0])
+        return _fits(value, arguments[0])
     if origin is np.ndarray:
-        return isinstance(value, np.ndarray) and value.dtype.kind in _REAL + "c"
-    if origin in (tuple, list) and typing.get_args(hint):
-        kinds = _items(hint, len(value)) if isinstance(value, origin) else ()
-        fixed = origin is tuple and ... not in typing.get_args(hint)
-        counted = not fixed or (isinstance(value, tuple) and len(value) == len(typing.get_args(hint)))
-        return isinstance(value, origin) and counted and all(_fits(v, kind) for v, kind in zip(value, kinds))
-    if origin is float:
-        return isinstance(value, (int, float)) and not isinstance(value, bool)
-    if origin is int:
-        return isinstance(value, int) and not isinstance(value, bool)
-    if isinstance(origin, type):
-        protocol = getattr(origin, "_is_protocol", False)
-        return (
-            bool(isinstance(value, origin))
-            if not protocol or getattr(origin, "_is_runtime_protocol", False)
-            else (not isinstance(value, (str, int, float, dict, list, tuple, type(None))))
-        )
+        return isinstance(value, np.ndarray) and value.dtype.kind in "fiubc"
+    if origin in (tuple, list) and arguments:
+        if not isinstance(value, origin):
+            return False
+        fixed = origin is tuple and ... not in arguments
+        kinds = _items(hint, len(value))
+        return (not fixed or len(value) == len(arguments)) and all(map(_fits, value, kinds))
+    if origin in (float, int):
+        return isinstance(value, (int, origin)) and not isinstance(value, bool)
+    if hint is None:
+        return value is None
+    if getattr(origin, "_is_protocol", False) and not getattr(origin, "_is_runtime_protocol", False):
+        return not isinstance(value, (str, int, float, dict, list, tuple, type(None)))
     # A type variable, or what only a type checker knows: numbers, containers and trusted objects are all there is.
-    return True
+    return not isinstance(origin, type) or origin is Any or isinstance(value, origin)
 
 
 def _shown(hint: Any) -> str:

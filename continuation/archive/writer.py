@@ -4,28 +4,37 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
+from itertools import takewhile
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
 from typing import Any
 
-from continuation.archive import record
-from continuation.archive.atomic import as_file, check_new
+from continuation.archive.atomic import ArchiveError, as_file, check_new
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
-from continuation.archive.errors import ArchiveError
-from continuation.archive.provenance import root_attributes, scalars
+from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
-from continuation.archive.record import Buffer, Limits, Mark, OpenPath, Record, counted, unknowns_of
-from continuation.archive.rows import Row, parts_of, to_columns
-from continuation.archive.schema import CONTROLLER_STATE, COUNT_NAMES, Layout, check_names
+from continuation.archive.rows import (
+    Buffer,
+    Limits,
+    Mark,
+    OpenPath,
+    Record,
+    Row,
+    counted,
+    layout_of,
+    record_of,
+    row_columns,
+    rows_at,
+    to_columns,
+)
+from continuation.archive.schema import ACCEPTED, COUNT_NAMES, KINK_PART, SLOTS, check_names
 from continuation.archive.store import Store, create
-from continuation.archive.stored import StoredSteps, kept_every
-from continuation.archive.structure import SLOTS
+from continuation.archive.tables import StoredSteps, kept_whole
 from continuation.arguments.checks import complain
-from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Path, Step
 from continuation.status import Kind, Status
 from continuation.step.tracer import Tracer
@@ -54,7 +63,7 @@ class PathLog:
     limits : Limits
         When to commit.
     keep : str
-        Which steps stay in memory: ``"all"``, ``"ends"`` or ``"every k"``; the others are read when asked for.
+        Which steps stay in memory: ``"all"``, or the ``"ends"``; the others are read when asked for.
     save_every : int
         Only every so many steps are written, with the first, the last and all events: for long paths.
 
@@ -70,6 +79,24 @@ class PathLog:
     ValueError
         Later, if a path has another number of unknowns than the first one.
     """
+
+    file: File
+    member: int | None = None
+    _buffer: Buffer
+    _early: list[Record]
+    _limits: Limits
+    _whole: bool
+    _tangents, _durable, _title = True, False, ""
+    _parameters: Mapping[str, Any]
+    _many = _closed = False
+    _store: Store | None = None
+    _open: OpenPath | None = None
+    _paths = _sequence = 0
+    _save_every = 1
+    _identifier = ""
+    _known: tuple[Any, Any] = (None, None)
+    """The file's first homotopy, and what says in a checkpoint how to make it."""
+    _commit_at = 0.0
 
     def __init__(
         self,
@@ -88,30 +115,15 @@ class PathLog:
             raise complain(TypeError, "limits", "Limits(...)", limits)
         if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
             raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
-        check_new(as_file("file", file))
-        self._begin(File(file), durable, tangents, title, limits, kept_every(keep))
-        self._parameters: Mapping[str, Any] = dict(parameters or {})
-        self._save_every: int = int(save_every)
-
-    def _begin(self, file: File, durable: bool, tangents: bool, title: str, limits: Limits, every: int) -> None:
-        self.file, self._every = file, every
-        self.member: int | None = None
-        self._durable, self._tangents, self._title, self._limits = durable, tangents, title, limits
-        self._many = self._closed = False
-        self._store: Store | None = None
-        self._open: OpenPath | None = None
-        self._buffer = Buffer(0)
-        self._paths = self._sequence = 0
-        self._parameters, self._save_every = {}, 1
-        self._identifier = ""
-        self._known: tuple[Any, Any] = (None, None)
-        self._early: list[Record] = []
-        self._witness: Tracer | None = None
-        self._commit_at = 0.0
+        self.file, self._limits, self._whole = as_file("file", file), limits, kept_whole(keep)
+        check_new(self.file)
+        self._durable, self._tangents, self._title = durable, tangents, title
+        self._parameters, self._save_every = dict(parameters or {}), int(save_every)
+        self._buffer, self._early = Buffer(0), list[Record]()
 
     @classmethod
     def continued(
-        cls, store: Store, points: int, checkpoint: Checkpoint, tracer: Tracer, every: int, identifier: str
+        cls, store: Store, points: int, checkpoint: Checkpoint, tracer: Tracer, whole: bool, identifier: str
     ) -> PathLog:
         """A log that goes on with a path of which the file holds the beginning; for `resume`.
 
@@ -122,19 +134,18 @@ class PathLog:
             Rows that the file holds.
         checkpoint : Checkpoint
         tracer : Tracer
-        every : int
-            Which steps stay in memory.
+        whole : bool
+            Whether all steps stay in memory.
         identifier : str
             Of the file in which the path began.
         """
-        paths = checkpoint.path
         log = cls.__new__(cls)
-        log._begin(store.file, store.durable, store.layout.tangents, "", Limits(), every)
-        log._store, log._buffer, log._paths, log._sequence = store, Buffer(points), paths, checkpoint.sequence
-        log._identifier = str(identifier)
+        log.file, log._store, log._buffer, log._early = store.file, store, Buffer(points), []
+        log._limits, log._whole, log._identifier = Limits(), whole, str(identifier)
+        log._paths, log._sequence = checkpoint.path, checkpoint.sequence
         log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
         mark = Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
-        log._open = OpenPath(tracer, paths, checkpoint.rows, checkpoint.seconds, None, mark, mark)
+        log._open = OpenPath(tracer, checkpoint.path, checkpoint.rows, checkpoint.seconds, None, mark, mark)
         log._commit_at = time.monotonic() + log._limits.seconds
         return log
 
@@ -145,13 +156,18 @@ class PathLog:
         path = self._path(tracer)
         if self._store is None:
             self._make(tracer, step.u.size - 1, tuple(step.observed))
-        if self._every != 1 and not isinstance(tracer.path.steps, StoredSteps):
-            tracer.path.steps = self._stored(path.number, tracer.path.steps)
+        if not self._whole and not isinstance(tracer.path.steps, StoredSteps):
+            stored: Any = StoredSteps(open_archive, self.file, path.number)
+            for earlier in tracer.path.steps:
+                stored.append(earlier)
+            tracer.path.steps = stored
         path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
         if path.skipped is not None:
             # Not a point to resume from either: that is one whose row is there.
             return
-        self._add_step(path, step, tracer.path.events)
+        here = takewhile(lambda event: event.ends_step and event.step == step.index, reversed(tracer.path.events))
+        for row in rows_at(step, [*here][::-1], self._store is not None and self._store.layout.pieces):
+            self._add(path, row)
         state = tracer.state
         if state is not None and state.index == step.index:
             # Whether the path ends at this point is decided after it is written. So a resumed trace begins one point
@@ -165,7 +181,7 @@ class PathLog:
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
         """See `continuation.Observer`."""
-        self._add(self._path(tracer), Row(None, event))
+        self._add(self._path(tracer), Row.of(event))
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
@@ -174,8 +190,8 @@ class PathLog:
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         if path.skipped is not None:
-            self._add(path, Row(path.skipped))
-        row = record.of_path(found, tracer.homotopy, state.controller if state is not None else ())
+            self._add(path, Row.of(path.skipped))
+        row = record_of(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
         refused = self._store is None and found.status in (Status.INTERRUPTED, Status.RAISED)
         if self._many or not refused:
@@ -194,14 +210,14 @@ class PathLog:
         """
         self._check_open()
         path = Path(status=Status.RAISED, message=sentence(error))
-        self._finish(record.of_path(path, homotopy, ()), self._paths, 0)
+        self._finish(record_of(path, homotopy, ()), self._paths, 0)
 
     def close(self) -> None:
         """Commit what is there and close the file; a second call does nothing."""
         if self._closed:
             return
         if self._store is None and self._early:
-            self._make(self._witness, unknowns_of(self._witness), ())
+            self._make(None, 1, ())
         if self._store is not None:
             if self._buffer.rows and self._store.ours:
                 self._commit()
@@ -226,7 +242,6 @@ class PathLog:
                 return path
             raise ArchiveError(f"{self.file}: a path is being written already; a log writes one path after another")
         self._check_open()
-        self._witness = self._witness or tracer
         self._open = path = OpenPath(tracer, self._paths)
         self._commit_at = time.monotonic() + self._limits.seconds
         return path
@@ -235,18 +250,6 @@ class PathLog:
         if self._closed:
             raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
 
-    def _add_step(self, path: OpenPath, step: Step, events: list[LocatedEvent]) -> None:
-        """The step, with the event on which the path ends; other events at the very same point get rows before it."""
-        here: list[LocatedEvent] = []
-        while len(here) < len(events) and (event := events[-1 - len(here)]).ends_step and event.step == step.index:
-            here.insert(0, events[-1 - len(here)])
-        last = here.pop() if here and here[-1].kind == step.kind else None
-        for event in here:
-            self._add(path, Row(None, event))
-        kept = self._store is not None and self._store.layout.pieces
-        for row in (Row(step, last), *(parts_of(last) if kept else ())):
-            self._add(path, row)
-
     def _add(self, path: OpenPath, row: Row) -> None:
         u = row.point.u
         if self._store is not None and u.size - 1 != self._store.layout.unknowns:
@@ -254,8 +257,8 @@ class PathLog:
             raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {u.size - 1}")
         self._buffer.rows.append(row)
         steps: Any = path.tracer.path.steps
-        if row.step is None and isinstance(steps, StoredSteps):
-            steps.locate(row.part is not None)
+        if row.role != ACCEPTED and isinstance(steps, StoredSteps):
+            steps.locate(row.role == KINK_PART)
         self._buffer.nbytes += u.nbytes
         path.rows += 1
 
@@ -266,19 +269,14 @@ class PathLog:
         if self._store is None:
             self._early.append(row)
         else:
-            self._commit(self._sourced(row))
-
-    def _sourced(self, row: Record) -> Record:
-        return {**row, "source": f"{self._identifier} {row['path']} {self.file.name}"}
+            self._commit(row)
 
     def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> None:
         """Make the file, and write the rows of paths that ended before there was one."""
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
         state = tracer.state.controller if tracer is not None and tracer.state is not None else ()
-        names = {name for row in self._early for name in row["scalars"]} | set(scalars(homotopy))
-        pieces, width = isinstance(homotopy, SupportsPieces), max(len(state), CONTROLLER_STATE)
-        layout = Layout(unknowns, width, observed, tuple(sorted(names)), self._tangents or pieces, pieces)
+        layout = layout_of(homotopy, unknowns, observed, state, self._tangents, self._early)
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, self._title, self._parameters)
@@ -288,7 +286,7 @@ class PathLog:
             self._store.name_event(event.name)
         self._store.commit()
         for row in self._early:
-            self._commit(self._sourced(row))
+            self._commit(row)
         self._early = []
 
     def _commit(self, row: Record | None = None) -> None:
@@ -304,7 +302,8 @@ class PathLog:
             checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
         paths = None
         if row is not None and row["path"] >= store.committed.paths:
-            paths = record.to_columns(row, store.layout)
+            row["source"] = f"{self._identifier} {row['path']} {self.file.name}"
+            paths = row_columns(row, store.layout)
         try:
             store.commit(points, start, paths, row["path"] if row is not None else 0, checkpoints)
         except ArchiveError:
@@ -316,12 +315,6 @@ class PathLog:
             path.tracer.path.steps.committed()
         self._sequence += 1
         self._commit_at = time.monotonic() + self._limits.seconds
-
-    def _stored(self, number: int, steps: Iterable[Step]) -> Any:
-        stored = StoredSteps(open_archive, self.file, number, self._every)
-        for step in steps:
-            stored.append(step)
-        return stored
 
     def _checkpoint(self, path: OpenPath, mark: Mark) -> bytes:
         if path.run is None:

@@ -32,7 +32,7 @@ class Path:
     Attributes
     ----------
     steps : sequence of Step
-        The accepted points, the start first: a list, or `continuation.archive.stored.StoredSteps`.
+        The accepted points, the start first: a list, or `continuation.archive.tables.StoredSteps`.
     events : list of LocatedEvent
         In order along the path.
     status : Status
@@ -281,7 +281,7 @@ class Path:
         """
         from continuation.archive import growing
 
-        growing.save(self, file, title)
+        growing.save_all([self], file, title)
 
     def _repr_html_(self) -> str:
         from continuation.plot.html import TABLE_ROWS, table

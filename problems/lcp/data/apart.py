@@ -17,7 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, BinaryIO, NoReturn
 
-from continuation.archive.datasets import Allowance
+from continuation.archive.hdf5 import Allowance
 
 BYTES_A_SECOND = 1 << 22
 """Of a file that a child reads in a second of the processor, after the first two: scipy reads 20 times as many."""

@@ -17,8 +17,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse as sp
 
-from continuation.archive.datasets import Allowance, dataset, member, subgroup
-from continuation.archive.image import Image
+from continuation.archive.hdf5 import Allowance, Image, dataset, member, subgroup
 from continuation.arrays import Matrix
 from problems.lcp.data.apart import read_apart
 

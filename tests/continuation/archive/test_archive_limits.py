@@ -12,7 +12,7 @@ import pytest
 
 from continuation import Budget, trace
 from continuation.archive import ArchiveError, Limits, PathLog, describe, export, open_archive, recover, resume
-from continuation.archive.datasets import LEAST_BYTES
+from continuation.archive.hdf5 import LEAST_BYTES
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import Cusp
 

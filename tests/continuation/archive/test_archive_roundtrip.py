@@ -170,7 +170,7 @@ def test_dataframe(tmp_path):
     assert np.array_equal(accepted[["y_0", "y_1"]], path.y)
 
 
-def test_many_paths_in_one_file_and_selections(tmp_path):
+def test_many_paths_in_one_file(tmp_path):
     homotopies = [ExponentialCosine(3), ExponentialCosine(3, target=0.4), ExponentialCosine(3)]
     budgets = [Budget(), Budget(), Budget(steps=5)]
     with PathLog(tmp_path / "run.h5", title="three") as log:
@@ -181,15 +181,6 @@ def test_many_paths_in_one_file_and_selections(tmp_path):
         for found, path in zip(archive, paths, strict=True):
             assert np.array_equal(found.u, path.u)
         assert np.array_equal(archive.paths["homotopy_target"], [1.0, 0.4, 1.0])
-        folds = archive.select(kind=Kind.TURNING_POINT)
-        assert folds.points.size == sum(len(path.turning_points) for path in paths)
-        assert archive.select(status=Status.BUDGET_EXHAUSTED).numbers == [2]
-        assert [len(path) for path in archive.select(status=[Status.BUDGET_EXHAUSTED])] == [len(paths[2])]
-        low = archive.select(parameter=(-1.0, 0.1), event="turning point")
-        assert ((low.points["parameter"] <= 0.1) & (low.points["kind"] == Kind.TURNING_POINT)).all()
-        assert low.to_xarray().sizes["point"] == low.points.size == len(low.to_dataframe())
-        with pytest.raises(ValueError, match="event: expected one of turning point, branch point"):
-            archive.select(event="no such")
         with pytest.raises(IndexError, match="below 3, found 3"):
             archive.path(3)
         assert len(archive[1:]) == 2

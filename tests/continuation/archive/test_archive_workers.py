@@ -5,17 +5,13 @@ import os
 import signal
 import sys
 import time
-import weakref
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from pathlib import Path
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from attrs import Factory, frozen
 
 from continuation import Status, trace
-from continuation.archive import open_archive, sweep, trace_many
-from continuation.archive.workers import Batch, work
+from continuation.archive import open_archive, trace_many
 from problems.bifurcation import Cusp
 
 GOOD = [Cusp(splitting) for splitting in np.linspace(0.5, 2.0, 5)]
@@ -96,25 +92,6 @@ def test_it_costs_its_own_path(tmp_path, monkeypatch, expected, bad, archived):
         assert os.listdir(tmp_path) == ["run.h5"]
 
 
-@frozen
-class DiesAtItsFile(Fatal):
-    """As a process does that is ended between making its file and naming it."""
-
-    directory: Path = Path()
-
-    def act(self):
-        (file,) = self.directory.glob("run.sweep-*.0003.h5")
-        file.with_name(f".{file.name}.0123abcd.part").touch()
-        os._exit(3)
-
-
-def test_what_a_worker_was_writing_goes_with_it(tmp_path):
-    tasks = [*GOOD[:2], DiesAtItsFile(1.0, directory=tmp_path), *GOOD[2:]]
-    with ProcessPoolExecutor(2) as executor, trace_many(tasks, executor, tmp_path / "run.h5") as paths:
-        assert paths[2].status is Status.RAISED
-    assert os.listdir(tmp_path) == ["run.h5"]
-
-
 def test_ctrl_c_ends_a_sweep_that_hangs(tmp_path):
     """Within a second or so; the limit here is generous, and far from the thousand seconds that are asked for."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -140,79 +117,3 @@ def test_what_another_sweep_left_is_in_nobodys_way(tmp_path, expected):
     with ThreadPoolExecutor(2) as executor, trace_many(GOOD, executor, tmp_path / "run.h5") as paths:
         assert [len(path) for path in paths] == [len(path) for path in expected]
     assert (tmp_path / "run.0001.h5").read_bytes() == b"left behind"
-
-
-def test_a_batch_that_is_run_a_second_time(tmp_path, expected):
-    """As dask does when it loses a worker: the file of the first attempt is there."""
-    batch = Batch(GOOD, 0, tmp_path / "run.sweep-1.0001.h5", None, {})
-    for attempts in (1, 2):
-        work(batch)
-        files = sorted(tmp_path.iterdir())
-        assert len(files) == attempts
-        for file in files:
-            with open_archive(file) as archive:
-                assert [len(path) for path in archive] == [len(path) for path in expected]
-
-
-@frozen
-class SlowAgain(Cusp):
-    """Quick once, and then for longer than anybody waits."""
-
-    done: list = Factory(list)
-
-    def residual(self, y, lam):
-        if self.done:
-            time.sleep(0.02)
-        return super().residual(y, lam)
-
-
-class LosesWhatIsDone(ThreadPoolExecutor):
-    """As dask when a worker dies that had done a batch: it is begun again, while its result is here."""
-
-    def __init__(self, workers):
-        super().__init__(workers)
-        self.again = []
-
-    def submit(self, function, batch):
-        result = function(batch)
-        for homotopy in batch.homotopies:
-            homotopy.done.append(True)
-        again = super().submit(function, batch)
-        while not again.done() and not list(batch.file.parent.glob(f"{batch.file.stem}-*")):
-            time.sleep(0.01)
-        self.again.append(again)
-        future = Future()
-        future.set_result(result)
-        return future
-
-
-def test_what_is_done_again_for_nobody_is_ended(tmp_path, expected):
-    tasks = [SlowAgain(task.splitting) for task in GOOD]
-    with LosesWhatIsDone(len(GOOD)) as executor, trace_many(tasks, executor, tmp_path / "run.h5") as paths:
-        assert all(again.done() for again in executor.again)
-        assert [path.u.tolist() for path in paths] == [path.u.tolist() for path in expected]
-    assert os.listdir(tmp_path) == ["run.h5"]
-
-
-def test_what_is_here_is_asked_for_no_more(tmp_path, monkeypatch, expected):
-    # While somebody holds its future dask does again what its worker had done.
-    futures = []
-
-    class Remembers(Executor):
-        def submit(self, function, batch):
-            future = Future()
-            future.set_result(function(batch))
-            futures.append(weakref.ref(future))
-            return future
-
-    held = []
-    collect = sweep.collect
-
-    def collected(*arguments):
-        held.extend(future() for future in futures)
-        collect(*arguments)
-
-    monkeypatch.setattr(sweep, "collect", collected)
-    with Remembers() as executor, trace_many(GOOD, executor, tmp_path / "run.h5") as paths:
-        assert [path.u.tolist() for path in paths] == [path.u.tolist() for path in expected]
-    assert held == [None] * len(futures)

@@ -1,0 +1,294 @@
+"""HDF5 files that may come from anybody, as HDF5 is shown them, and what is taken out of them.
+
+An `Image` is the file as its writer would have closed it: HDF5 itself waits without end for a checksum that a file
+under SWMR does not have, and for a FIFO. A `dataset` is of the type expected, stored in the file itself, and as large
+as it says: external, soft and user-defined links, virtual and external storage, and filters not ours are refused.
+What is taken out of one file is counted by one `Allowance`. HDF5 2.0 checks the rest of a file's structure itself.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import stat
+import struct
+from collections.abc import Sequence
+from pathlib import Path as File
+from typing import Any
+
+import h5py
+import numpy as np
+from h5py import h5d, h5l, h5o, h5z
+
+from continuation.archive.atomic import ArchiveError, short
+
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# The superblock, versions 2 and 3: byte 8 is the version, byte 11 says whether and how a writer has the file open
+# (version 3), at byte 28 there is the length that the file is to have, at byte 44 a checksum of what is before.
+_VERSION, _IN_USE, _LENGTH, _CRC, HEAD_BYTES = 8, 11, 28, 44, 48
+_WORD = 0xFFFFFFFF
+_HEAP = b"GCOL"
+
+
+class Image:
+    """A file opened for reading, as it would be if its writer had closed it.
+
+    `missing` bytes, which the file should have at its end and has not, read as zeros. `failure` is what the disk said
+    when it could not be read. Raises `ArchiveError` if it is no regular file, may not be read, or is not HDF5 as far as
+    its first bytes tell.
+    """
+
+    def __init__(self, file: File) -> None:
+        self.file, self.at, self.failure = file, 0, ""
+        self.descriptor = _opened(file)
+        try:
+            self._head = self._closed(os.pread(self.descriptor, HEAD_BYTES, 0))
+        except BaseException as error:
+            os.close(self.descriptor)
+            if isinstance(error, ArchiveError) or not isinstance(error, OSError):
+                raise
+            raise ArchiveError(f"{file}: could not be read ({short(error)})") from error
+
+    def _closed(self, head: bytes) -> bytes:
+        """The head that the file would have if its writer had closed it."""
+        if not head:
+            raise ArchiveError(f"{self.file}: is empty; its writer ended before anything was written")
+        if not head.startswith(SIGNATURE):
+            raise ArchiveError(f"{self.file}: is not an HDF5 file, so not an archive")
+        if len(head) < HEAD_BYTES:
+            raise ArchiveError(f"{self.file}: truncated, only its first {len(head)} bytes are there")
+        size = os.fstat(self.descriptor).st_size
+        self.closed_by_writer, self.missing, self.length = True, 0, size
+        if head[_VERSION] not in (2, 3):
+            return head
+        if struct.unpack_from("<I", head, _CRC)[0] != lookup3(head[:_CRC]):
+            raise ArchiveError(f"{self.file}: truncated or damaged, HDF5 cannot open it (its head is not sound)")
+        self.closed_by_writer = head[_VERSION] < 3 or not head[_IN_USE]
+        self.missing, self.length = max(stated_length(head) - size, 0), max(stated_length(head), size)
+        length = struct.pack("<Q", self.length)
+        closed = head[:_IN_USE] + b"\0" + head[_IN_USE + 1 : _LENGTH] + length + head[_LENGTH + 8 : _CRC]
+        return closed + struct.pack("<I", lookup3(closed))
+
+    # -- what h5py asks for -----------------------------------------------------------------------------------
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Move; the end is where it should be."""
+        self.at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self.at, os.SEEK_END: self.length}[whence]
+        return self.at
+
+    def tell(self) -> int:
+        """Where it is."""
+        return self.at
+
+    def read(self, size: int) -> bytes:
+        """So many bytes; h5py knows a file by this method, and uses `readinto`."""
+        buffer = bytearray(size)
+        self.readinto(buffer)
+        return bytes(buffer)
+
+    def readinto(self, buffer: bytearray) -> int:
+        """Fill the buffer."""
+        view, done = memoryview(buffer).cast("B"), 0
+        try:
+            while count := os.preadv(self.descriptor, [view[done:]], self.at + done):
+                done += count
+        except OSError as error:
+            # Its text: a traceback that is kept would keep a buffer of HDF5's.
+            self.failure = short(error)
+            raise
+        view[done:] = bytes(len(view) - done)
+        head = self._head[self.at : self.at + len(view)]
+        view[: len(head)] = head
+        self.at += len(view)
+        if view[:4] == _HEAP:
+            _check_heap(view)
+        return len(view)
+
+    def close(self) -> None:
+        """Give the file back."""
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+            self.descriptor = -1
+
+
+def stated_length(head: bytes) -> int:
+    """The bytes that a file is to have, as its superblock says."""
+    return int(struct.unpack_from("<Q", head, _LENGTH)[0])
+
+
+def _opened(file: File) -> int:
+    said: dict[type, str] = {
+        FileNotFoundError: "there is no such file",
+        PermissionError: "may not be read (permissions)",
+    }
+    try:
+        # Without O_NONBLOCK a FIFO would wait for somebody to write to it.
+        descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except (OSError, ValueError) as error:
+        raise ArchiveError(f"{file}: {said.get(type(error), f'cannot be opened ({short(error)})')}") from None
+    mode = os.fstat(descriptor).st_mode
+    if not stat.S_ISREG(mode):
+        os.close(descriptor)
+        what = "a directory" if stat.S_ISDIR(mode) else "no regular file"
+        raise ArchiveError(f"{file}: is {what}, an archive is a file")
+    return descriptor
+
+
+def _check_heap(heap: memoryview) -> None:
+    """Whether the objects of a global heap, which has no checksum, fill it: in one of zeros HDF5 loops without end.
+
+    Raises `OSError` if they do not.
+    """
+    (size,) = struct.unpack_from("<Q", heap, 8)
+    at = 16
+    while size <= len(heap) and size - at >= 16:
+        index, length = struct.unpack_from("<H6xQ", heap, at)
+        # The object number 0 is the space that is free, its own head included.
+        at += length if not index else 16 + (length + 7) // 8 * 8
+        if at > size or (not index and at != size):
+            raise OSError("a heap of texts is not sound")
+
+
+def lookup3(data: bytes) -> int:
+    """The checksum of HDF5's metadata: Jenkins' lookup3, `hashlittle` (burtleburtle.net/bob/c/lookup3.c)."""
+    a = b = c = (0xDEADBEEF + len(data)) & _WORD
+    blocks = max((len(data) - 1) // 12, 0)
+    for k in range(blocks):
+        x, y, z = struct.unpack_from("<III", data, 12 * k)
+        a, b, c = (a + x) & _WORD, (b + y) & _WORD, (c + z) & _WORD
+        for shift in (4, 6, 8, 16, 19, 4):
+            # The three change places with each round, and are in their own again after six.
+            a, b, c = b, (c + b) & _WORD, ((a - c) & _WORD) ^ _turned(c, shift)
+    x, y, z = struct.unpack("<III", data[12 * blocks :].ljust(12, b"\0"))
+    a, b, c = (a + x) & _WORD, (b + y) & _WORD, (c + z) & _WORD
+    for shift in (14, 11, 25, 16, 4, 14, 24):
+        c = ((c ^ b) - _turned(b, shift)) & _WORD
+        a, b, c = b, c, a
+    return int(b)
+
+
+def _turned(x: int, k: int) -> int:
+    return ((x << k) | (x >> (32 - k))) & _WORD
+
+
+LEAST_BYTES = 1 << 27
+"""Bytes of memory that any file may ask for. Copying takes three times as much, with numpy and scipy 500 MB in all;
+with half as many a compressed path of 50,000 points is refused."""
+
+UNFOLDING = 32
+"""Times its own size that a larger file may ask for. Stored as it is, a point of two unknowns has 120 bytes or more,
+and as a `Step` 1.5 KiB: 13 times as many, and twice that where it is compressed. Of zeros gzip makes a thousandth."""
+
+COLUMN_BYTES = 1 << 14
+"""Bytes of chunks that HDF5 keeps of each open dataset, so what one costs: tables are read from end to end."""
+
+_FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
+"""Those that h5py brings itself; any other would be a library that is loaded to read the file."""
+
+
+class StructureError(ValueError):
+    """Something that is in no archive; the message says what."""
+
+
+class LimitError(StructureError):
+    """A file that asks for more memory than it may; the message says how to let it."""
+
+
+class Allowance:
+    """The bytes of memory that all which is read from one file may take, in arrays and in Python's objects.
+
+    `limit`: By default `LEAST_BYTES`, or `UNFOLDING` times the file of `size` bytes.
+    """
+
+    def __init__(self, size: int, limit: int | None = None) -> None:
+        self.limit = max(LEAST_BYTES, UNFOLDING * size) if limit is None else limit
+        self._taken: dict[str, int] = {}
+        self._total = 0
+
+    def take(self, what: str, claimed: int) -> None:
+        """Count what is to be read; the same thing again counts once, at its latest size.
+
+        Raises `LimitError` if all together is more than the limit.
+        """
+        total = self._total - self._taken.get(what, 0) + claimed
+        if total > self.limit:
+            raise LimitError(f"{what} claims {claimed} bytes, all of it more than the limit of {self.limit}")
+        self._taken[what], self._total = claimed, total
+
+
+def member(group: Any, name: str) -> Any:
+    """A group or dataset in a group, by a hard link.
+
+    Raises `StructureError` if there is none of that name, or it is a link to somewhere else.
+    """
+    raw = name.encode()
+    if raw not in group.id:
+        raise StructureError(f"it has no {name}")
+    if group.id.links.get_info(raw).type != h5l.TYPE_HARD:
+        raise StructureError(f"{name} is a link to somewhere else")
+    # As `group[name]`, which makes a new object of the whole file each time.
+    found = h5o.open(group.id, raw)
+    return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
+
+
+def names(group: Any) -> list[str]:
+    """The names of all that is in a group; `StructureError` if two are names of one thing, which would count twice."""
+    known: dict[Any, str] = {}
+    for raw in group.id:
+        link, name = group.id.links.get_info(raw), raw.decode(errors="surrogateescape")
+        if known.setdefault((link.type, link.u if link.type == h5l.TYPE_HARD else raw), name) != name:
+            raise StructureError(f"{name} is stored once, under two names")
+    return list(known.values())
+
+
+def subgroup(group: Any, name: str) -> Any:
+    """A group in a group; `StructureError` if it is anything else."""
+    found = member(group, name)
+    if not isinstance(found, h5py.Group):
+        raise StructureError(f"{name} is no group")
+    return found
+
+
+def dataset(
+    group: Any,
+    name: str,
+    kind: np.dtype[Any] | None,
+    shape: Sequence[int | None] | None,
+    allowance: Allowance,
+    rows: int | None = None,
+) -> Any:
+    """A dataset in a group, its storage checked, and what is to be read of it counted: all, or its first `rows`.
+
+    Without a `kind` it holds any numbers; a length of None may be any. Raises `StructureError` if it is something else,
+    has fewer rows, or claims more than what is left of the allowance.
+    """
+    found = member(group, name)
+    if not isinstance(found, h5py.Dataset):
+        raise StructureError(f"{name} is no dataset")
+    stored, lengths, properties = found.dtype, found.shape or (), found.id.get_create_plist()
+    filters = [properties.get_filter(k)[0] for k in range(properties.get_nfilters())]
+    chunked = properties.get_layout() == h5d.CHUNKED
+    chunk = properties.get_chunk() if chunked else ()
+    shaped = shape is None or (
+        found.shape is not None and len(lengths) == len(shape) and all(n in (None, m) for n, m in zip(shape, lengths))
+    )
+    typed = stored.kind in "fiubc" if kind is None else stored == kind or (
+        kind.kind == stored.kind == "S" and stored.itemsize == kind.itemsize
+    )  # fmt: skip
+    refused = {
+        f"holds {stored}, expected {kind or 'numbers'}": not typed,
+        f"has the shape {found.shape}, expected {shape}": not shaped,
+        "is stored outside of the file": properties.get_layout() == h5d.VIRTUAL or properties.get_external_count(),
+        f"is stored by a filter of {filters}, which h5py does not bring itself": not set(filters) <= _FILTERS,
+        "has fewer rows than were committed": rows is not None and (not lengths or lengths[0] < rows),
+    }
+    for what, wrong in refused.items():
+        if wrong:
+            raise StructureError(f"{name} {what}")
+    # A chunk is unfolded whole, and each of two filters makes a copy of it.
+    if chunked and 4 * math.prod(chunk) * stored.itemsize > allowance.limit:
+        raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}")
+    read = lengths if rows is None else (rows, *lengths[1:])
+    empty = found.shape is None
+    allowance.take(f"{group.name}/{name}".lstrip("/"), 0 if empty else stored.itemsize * math.prod(read))
+    return found
