@@ -8,7 +8,6 @@ necessary, by the duality theorem.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from fractions import Fraction
 from math import gcd, lcm
@@ -149,9 +148,7 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     return _multiplier(problem, strict=True)
 
 
-def infeasibility(
-    problem: MixedLCP, seconds: float = math.inf, guess: Array | None = None
-) -> Farkas | FloatFarkas | None:
+def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | FloatFarkas | None:
     """A proof that {x >= 0, A x + q >= 0} is empty: exact, else to working precision, else None.
 
     Parameters
@@ -159,8 +156,6 @@ def infeasibility(
     problem : MixedLCP
         Dense or sparse, of any scaling and any order. Tight conditions are solved in rationals up to order
         `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
-    seconds : float
-        For the linear program.
     guess : Array of shape (n,), optional
         A multiplier to be tried in place of that program's.
     """
@@ -179,7 +174,7 @@ def infeasibility(
         proof = None if ray is None else _proved(problem, system, matrix, vector, ray / ray.max(), rows)
         if proof is not None:
             return proof
-    guess = by_linear_program(matrix, vector, seconds) if guess is None else guess
+    guess = by_linear_program(matrix, vector) if guess is None else guess
     return None if guess is None else _proved(problem, system, matrix, vector, guess, rows)
 
 
@@ -241,7 +236,7 @@ def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
     rows, columns = scales(system)
     matrix, vector = scaled_data(system, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    guess = by_linear_program(matrix, vector, math.inf)
+    guess = by_linear_program(matrix, vector)
     if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
         return None
     return _exact(problem, system, matrix, guess, rows, strict, LARGEST_VERTEX)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import scipy.sparse as sp
 from scipy.optimize import linprog
@@ -50,18 +48,17 @@ def by_pivots(A: Array, q: Array) -> tuple[bool, Array | None]:
     return bool((A @ z + q >= -ROW_ROUNDING * (np.abs(A) @ z + np.abs(q))).all()), None
 
 
-def by_linear_program(matrix: Matrix, vector: Array, seconds: float) -> Array | None:
+def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
     """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if there is none, or HiGHS gave up.
 
-    `matrix`, of shape (m, k): A. `vector`, of shape (m,): Its q. `seconds`: The most it takes.
+    `matrix`, of shape (m, k): A. `vector`, of shape (m,): Its q.
     """
     n = vector.size
     total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
     result = linprog(
         vector, A_ub=transposed(matrix), b_ub=np.zeros(matrix.shape[1]), A_eq=total, b_eq=[1.0], bounds=(0, None),
         method="highs",
-        options={"primal_feasibility_tolerance": HIGHS_TOLERANCE, "dual_feasibility_tolerance": HIGHS_TOLERANCE,
-                 **({"time_limit": seconds} if seconds < math.inf else {})},
+        options={"primal_feasibility_tolerance": HIGHS_TOLERANCE, "dual_feasibility_tolerance": HIGHS_TOLERANCE},
     )  # fmt: skip
     if result.status != 0:
         return None

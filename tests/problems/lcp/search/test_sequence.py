@@ -8,7 +8,7 @@ from attrs import fields
 from problems import lcp
 from problems.lcp.active_set.face import FACES_KEPT, Faces
 from problems.lcp.pivoting.dictionary import Dictionary
-from problems.lcp.search import judging
+from problems.lcp.search import judge
 from problems.scenes.planar import free_motion, impulses, time_step
 
 
@@ -127,7 +127,7 @@ def test_steps_of_a_stack_take_a_few_pivots_from_the_last_basis(monkeypatch):
 def test_a_certificate_moves_between_units_digit_by_digit(monkeypatch):
     """Powers of two change none, so that it is not made again."""
     made = []
-    monkeypatch.setattr(judging, "certify", lambda *a: made.append(1) or lcp.certify(*a))
+    monkeypatch.setattr(judge, "certify", lambda *a: made.append(1) or lcp.certify(*a))
     A, r = definite(20, 5)
     rows, columns = 2.0 ** r.integers(-30, 31, (2, 20))
     problem = lcp.LCP(rows[:, None] * A * columns, rows * r.standard_normal(20))
