@@ -9,14 +9,14 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, largest, least
+from continuation.arrays import Array
 from continuation.counts import Counts
 from problems.lcp.data.fixed import WithoutFixed
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
 from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
 from problems.lcp.data.spread import far_apart
-from problems.lcp.proof.certificate import Certificate, certify
+from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
 from problems.lcp.reference.enumeration import decidable, exhaust
@@ -26,11 +26,6 @@ from problems.lcp.search.search import Candidate, Search
 
 MOST_LISTED = 5
 """Fixed unknowns that a message names."""
-
-
-MOST_MOVED = 100
-"""Powers of two by which x, rows and columns may differ from one, so that terms of rows remain far within the range of
-floats, where units that are powers of two change no digit of a certificate."""
 
 
 def answer(search: Search, message: str) -> Solution:
@@ -138,27 +133,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
         found = evolve(found, float_farkas=nearly.in_units(scaled.rows))
     if found.x is None:
         return found
-    x = scaled.x(found.x)
-    same = _moved(problem, scaled, found, x) if found.solved and not rounded else None
-    return _at(found, x, tolerance, rounded) if same is None else evolve(found, certificate=same)
-
-
-def _moved(problem: MixedLCP, scaled: Scaled, found: Solution, x: Array) -> Certificate | None:
-    """The certificate in the units given, in which no digit is another one; None where something is out of range."""
-    end, rows, columns = found.certificate, scaled.rows, scaled.columns
-    inside = problem.standard and scaled.exact and max(np.abs(rows).max(), np.abs(columns).max()) <= MOST_MOVED
-    if end is None or not inside or np.abs(np.frexp(end.x)[1]).max() > MOST_MOVED:
-        return None
-    w = np.ldexp(end.w, -rows)
-    return evolve(
-        end,
-        x=x,
-        w=w,
-        residual=largest(np.minimum(x, w)),
-        negative_x=max(-least(x), 0.0),
-        negative_w=max(-least(w), 0.0),
-        complementarity=largest(x * w),
-    )
+    return _at(found, scaled.x(found.x), tolerance, rounded)
 
 
 def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:

@@ -5,7 +5,6 @@ What is tried, and in what order, is in `table`; what may be claimed is decided 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -51,8 +50,8 @@ OWNED = ("target", "direction", "start", "state", "observers")
 """What may be said of a path, but not of those that `solve` traces."""
 
 
-MOST_RESTARTS, WITHIN_BUDGET = 1000, 100_000
-"""So that a search ends whose budget has no limit; and one that has, whose restarts should cost nothing."""
+MOST_RESTARTS = 1000
+"""So that a search ends whose budget has no limit: of a small problem they take about the default one."""
 
 
 @documented
@@ -95,8 +94,8 @@ def solve(
         Trace a path even where "auto" needs none, to look at it. Its turning points and branch points are looked for;
         else only without the finish, as active sets find certified ends.
     restarts : int, optional
-        Paths from random starts after the first has failed. Default: 0 for a named homotopy, and as many as the budget
-        allows for "auto" (1000 where it has no limit).
+        Paths from random starts after the first has failed, as the budget allows. Default: 0 for a named homotopy, and
+        1000 for "auto".
     seed : int
         Of the random starts, of reflections and of restarts; the k-th restart depends on `seed` and k alone. The same
         call gives the same answer on the same machine; elsewhere sums may be rounded otherwise, and reflections of a
@@ -161,8 +160,7 @@ def solve(
         rest = None if small.problem is None else solve(small.problem, homotopy, **left, **options)
         return with_fixed(small, rest, tolerance)
     if restarts is None:
-        limits = () if budget is None else (budget.steps, budget.seconds, budget.factorizations)
-        restarts = 0 if not automatic else MOST_RESTARTS if limits and min(limits) == math.inf else WITHIN_BUDGET
+        restarts = MOST_RESTARTS if automatic else 0
     scaled = units_of_its_own(problem, automatic and finish and not path) if automatic or extreme(problem) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:

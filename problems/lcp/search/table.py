@@ -10,6 +10,7 @@ The problem was scaled before, once. A row tells its method how far to go: in wo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Protocol
 
@@ -55,7 +56,7 @@ AUTOMATIC = (
     Row("reflections", Reflections, reflectable, 6, "rounds, of 8e8 iterations times n^2 at most"),
     Row("groups of faces", Exclusion, always, 10_000, "linear programs, of n <= 40, else one"),
     Row("paths", Paths, always, 1, "path of each homotopy"),
-    Row("restarts", Paths, lambda s: s.asked.restarts > 0, 100_000, "paths from random starts"),
+    Row("restarts", Paths, lambda s: s.asked.restarts > 0, math.inf, "paths, as many as were asked for"),
 )
 """For any matrix."""
 
@@ -72,9 +73,11 @@ def settled_by(search: Search, table: tuple[Row, ...]) -> str:
     """What settled the problem, as a sentence: a solution, or a proof that there is none; empty where nothing did."""
     made: dict[Callable[[Search], Method], Method] = {}
     for row in table:
-        if not search.exhausted and row.when(search):
+        if row.when(search):
             if row.method not in made:
                 made[row.method] = row.method(search)
             if said := made[row.method].run(row.work):
                 return said
+            if search.exhausted:
+                break
     return ""

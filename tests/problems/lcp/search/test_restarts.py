@@ -159,7 +159,7 @@ def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):
     assert "Restarts from random starts: 3" in endless.message
     assert not endless.solved
     limit = endless.counts.factorizations + 300
-    found = lcp.solve(problem, budget=continuation.Budget(steps=math.inf, factorizations=limit))
+    found = lcp.solve(problem, restarts=1000, budget=continuation.Budget(steps=math.inf, factorizations=limit))
     assert f"The budget is used up: {limit} factorisations." in found.message
     assert limit <= found.counts.factorizations < limit + 200
     assert len(found.paths) > len(endless.paths)
