@@ -77,8 +77,10 @@ class Finish:
         Of the last solution found.
     nearest : Certificate or None
         Of the point of least normwise residual that was judged and is no solution.
-    stopped : State or None
-        Where an iteration over regular faces alone would go on.
+    ended : Ended or None
+        Why the last iteration ended.
+    following : State or None
+        Where it would go on.
     """
 
     faces: Faces
@@ -87,7 +89,8 @@ class Finish:
     tried: Tried = field(factory=Tried)
     certificate: Certificate | None = field(default=None, init=False)
     nearest: Certificate | None = field(default=None, init=False)
-    stopped: State | None = field(default=None, init=False)
+    ended: Ended | None = field(default=None, init=False)
+    following: State | None = field(default=None, init=False)
 
     @property
     def problem(self) -> MixedLCP:
@@ -107,8 +110,7 @@ class Finish:
             Where a face holds many points, the one nearest to this is taken; zero by default.
         """
         found = iterate(self.faces, state, policy, near=near, judge=self.judged, tried=self.tried, counts=self.counts)
-        if found.ended is Ended.IRREGULAR:
-            self.stopped = found.state
+        self.ended, self.following = found.ended, found.state
         return found.x if found.ended is Ended.SOLVED else None
 
     def proximal_active_set(self, state: State | None = None) -> Array | None:

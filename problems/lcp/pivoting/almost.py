@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from enum import Enum
 
 import numpy as np
@@ -30,7 +29,6 @@ class Ended(Enum):
     REACHED = "the basis is complementary"
     RAY = "a variable grows without bound"
     PIVOTS = "all pivots are used up"
-    TIME = "time is up"
     PATH_LEFT = "rounding has led off the path"
 
 
@@ -113,20 +111,16 @@ class AlmostComplementary:
         else:
             self.entering = leaving + self.n if leaving < self.n else leaving - self.n
 
-    def run(self, most: int, seconds: float = np.inf) -> Ended:
-        """To the end, or until so many pivots, or seconds, are used up.
+    def run(self, most: int) -> Ended:
+        """To the end, or until so many pivots are used up.
 
         Parameters
         ----------
         most : int
-        seconds : float
         """
-        end = time.perf_counter() + seconds
         while self.ended is None:
             if self.pivots >= most:
                 return Ended.PIVOTS
-            if time.perf_counter() > end:
-                return Ended.TIME
             if self.compiled:
                 self._steps(most - self.pivots)
             else:

@@ -8,7 +8,6 @@ necessary, by the duality theorem.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from fractions import Fraction
 from math import gcd, lcm
@@ -17,14 +16,16 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import frozen
 from numpy.typing import NDArray
+from scipy.optimize import linprog
 
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.problem import LCP, MixedLCP, require_lcp, require_problem
 from problems.lcp.proof.compensated import row_terms
-from problems.lcp.proof.feasibility import LARGEST_PIVOTED, by_linear_program, by_pivots, transposed
 from problems.lcp.proof.inequalities import Conditions, Inequalities, conditions_of, inequalities
 from problems.lcp.proof.rational import IntegerRow, Integers, integers, solve_exactly
 
+HIGHS_TOLERANCE = 1e-10
+"""The tightest feasibility tolerance that HiGHS accepts."""
 _CLEARLY_POSITIVE = 1e-6
 """A scaled gap q'y above this is not worth an attempt at an exact proof."""
 _DENOMINATORS = (1, 12, 360, 10**4, 10**8)
@@ -149,9 +150,7 @@ def farkas(problem: MixedLCP) -> Farkas | None:
     return _multiplier(problem, strict=True)
 
 
-def infeasibility(
-    problem: MixedLCP, seconds: float = math.inf, guess: Array | None = None
-) -> Farkas | FloatFarkas | None:
+def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | FloatFarkas | None:
     """A proof that {x >= 0, A x + q >= 0} is empty: exact, else to working precision, else None.
 
     Parameters
@@ -159,8 +158,6 @@ def infeasibility(
     problem : MixedLCP
         Dense or sparse, of any scaling and any order. Tight conditions are solved in rationals up to order
         `AFFORDABLE_VERTEX`, while `farkas` takes the seconds that larger ones cost.
-    seconds : float
-        For the linear program.
     guess : Array of shape (n,), optional
         A multiplier to be tried in place of that program's.
     """
@@ -172,15 +169,31 @@ def infeasibility(
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
     if guess is not None:
         guess = guess * rows / max(float((guess * rows).max()), np.finfo(float).tiny)
-    if guess is None and not problem.sparse and max(matrix.shape) <= LARGEST_PIVOTED:
-        feasible, ray = by_pivots(matrix, vector)
-        if feasible:
-            return None
-        proof = None if ray is None else _proved(problem, system, matrix, vector, ray / ray.max(), rows)
-        if proof is not None:
-            return proof
-    guess = by_linear_program(matrix, vector, seconds) if guess is None else guess
+    guess = by_linear_program(matrix, vector) if guess is None else guess
     return None if guess is None else _proved(problem, system, matrix, vector, guess, rows)
+
+
+def by_linear_program(matrix: Matrix, vector: Array) -> Array | None:
+    """The y that minimises q'y subject to A'y <= 0, sum y = 1, y >= 0; None if there is none, or HiGHS gave up.
+
+    `matrix`, of shape (m, k): A. `vector`, of shape (m,): Its q.
+    """
+    n = vector.size
+    total = sp.csr_array(np.ones((1, n))) if sp.issparse(matrix) else np.ones((1, n))
+    result = linprog(
+        vector, A_ub=transposed(matrix), b_ub=np.zeros(matrix.shape[1]), A_eq=total, b_eq=[1.0], bounds=(0, None),
+        method="highs",
+        options={"primal_feasibility_tolerance": HIGHS_TOLERANCE, "dual_feasibility_tolerance": HIGHS_TOLERANCE},
+    )  # fmt: skip
+    if result.status != 0:
+        return None
+    solution: Array = np.maximum(result.x, 0.0)
+    return solution
+
+
+def transposed(matrix: Matrix) -> Matrix:
+    """A', stored as A is."""
+    return sp.csr_array(matrix.T) if sp.issparse(matrix) else matrix.T
 
 
 def _proved(
@@ -241,7 +254,7 @@ def _multiplier(problem: MixedLCP, strict: bool) -> Farkas | None:
     rows, columns = scales(system)
     matrix, vector = scaled_data(system, rows, columns)
     vector = vector / _power_of_two(np.abs(vector).max(keepdims=True))
-    guess = by_linear_program(matrix, vector, math.inf)
+    guess = by_linear_program(matrix, vector)
     if guess is None or float(vector @ guess) > (0.0 if strict else _CLEARLY_POSITIVE):
         return None
     return _exact(problem, system, matrix, guess, rows, strict, LARGEST_VERTEX)

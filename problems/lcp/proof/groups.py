@@ -46,6 +46,12 @@ class Groups:
     def __len__(self) -> int:
         return len(self.groups)
 
+    @property
+    def root(self) -> list[int] | None:
+        """The multiplier that excludes all faces alone, if there is one: a Farkas vector."""
+        one = self.groups[0] if len(self.groups) == 1 else None
+        return None if one is None or one.y is None or one.fixed.any() else _whole(one.y)
+
     def in_units(self, rows: NDArray[np.int64]) -> Groups:
         """The multipliers for a problem, where these are for that whose rows are 2^rows times those of it.
 

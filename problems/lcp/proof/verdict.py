@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv
 
 from continuation.arrays import Array, largest, least
 from problems.lcp.data.problem import MixedLCP
@@ -95,43 +94,17 @@ def exact_nearby(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
 
 def _clearly_exact(problem: MixedLCP, x: Array, w: Array | None = None) -> bool:
     """Whether floats prove it, as `Faced` does of many points; w is in twice the working precision."""
-    q, n, on = problem.q, problem.n, x.nonzero()[0]
-    if not on.size:
-        return least(q) >= 0.0
+    if not x.any():
+        return least(problem.q) >= 0.0
     if least(x) < 0.0:
         return False
-    if w is None:
-        w = accurate_w(problem, x)[0]
     A: Array = problem.A.toarray() if problem.sparse else problem.A
-    terms, ones = A * x, np.ones(n)
-    total = np.abs(terms).dot(ones)
-    size = total + np.abs(q)
+    size = np.abs(A).dot(x) + np.abs(problem.q)
     # Beyond this w is summed over powers of two, and what it lost is not known here.
     if not (least(size) >= 1.0 / LARGEST_TERMS and largest(size) <= LARGEST_TERMS):
         return False
-    unit, ones = total, ones[: on.size]
-    if on.size < n:
-        terms, unit = terms.take(on, 0).take(on, 1), unit.take(on)
-    if not least(unit) > UNDERFLOW:
-        return False
-    # No row of |B| sums to more than 1; what rounding of it and of the product may hide (Higham, section 3.5), twice.
-    block, one, rounding = terms / unit[:, None], identity(on.size), 2.0 * (n + 4) * EPS
-    found, singular = dgesv(block, one)[2:]
-    if singular:
-        return False
-    inverse = np.abs(found)
-    off = np.abs(found.dot(block) - one).dot(ones) + rounding * inverse.dot(ones)
-    defect = off.item(off.argmax())
-
-    def clear(bound: Array) -> bool:
-        far = inverse.dot((np.abs(w) + bound).take(on) / unit)
-        moved = far.item(far.argmax()) * (1.0 + ROUND_OFF) / (1.0 - defect)
-        positive = w - bound > 2.0 * moved * total
-        positive[on] = True
-        return moved < 0.5 and bool(np.logical_and.reduce(positive))
-
-    # Mostly the error of plain arithmetic is small enough, which takes less time to say.
-    return defect < 0.5 and (clear(2.0 * EPS * size) or clear(error_bound(w, size, n + 1)))
+    w = accurate_w(problem, x)[0] if w is None else w
+    return bool(Faced.of(A, x).exact(w, error_bound(w, size, problem.n + 1)))
 
 
 @frozen(eq=False)

@@ -8,7 +8,6 @@ if it is complementary, and if not one of its pairs with x_i > 0 and w_i > 0 is 
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -31,9 +30,6 @@ and what they claim is checked."""
 
 PIVOTS_PER_NODE = 50
 """Times the order: of 600 nodes of order 20 to 60 none took more than the order itself; without end is none."""
-
-NODES_PER_LOOK = 64
-"""At the clock."""
 
 LARGEST_FACE = 40
 """Up to this order a complementary point whose face is not accepted in floats is decided in rationals: 0.2 s."""
@@ -87,18 +83,21 @@ class Branching:
         root = Dictionary(table, np.arange(n, 2 * n + 1), np.arange(n))
         self._waiting.append(Node(np.zeros(2 * n + 1, dtype=bool), root))
 
-    def run(self, most: int, seconds: float = math.inf) -> Exhaustion | None:
+    @property
+    def open(self) -> bool:
+        """Whether nodes were looked at, and others wait."""
+        return self.nodes > 0 and bool(self._waiting) and not self._given_up
+
+    def run(self, most: int) -> Exhaustion | None:
         """Go on until there is a solution or a proof; None where there is neither, or a face was accepted.
 
         Parameters
         ----------
         most : int
             Nodes.
-        seconds : float
         """
-        end = time.perf_counter() + seconds
         while self._waiting and not self._given_up:
-            if self.nodes >= most or (self.nodes % NODES_PER_LOOK == 0 and time.perf_counter() > end):
+            if self.nodes >= most:
                 return None
             self.nodes += 1
             if not self._look(self._waiting.pop()):

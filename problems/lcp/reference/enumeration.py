@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import product
@@ -144,23 +143,20 @@ def decidable(problem: MixedLCP, order: int = LARGEST_FACES) -> bool:
     return problem.n <= PER_PIECE * order and problem.pieces <= 1 << order
 
 
-def exhaust(problem: MixedLCP, seconds: float = math.inf, *, filtered: bool = False) -> Exhaustion | None:
+def exhaust(problem: MixedLCP, *, filtered: bool = False) -> Exhaustion:
     """Whether the problem has a solution, decided like `solve_by_enumeration`, which goes on to find all of them.
 
     Parameters
     ----------
     problem : MixedLCP
         Dense or sparse, `decidable`: for an LCP, n at most `LARGEST_FACES`.
-    seconds : float
-        After so long it is given up.
     filtered : bool
         Whether pieces that floats, with bounds on their rounding, prove to hold no solution are passed over; quicker by
         the more the larger n is, and the outcome is the same.
 
     Returns
     -------
-    Exhaustion or None
-        None if time was up before the question was decided.
+    Exhaustion
 
     Raises
     ------
@@ -169,7 +165,6 @@ def exhaust(problem: MixedLCP, seconds: float = math.inf, *, filtered: bool = Fa
     """
     entries, q, _ = _integers(problem)
     bounds, unit = bounds_over(list(zip(problem.lower.tolist(), problem.upper.tolist())))
-    end = time.perf_counter() + seconds
     states = list(_all_states(problem))
     asked = doubtful(problem, np.array(states, dtype=np.int8).reshape(len(states), problem.n)) if filtered else None
     for tried, state in enumerate(states, 1):
@@ -178,8 +173,6 @@ def exhaust(problem: MixedLCP, seconds: float = math.inf, *, filtered: bool = Fa
         point = piece_point(entries, q, bounds, unit, state)
         if point is not None:
             return Exhaustion(point.x, tried)
-        if time.perf_counter() > end:
-            return None
     return Exhaustion(None, len(states))
 
 

@@ -10,6 +10,7 @@ from attrs import evolve, frozen
 from continuation.arrays import Array
 from continuation.path import LocatedEvent, Path, Step
 from continuation.step.tracer import Observer, Tracer
+from problems.lcp.data.problem import MixedLCP
 
 
 @frozen(eq=False)
@@ -21,6 +22,11 @@ class Padded:
 
     observer: Observer
     unknowns: int
+
+    @classmethod
+    def of(cls, observer: Observer, problem: MixedLCP) -> Padded:
+        """For the paths of a problem, of which those of the KKT homotopy have most unknowns."""
+        return cls(observer, (3 if problem.standard else 6) * problem.n)
 
     def step(self, tracer: Tracer, step: Step) -> None:
         """The step, filled up."""

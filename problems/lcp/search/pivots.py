@@ -1,144 +1,131 @@
-"""Pivoting as an attempt of `solve`: Lemke's method and that of Lemke and Howson, certified and limited in pivots."""
+"""Pivots: Lemke's method, that of Lemke and Howson for games, and the path from the solution of a problem nearby.
+
+An almost complementary path goes from basis to basis, and ends at a solution or on a ray. Of a semidefinite A the ray
+is a proof that there is no feasible point; of another one it says nothing.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from attrs import evolve, frozen
-from scipy.linalg.lapack import dgetrf
 
-from continuation.arrays import Array, largest
 from problems.lcp.active_set.face import Mask
-from problems.lcp.active_set.iteration import Policy
-from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, active_state
 from problems.lcp.parametric.basis import SingularBasisError
 from problems.lcp.parametric.start import from_solution
 from problems.lcp.parametric.trail import state_at
 from problems.lcp.pivoting.almost import AlmostComplementary, Ended
-from problems.lcp.pivoting.dictionary import Indices
 from problems.lcp.pivoting.starts import Game, covering, unit_of
 from problems.lcp.proof.farkas import infeasibility
-from problems.lcp.search.search import Search
+from problems.lcp.search.search import Nearby, Search
 
-LARGEST_TABLE = 1000
-"""A larger order is not pivoted: a table is n^2 numbers, and a pivot goes through all of them."""
+LARGEST_TABLE = 3000
+"""A larger order is not pivoted: its table is 72 MB, and a pivot goes through all of it."""
 
-LARGEST_CONVEX = 3000
-"""Of the conditions of a convex program, on which Lemke's method ends, a larger one is: 72 MB. Traffic takes 1,224
-pivots at n = 1188 and 2,427 at 2376, 0.2 and 1.2 s, where a path takes 2 s at n = 1188,"""
+PIVOT_WORK, LEAST_PIVOTS = 1_000_000, 3
+"""Pivots over the order, and at least so many times the order: a second at n = 1000, where traffic takes one pivot per
+unknown, and a path ten seconds."""
 
-MANY_ENTRIES = 10
-"""if its rows have so many entries on average, so that factors fill: a stencil has 5 to 9, and paths are quicker."""
-
-CONVEX_PIVOTS = 3
-"""Times the order: what they may take."""
-
-PIVOTS_PER_ORDER = 10
-"""So many pivots times the order are done at most,"""
-
-PIVOT_WORK = 1_000_000
-"""and so many over the order, which is less from order 316 on: a second, where a path of order 1000 takes ten."""
-
-COVERINGS = 5
-"""Covering vectors that are tried on a quadratic program, with twice the pivots each,"""
-
-SPREAD = (-3.0, 0.0)
-"""and the decimal logarithms of their entries. On 40 indefinite box QPs (n = 40 to 200): 5 suffice, the first mostly,
-with 20 n pivots; with 10 n up to 6 are needed; entries from 0.1 to 3 need up to 51 with 10 n, 4 with 20 n."""
-
-LABELS = (0, -1)
-"""One of each player: where a path from one is long those from the others mostly are (covariant games of order 300)."""
+COVERINGS, SPREAD = 5, (-3.0, 0.0)
+"""Covering vectors that are tried on a quadratic program, with twice the pivots each, and the decimal logarithms of
+their entries. On 40 indefinite box QPs (n = 40 to 200) 5 suffice; entries from 0.1 to 3 need up to 51."""
 
 SHORT_PATHS = 4
-"""But of uniform and normal games of order 1000, where these take more than 10,000 pivots, 6 to 14 % of the labels
-have a path of less than n / 2, half of them of less than n / 4: at first so many labels are tried as one long path
-takes pivots, later twice as many with twice the pivots."""
+"""Of uniform and normal games of order 1000, whose paths mostly take more than 10,000 pivots, 6 to 14 % of the labels
+have a path of less than n / 2, half of them of less than n / 4: so many labels are tried as long, and twice as many."""
 
 GAME_WORK = 1_000_000_000
-"""Entries of its table that a path of a game goes through at most; its pivots are doubled, label by label, up to there.
-Covariant games (rho = -.9) of order 300 take 5,000 to 17,000 pivots, 0.15 to 0.6 s; by other paths 2 s, where these
-arrive, which is in two of three."""
-
-ENOUGH, ROUNDING = 64, 1e-10
-"""Equations of the first face of which is asked how many are independent; a pivot that is rounding is smaller than this
-beside the largest."""
-
-AT_END = Policy(steps=2)
-"""Corrections of the active set of the last basis, which is right but for rounding."""
+"""Entries of its table that a path of a game goes through at most: covariant games (rho = -.9) of order 300 take 5,000
+to 17,000 pivots from every label, 0.15 to 0.6 s."""
 
 
-@frozen(eq=False)
-class Nearby:
-    """The solution of a problem nearby: x, and w = A x + q there."""
-
-    x: Array
-    w: Array
-
-
-def most_pivots(n: int) -> int:
-    """How many pivots are worth their time before a path.
+def most_pivots(n: int, per_order: float = 10.0) -> int:
+    """How many pivots are worth their time before a path: so many times the order, of large problems fewer.
 
     Parameters
     ----------
     n : int
+    per_order : float
     """
-    return min(PIVOTS_PER_ORDER * n, PIVOT_WORK // n) if n <= LARGEST_TABLE else CONVEX_PIVOTS * n
+    return max(min(int(per_order * n), PIVOT_WORK // n), LEAST_PIVOTS * n)
 
 
-def convex(structure: Structure) -> bool:
-    """Whether a problem beyond `LARGEST_TABLE` is that of a convex program with constraints that is worth its pivots.
-
-    Parameters
-    ----------
-    structure : Structure
-    """
-    problem = structure.problem
-    if not problem.sparse or problem.n > LARGEST_CONVEX or problem.A.nnz < MANY_ENTRIES * problem.n:
-        return False
-    return not structure.problem.A.diagonal().all() and structure.definite_where_it_has_entries()
+def pivotable(search: Search) -> bool:
+    """Whether there are pivots for the problem, and its table is no burden."""
+    return search.problem.standard and search.problem.n <= LARGEST_TABLE and search.finish is not None
 
 
-def independent(problem: LCP) -> float:
-    """How many equations of the first face, where q < 0, are independent but for rounding, as a share of the first few.
-
-    Parameters
-    ----------
-    problem : LCP
-        Dense.
-    """
-    inside = (problem.q < 0.0).nonzero()[0][:ENOUGH]
-    pivots = np.abs(dgetrf(problem.A[inside][:, inside])[0].diagonal())
-    return float(np.count_nonzero(pivots > ROUNDING * largest(pivots)) / pivots.size)
-
-
-def by_lemke(search: Search, seed: int) -> bool:
-    """Lemke's method; whether it led to a solution, or its ray to a proof that there is none.
-
-    Parameters
-    ----------
-    search : Search
-        Takes up what is found.
-    seed : int
-        Of covering vectors.
-    """
+def game(search: Search) -> bool:
+    """Whether the problem is a bimatrix game, which has a method of its own."""
     problem = search.problem
-    assert isinstance(problem, LCP)
-    most, unit = most_pivots(problem.n), unit_of(problem)
-    bounds = constraints(problem)
-    if bounds.any():
-        random = np.random.default_rng(seed)
-        for _ in range(COVERINGS):
-            path = covering(problem, np.where(bounds, 0.0, unit * 10.0 ** random.uniform(*SPREAD, problem.n)))
-            if path is not None and _reached(search, path, path.run(2 * most, search.seconds_left)):
-                return True
-    path = covering(problem, np.full(problem.n, unit))
-    if path is None:
+    first = not problem.sparse and problem.A[0, 0] == 0.0
+    return first and isinstance(problem, LCP) and Game.of(problem) is not None
+
+
+@frozen(eq=False)
+class Pivots:
+    """The almost complementary paths of one problem."""
+
+    search: Search
+
+    def run(self, work: float) -> str:
+        """Up to so many pivots times the order; what settled the problem: a solution, or the proof of a ray."""
+        problem = self.search.problem
+        assert isinstance(problem, LCP)
+        played = Game.of(problem)
+        paths = self._lemke(problem, work) if played is None else self._lemke_howson(played, work)
+        for path, most in paths:
+            if reached(self.search, path, most):
+                compiled = " (pivots compiled by numba)" if path is not None and path.compiled else ""
+                method = "Lemke's method" if played is None else "the method of Lemke and Howson"
+                return f"By {method}{compiled}, before any path."
+        return ""
+
+    def _lemke(self, problem: LCP, work: float) -> Iterator[tuple[AlmostComplementary | None, int]]:
+        """From random covering vectors on a program that may be indefinite, else, and last, from e."""
+        most, unit = most_pivots(problem.n, work), unit_of(problem)
+        bounds = constraints(problem)
+        if bounds.any():
+            random = np.random.default_rng(self.search.asked.seed)
+            for _ in range(COVERINGS):
+                d = np.where(bounds, 0.0, unit * 10.0 ** random.uniform(*SPREAD, problem.n))
+                yield covering(problem, d), 2 * most
+        yield covering(problem, np.full(problem.n, unit)), most
+
+    def _lemke_howson(self, played: Game, work: float) -> Iterator[tuple[AlmostComplementary, int]]:
+        """From a label of each player, ever further, and from many others, shortly.
+
+        References
+        ----------
+        Codenotti, De Rossi and Pagan, "An experimental analysis of Lemke-Howson algorithm", arXiv 0811.3247, 2008.
+        """
+        n, m = played.problem.n, played.actions
+        most, batch = int(work * n), int(SHORT_PATHS * work)
+        paths = [played.path(label) for label in (0, n - 1)]
+        while True:
+            yield from ((path, most) for path in paths if path.ended is None)
+            most *= 2
+            if most > GAME_WORK // (m * (n - m)) or all(path.ended is not None for path in paths):
+                break
+        labels = np.random.default_rng(self.search.asked.seed).permutation(n)
+        yield from ((played.path(int(label)), n // SHORT_PATHS) for label in labels[:batch])
+        yield from ((played.path(int(label)), 2 * n // SHORT_PATHS) for label in labels[batch : 3 * batch])
+
+
+def reached(search: Search, path: AlmostComplementary | None, most: int) -> bool:
+    """Follow a path; whether it led to a solution, or its ray to a proof that there is none."""
+    ended = None if path is None else path.run(most)
+    if path is None or ended not in (Ended.REACHED, Ended.RAY):
         return False
-    ended = path.run(most, search.seconds_left)
     if ended is Ended.RAY:
-        search.proof = infeasibility(problem, guess=path.ray())
+        search.proof = infeasibility(search.problem, guess=path.ray())
         return search.proof is not None
-    return _reached(search, path, ended)
+    # Where rounding has made the last basis singular its own point may do.
+    if search.settle(active_state(path.active)):
+        return True
+    return search.finish is not None and search.found(search.finish.take(path.values()))
 
 
 def by_guess(search: Search, guess: Nearby) -> bool:
@@ -170,7 +157,7 @@ def by_guess(search: Search, guess: Nearby) -> bool:
     except SingularBasisError:
         return False
     state = None if walk is None else state_at(walk, 0.0, most_pivots(problem.n))
-    return state is not None and search.settle(state, AT_END)
+    return state is not None and search.settle(state)
 
 
 def constraints(problem: LCP) -> Mask:
@@ -195,55 +182,3 @@ def constraints(problem: LCP) -> Mask:
     signs = np.sign(dense[rows])
     rows[rows] = (signs == -np.sign(dense[:, rows].T)).all(axis=1) & signs.any(axis=1)
     return rows if not dense[np.ix_(rows, rows)].any() else none
-
-
-def by_lemke_howson(search: Search, seed: int) -> bool:
-    """The method of Lemke and Howson from `LABELS`, and from many others, shortly; whether it led to a solution.
-
-    Parameters
-    ----------
-    search : Search
-        Takes up what is found.
-    seed : int
-        Of the order of the labels.
-
-    References
-    ----------
-    Codenotti, De Rossi and Pagan, "An experimental analysis of Lemke-Howson algorithm", arXiv 0811.3247, 2008.
-    """
-    assert isinstance(search.problem, LCP)
-    game = Game.of(search.problem)
-    if game is None:
-        return False
-    n, m = search.problem.n, game.actions
-
-    def leads(path: AlmostComplementary, most: int) -> bool:
-        return path.ended is None and _reached(search, path, path.run(most, search.seconds_left))
-
-    def shortly(labels: Indices, most: int) -> bool:
-        return any(leads(game.path(int(label)), most) for label in labels)
-
-    most, batch = PIVOTS_PER_ORDER * n, SHORT_PATHS * PIVOTS_PER_ORDER
-    labels = np.random.default_rng(seed).permutation(n)
-    paths = [game.path(LABELS[0] % n)]
-    if leads(paths[0], most):
-        return True
-    paths += [game.path(label % n) for label in LABELS[1:]]
-    while 2 * most <= GAME_WORK // (m * (n - m)) and any(path.ended is None for path in paths):
-        most *= 2
-        if any(leads(path, most) for path in paths):
-            return True
-    return shortly(labels[:batch], n // SHORT_PATHS) or shortly(labels[batch : 3 * batch], 2 * n // SHORT_PATHS)
-
-
-def _reached(search: Search, path: AlmostComplementary, ended: Ended) -> bool:
-    search.compiled = path.compiled
-    # A first active set that was looked at, and not tried since, is counted here.
-    looked = not search.counts.factorizations and search.looked is not None
-    if ended is not Ended.REACHED:
-        return False
-    # Where rounding has made the last basis singular its own point may do.
-    if not search.settle(active_state(path.active), AT_END) and not search.take(path.values()):
-        return False
-    search.counts.factorizations += looked
-    return True

@@ -19,11 +19,12 @@ from collections.abc import Iterator
 
 import numpy as np
 import scipy.linalg as sl
-from attrs import frozen
+from attrs import define, frozen
 from numpy.typing import NDArray
 
 from continuation.arrays import Array, largest
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
+from problems.lcp.search.search import Search
 
 Single = NDArray[np.float32]
 
@@ -38,6 +39,13 @@ BALANCINGS = 5
 """Of rows and columns in turn: for a dense matrix the fifth changes less than a percent."""
 
 
+LARGEST_REFLECTED = 1000
+"""A round takes a minute at this order, of which Gaussian problems need 5 to 17 s."""
+
+ROUND_WORK = 8e8
+"""Iterations times n^2 that are one round at least: 3 s. From order 400 on a round is more, 16 s of order 600."""
+
+
 def run_length(n: int) -> int:
     """Iterations after which all runs begin anew: that of 1,000 to 6,000 at n = 200 matters little.
 
@@ -46,13 +54,8 @@ def run_length(n: int) -> int:
     return 1000 + 10 * n
 
 
-def rounds_within(n: int, work: float, most: int) -> int:
-    """So many rounds of iterations that are `work` together, each n^2: at least one, and at most so many."""
-    return min(max(int(work / (run_length(n) * n * n)), 1), most)
-
-
 @frozen(eq=False)
-class Reflections:
+class Sets:
     """The two sets, in units in which all rows and columns weigh the same.
 
     `onto`, shape (2 n, 2 n): Projects onto the differences of points with w = A x + q. `nearest`, shape (2 n, 1): The
@@ -67,7 +70,7 @@ class Reflections:
     standard: bool
 
     @classmethod
-    def of(cls, problem: MixedLCP) -> Reflections | None:
+    def of(cls, problem: MixedLCP) -> Sets | None:
         """Those of a problem; None where w = A x + q lies so that there is no unit of length."""
         A, n = problem.A.toarray() if problem.sparse else problem.A, problem.n
         rows, columns = _balanced(A)
@@ -122,6 +125,34 @@ class Reflections:
         b[:n] = np.where(low, self.lower, np.where(high, self.upper, between))
         b[n:] = np.where(low, np.maximum(w, 0.0), np.where(high, np.minimum(w, 0.0), 0.0))
         return np.where(low, LOWER, np.where(high, UPPER, BETWEEN)), b
+
+
+def reflectable(search: Search) -> bool:
+    """Where projections are no burden, and pivots do not end at a solution or a proof, as for a semidefinite A."""
+    return search.finish is not None and search.problem.n <= LARGEST_REFLECTED and not search.semidefinite()
+
+
+@define(eq=False)
+class Reflections:
+    """The runs of one problem, which go on where they were left."""
+
+    search: Search
+    _runs: Iterator[tuple[int, list[State]]] | None = None
+
+    def run(self, work: float) -> str:
+        """Until so many rounds of runs are over, of a large problem or within a small budget fewer, but one."""
+        search, n = self.search, self.search.problem.n
+        if self._runs is None:
+            sets = Sets.of(search.problem)
+            self._runs = iter(()) if sets is None else sets.rounds(np.random.default_rng(search.asked.seed))
+        rounds = min(work, work * ROUND_WORK / (run_length(n) * n * n)) * search.share
+        for over, faces in self._runs:
+            if any(search.settle(face) for face in faces):
+                seed = search.asked.seed
+                return f"Solved by reflections between w = A x + q and the complementary pairs (seed {seed})."
+            if over >= max(rounds, 1) or search.exhausted:
+                break
+        return ""
 
 
 def _single(values: Array) -> Single:

@@ -19,9 +19,9 @@ from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
 from problems.lcp.data.scaling import LEAST_EXPONENT, Scaled, balanced
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering, unit_of
-from problems.lcp.search.judging import answer, unscaled
+from problems.lcp.search.judge import answer, unscaled
 from problems.lcp.search.outcome import Solution
-from problems.lcp.search.pivots import AT_END, LARGEST_TABLE, most_pivots
+from problems.lcp.search.pivots import LARGEST_TABLE, most_pivots
 from problems.lcp.search.search import Search
 from problems.lcp.search.solver import solve
 from problems.options import check_tolerance
@@ -108,7 +108,7 @@ class Solver:
                 return None
             current = self._scaled_lcp().with_q(moved)
         finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
-        search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf), None, False, {})
+        search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf))
         message = "Solved by the active set of a problem nearby, corrected."
         if not search.settle(active_state(current.q < 0.0 if guess is None else guess), WARM):
             if not self._pivoted(search):
@@ -139,7 +139,7 @@ class Solver:
         for d, basis in [*begins, (np.full(problem.n, unit_of(problem)), None)]:
             path = covering(problem, d, basis)
             reached = path is not None and path.run(most_pivots(problem.n)) is Ended.REACHED
-            if path is not None and reached and search.settle(active_state(path.active), AT_END):
+            if path is not None and reached and search.settle(active_state(path.active)):
                 self._bases = [(problem.q, path.active)]
                 return True
         return False

@@ -1,11 +1,10 @@
 """`solve`: a solution with its certificate, or an honest account of what was found instead.
 
-What is tried, and in what order, is in `strategy`; what may be claimed is decided in `judging`.
+What is tried, and in what order, is in `table`; what may be claimed is decided in `judge`.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from concurrent.futures import Executor
 from contextlib import nullcontext
@@ -14,12 +13,11 @@ from os import PathLike
 from typing import Any, Unpack
 
 import numpy as np
-from attrs import evolve
 
 from continuation.archive import PathLog
 from continuation.archive.atomic import as_file
 from continuation.arguments.checks import check_flag, instance_with
-from continuation.arrays import Array, largest, least
+from continuation.arrays import Array, largest
 from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.linear.factoring import check_method
@@ -28,27 +26,23 @@ from continuation.linear.threads import one_thread
 from continuation.path import Path, Step
 from continuation.status import Kind, Status
 from continuation.step.options import PART_OPTIONS, PartOptions, check_names, checked, documented
-from problems.lcp.active_set.face import Face, Faces, exchanging
+from problems.lcp.active_set.face import Faces, exchanging
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.fixed import without_fixed
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import balanced, without_far_factor
-from problems.lcp.data.spread import extreme, far_apart
+from problems.lcp.data.spread import extreme
 from problems.lcp.homotopies import KKTHomotopy, Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES
 from problems.lcp.homotopies.starts import inside_vector, positive_vector
-from problems.lcp.pivoting.starts import Game
 from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.verdict import LARGEST_DECIDED
 from problems.lcp.reference.enumeration import decidable
-from problems.lcp.search import at_once
-from problems.lcp.search.case import Case
-from problems.lcp.search.judging import answer, beyond_floats, of_program, unscaled, with_fixed
+from problems.lcp.search.judge import answer, beyond_floats, exactly, of_program, units_of_its_own, unscaled, with_fixed
 from problems.lcp.search.outcome import Outcome, Solution
-from problems.lcp.search.pivots import Nearby
-from problems.lcp.search.search import Search
-from problems.lcp.search.strategy import AUTOMATIC, EXACTLY, NAMED, PATHS, Attempt, settled_by
+from problems.lcp.search.padded import Padded, show
+from problems.lcp.search.search import Asked, Nearby, Search
+from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, settled_by
 from problems.lcp.search.work import default_budget
 from problems.options import check_budget, check_seed, check_tolerance, finite_vector
 
@@ -56,8 +50,8 @@ OWNED = ("target", "direction", "start", "state", "observers")
 """What may be said of a path, but not of those that `solve` traces."""
 
 
-MOST_RESTARTS, WITHIN_BUDGET = 1000, 100_000
-"""So that a search ends whose budget has no limit; and one that has, whose restarts should cost nothing."""
+MOST_RESTARTS = 1000
+"""So that a search ends whose budget has no limit: of a small problem they take about the default one."""
 
 
 @documented
@@ -85,10 +79,9 @@ def solve(
     ----------
     problem : LCP, MixedLCP or Program
     homotopy : str
-        "auto": what is cheap and cannot mislead first (active sets, pivots, reflections, some groups of faces), then
-        Wang's path, then the KKT path, then more groups of faces up to order 40, more reflections, then restarts
-        (`search.strategy` has the order). Or
-        one of "kkt", "wang", "yu", "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
+        "auto": what is cheap and cannot mislead first (active sets, pivots, exclusion of faces, reflections), then
+        Wang's path, then the KKT path, then restarts (`search.table` has the order). Or one of "kkt", "wang", "yu",
+        "xu", "zhao", "kmm"; with bounds "kkt", "wang", "yu" or "kmm".
     x0 : array_like, shape (n,), optional
         A positive start; for "kkt" need not be feasible, and if it is, z1 = z2 = e, which is the paper's start. For
         "auto" zeros are welcome, as in the solution of a problem nearby: where x0 > A x0 + q is tried first.
@@ -101,8 +94,8 @@ def solve(
         Trace a path even where "auto" needs none, to look at it. Its turning points and branch points are looked for;
         else only without the finish, as active sets find certified ends.
     restarts : int, optional
-        Paths from random starts after the first has failed. Default: 0 for a named homotopy, and as many as the budget
-        allows for "auto" (1000 where it has no limit).
+        Paths from random starts after the first has failed, as the budget allows. Default: 0 for a named homotopy, and
+        1000 for "auto".
     seed : int
         Of the random starts, of reflections and of restarts; the k-th restart depends on `seed` and k alone. The same
         call gives the same answer on the same machine; elsewhere sums may be rounded otherwise, and reflections of a
@@ -110,7 +103,7 @@ def solve(
     budget : continuation.Budget, optional
         Of everything together. By default as many factorisations as take about a minute, which depends on n alone
         (`default_budget`), so that no clock decides the answer; reflections, which need none, take half a minute more
-        at most. ``Budget(seconds=60)`` ends by the clock.
+        at most. ``Budget(seconds=60)`` counts seconds of the processor, so that a busy machine makes no difference.
     tolerance : float
         What `Certificate.solves` is asked before anything is called a solution.
     archive : path, optional
@@ -142,12 +135,7 @@ def solve(
     Dutta, Das and Jana, "Bounded Homotopy Path Approach to Find the Solution of Linear Complementarity Problems".
     """
     if isinstance(problem, Program):
-        found = solve(
-            problem.problem, homotopy, x0=x0, guess=guess, finish=finish, path=path, restarts=restarts, seed=seed,
-            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor,
-            sparse=sparse, **options,
-        )  # fmt: skip
-        return of_program(problem, found)
+        return of_program(problem, solve(problem.problem, homotopy, **_given(locals()), **options))
     require_problem(problem)
     if problem.standard and not isinstance(problem, LCP):
         problem = LCP(problem.A, problem.q, primal=problem.primal)
@@ -160,88 +148,54 @@ def solve(
         raise ValueError(f"homotopy: expected auto or one of {known} for a problem with bounds, found {homotopy!r}")
     check_method("sparse", sparse)
     _check_arguments(tolerance, restarts, seed, budget, executor, options, finish=finish, path=path, progress=progress)
-    if restarts is None:
-        limits = () if budget is None else (budget.steps, budget.seconds, budget.factorizations)
-        restarts = 0 if not automatic else MOST_RESTARTS if limits and min(limits) == math.inf else WITHIN_BUDGET
     if problem.n == 0:
         return _nothing(problem, archive)
     start = None if x0 is None else _start(x0, problem, automatic)
     near = _near(guess, problem)
     if not problem.standard and problem.fixed.any():
         small = without_fixed(problem)
-        if start is not None:
-            start = start[small.kept]
-        near = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
-        rest = None if small.problem is None else solve(
-            small.problem, homotopy, x0=start, guess=near, finish=finish, path=path, restarts=restarts, seed=seed,
-            budget=budget, tolerance=tolerance, archive=archive, progress=progress, executor=executor,
-            sparse=sparse, **options,
-        )  # fmt: skip
+        left = _given(locals())
+        left["x0"] = None if start is None else start[small.kept]
+        left["guess"] = None if near is None else Nearby(near.x[small.kept], near.w[small.kept])
+        rest = None if small.problem is None else solve(small.problem, homotopy, **left, **options)
         return with_fixed(small, rest, tolerance)
-    # A homotopy by name is traced in the units given, while floats can hold what it is made of.
-    candidate = automatic and finish and not path and problem.standard
-    # A factor of all entries that is far from 1 is taken off first: what is done does not depend on it.
-    scaled, postponed = without_far_factor(problem) if candidate else (None, False)
-    plain = problem if scaled is None else scaled.problem
-    # What scaling to floats would round is decided by exact arithmetic where that is cheap.
-    postponed = postponed and (problem.n > LARGEST_DECIDED or not far_apart(plain))
-    structure = Structure(plain)
-    quick = postponed and problem.n <= at_once.LARGEST_IN_ONE and not problem.sparse
-    # A game is left to its own method, which takes no active set.
-    game = quick and plain.A[0, 0] == 0.0 and isinstance(plain, LCP) and Game.of(plain) is not None
-    kept: dict[bytes, Face] | None = {} if quick else None
-    immediate, looked = None, None
-    if quick and not game and start is None and near is None and least(problem.q) < 0.0:
-        with Silence(), one_thread:
-            immediate, looked = at_once.at_once(Finish(Faces(structure, kept=kept), tolerance))
-            if immediate is not None and scaled is not None:
-                immediate = unscaled(problem, scaled, immediate, tolerance)
-            if immediate is None and plain.n <= at_once.LARGEST_EXCLUDED:
-                immediate = at_once.none_at_once(problem, plain)
-        if immediate is not None and archive is None:
-            return immediate
-    if not postponed:
-        scaled = balanced(problem) if automatic or extreme(problem) else None
+    if restarts is None:
+        restarts = MOST_RESTARTS if automatic else 0
+    scaled = units_of_its_own(problem, automatic and finish and not path) if automatic or extreme(problem) else None
     beyond = scaled is not None and not scaled.exact and decidable(problem, LARGEST_DECIDED)
     if beyond:
         scaled = None
-    if scaled is not None and start is not None:
-        start = scaled.u(start)
-    if scaled is not None and near is not None:
-        near = Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
-    current = problem if scaled is None else scaled.problem
-    structure = structure if current is plain else Structure(current)
+    if scaled is not None:
+        start = None if start is None else scaled.u(start)
+        near = None if near is None else Nearby(scaled.u(near.x), np.ldexp(near.w, scaled.rows))
+    structure = Structure(problem if scaled is None else scaled.problem)
+    log = None if archive is None else PathLog(as_file("archive", archive), title=_title(problem))
     search = Search(
         structure,
-        Finish(Faces(structure, kept=kept, factoring=exchanging(sparse)), tolerance) if finish else None,
+        Finish(Faces(structure, factoring=exchanging(sparse)), tolerance) if finish else None,
         tolerance,
         budget if budget is not None else default_budget(problem),
-        None if archive is None else PathLog(as_file("archive", archive), title=_title(problem)),
-        progress,
-        dict(options),
-        scaled=scaled,
-        postponed=postponed,
-        looked=looked,
-        shown=path,
+        Asked(homotopy, start, near, restarts, seed, executor, path, log, progress, dict(options)),
+        scaled,
     )
-    asked = homotopy if not automatic else "kkt" if problem.standard else "wang"
-    case = Case(search, start, asked, restarts, seed, executor, near)
-    strategy = NAMED if not automatic else PATHS if path else AUTOMATIC
     # What overflows comes out as an infinity or a NaN, which is never taken for an answer: every end is certified.
-    with Silence(), one_thread, search.log if search.log is not None else nullcontext():
-        if immediate is not None:
-            found = immediate
-        elif beyond:
+    with Silence(), one_thread, log if log is not None else nullcontext():
+        if beyond:
             found = beyond_floats(problem, tolerance)
         else:
-            settled = settled_by(case, strategy)
-            found, scaled = answer(search, _account(case, settled)), search.scaled
-            if automatic and found.outcome is Outcome.SOLVED_TO_PRECISION and settled_by(case, (EXACTLY,)):
-                found = answer(search, _account(case, EXACTLY))
-            found = evolve(found, problem=problem) if scaled is None else unscaled(problem, scaled, found, tolerance)
-        if not search.paths and search.log is not None:
-            _archive_without_path(search, found)
+            settled = settled_by(search, NAMED if not automatic else PATHS if path else AUTOMATIC)
+            found = answer(search, _account(search, settled))
+            if automatic and found.outcome is Outcome.SOLVED_TO_PRECISION:
+                found = exactly(search, found)
+            found = found if scaled is None else unscaled(problem, scaled, found, tolerance)
+        if not search.paths and log is not None:
+            _archive_without_path(log, found)
         return found
+
+
+def _given(arguments: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of `solve` by name, as they were given."""
+    return {name: arguments[name] for name in solve.__kwdefaults__ or ()}
 
 
 def _title(problem: MixedLCP) -> str:
@@ -311,16 +265,17 @@ def _nothing(problem: MixedLCP, archive: Any) -> Solution:
     return Solution(problem, Outcome.SOLVED, message, certify(problem, np.zeros(0)), (), -1, Counts(), 0.0)
 
 
-def _account(case: Case, settled: Attempt | None) -> str:
+def _account(search: Search, settled: str) -> str:
     """What was done: what settled the problem, or what the paths came to and how many there were."""
-    parts, search = [f"A is {case.facts}."] if case.facts is not None else [], case.search
-    factored = "" if search.finish is None else str(case.factoring)
-    if settled is not None:
-        return " ".join(part for part in (*parts, settled.said.format(case=case), factored) if part)
+    # What was never asked of the matrix was not needed.
+    parts = [f"A is {search.facts}."] if "facts" in vars(search) else []
+    factored = "" if search.finish is None else str(search.finish.faces.factoring)
+    if settled:
+        return " ".join(part for part in (*parts, settled, factored) if part)
     if search.paths:
         parts.append(f"The first path: {search.paths[0].message}")
-    tried = f"Restarts from random starts: {case.tried} (seed {case.seed})."
-    parts.append(tried if case.tried else "No restarts were tried.")
+    tried = f"Restarts from random starts: {search.tried} (seed {search.asked.seed})."
+    parts.append(tried if search.tried else "No restarts were tried.")
     if search.exhausted:
         parts.append(f"The budget is used up: {search.exhausted}.")
     if (best := search.best()) is not None:
@@ -328,7 +283,7 @@ def _account(case: Case, settled: Attempt | None) -> str:
     return " ".join([*parts, factored]).rstrip()
 
 
-def _archive_without_path(search: Search, found: Solution) -> None:
+def _archive_without_path(log: PathLog, found: Solution) -> None:
     """Where no path was needed the archive holds the message, and the solution as the end of the KKT path.
 
     A solution satisfies the equations of that homotopy at lambda = 0: see `at_solution`.
@@ -342,4 +297,4 @@ def _archive_without_path(search: Search, found: Solution) -> None:
         observed, still = homotopy.observe(y, 0.0), np.zeros_like(u)
         path.steps.append(Step(0, u, still, 0.0, residual_norm=residual, kind=Kind.TARGET, observed=observed))
         path.status = Status.REACHED_TARGET
-    search.record(path, homotopy)
+    show(path, homotopy, Padded.of(log, found.problem))

@@ -88,12 +88,11 @@ def test_what_is_forged_does_not_hold():
     assert not Groups(()).holds(problem)
 
 
-def test_nodes_and_the_clock_end_it_and_it_goes_on():
+def test_nodes_end_it_and_it_goes_on():
     problem = feasible_without_solution(20, 2)
     tree = Branching(problem, lambda active: False)
     assert tree.run(1) is None
     assert tree.nodes == 1
-    assert tree.run(1000, seconds=-1.0) is None or tree.nodes > 1
     assert tree.run(1000).groups.holds(problem)
     assert lcp.solve(problem, finish=False, restarts=0, budget=Budget(steps=5)).outcome is not Outcome.UNSOLVABLE
 

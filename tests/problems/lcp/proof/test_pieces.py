@@ -60,3 +60,12 @@ def test_a_solution_below_the_least_float_is_not_excluded():
     with np.errstate(all="ignore"):
         # x 2^-1078 solves it, and the products by which that is found underflow.
         assert in_doubt(np.ldexp(A, 72), np.ldexp(-A @ x, -1006), np.zeros((1, 3), dtype=np.int8)).all()
+
+
+def test_signs_alone_exclude_singular_faces():
+    # On the face of both w_0 = 2 x_0 + 3 > 0; on that of x_1 alone w_0 = 3, and w_1 = -1 on every one.
+    problem = lcp.LCP([[2.0, 0.0], [-1.0, 0.0]], [3.0, -1.0])
+    states = np.array([[0, 0], [0, -1], [-1, 0], [-1, -1]], dtype=np.int8)
+    assert not doubtful(problem, states).any()
+    # One with w_1 = x_0 - x_1 is left, singular or not.
+    assert doubtful(lcp.LCP([[1.0, -1.0], [1.0, -1.0]], [0.0, 0.0]), states).all()

@@ -10,8 +10,8 @@ from problems.lcp import LCP, MixedLCP, solve
 from problems.lcp.active_set.face import Faces
 from problems.lcp.active_set.finish import Finish
 from problems.lcp.homotopies import Structure
-from problems.lcp.search.pivots import Nearby, by_guess
-from problems.lcp.search.search import Search
+from problems.lcp.search.pivots import by_guess
+from problems.lcp.search.search import Nearby, Search
 
 
 def moving(seed, n=20):
@@ -50,7 +50,7 @@ def test_the_path_itself_leads_there():
     found = solve(LCP(A, q))
     problem = LCP(A, q + random.normal(size=20))
     structure = Structure(problem)
-    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, Budget(), None, False, {})
+    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, Budget())
     assert by_guess(search, Nearby(found.x, found.w))
     assert search.ends[-1].certificate.x == pytest.approx(solve(problem).x, abs=1e-11)
 

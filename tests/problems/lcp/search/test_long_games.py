@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
+from attrs import evolve
 
 from problems.lcp import LCP, solve
-from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import Game
-from problems.lcp.search import pivots
-from problems.lcp.search.pivots import PIVOTS_PER_ORDER, convex
+from problems.lcp.search import pivots, solver
+from problems.lcp.search.table import AUTOMATIC
 from tests.util import benchmark
 
 HARD = benchmark("size/hard.py")
@@ -24,7 +23,7 @@ def test_they_are_followed_on_before_any_path():
     nothing = np.zeros((m, m))
     problem = LCP(np.block([[nothing, X - X.min() + 1.0], [(Y - Y.min() + 1.0).T, nothing]]), -np.ones(2 * m))
     game = Game.of(problem)
-    assert game.path(0).run(PIVOTS_PER_ORDER * problem.n) is Ended.PIVOTS
+    assert game.path(0).run(10 * problem.n) is Ended.PIVOTS
     found = solve(problem)
     assert found.solved
     assert not found.paths
@@ -35,7 +34,8 @@ def test_they_are_followed_on_before_any_path():
 def test_other_labels_have_short_paths(seed, monkeypatch):
     problem = LCP(*HARD.game_of("uniform", 60, np.random.default_rng(seed)))
     # Neither of the two labels may go far.
-    monkeypatch.setattr(pivots, "PIVOTS_PER_ORDER", 1)
+    row = next(row for row in AUTOMATIC if row.name == "pivots")
+    monkeypatch.setattr(solver, "AUTOMATIC", (evolve(row, work=1),))
     monkeypatch.setattr(pivots, "GAME_WORK", 0)
     assert all(Game.of(problem).path(label).run(120) is Ended.PIVOTS for label in (0, 119))
     found = solve(problem)
@@ -49,10 +49,6 @@ def test_traffic_with_more_than_a_thousand_unknowns_is_pivoted():
     found = solve(LCP(A, q))
     assert (found.problem.n, found.outcome.name, len(found.paths)) == (1188, "SOLVED", 0)
     assert "Lemke" in found.message
-    assert convex(Structure(LCP(A, q)))
-    # Neither what is not convex nor what has few entries a row.
-    assert not convex(Structure(LCP(sp.csr_array(A - 1000.0 * sp.eye_array(1188)), q)))
-    assert not convex(Structure(LCP(sp.eye_array(1188, format="csr"), q)))
 
 
 @pytest.mark.parametrize("table", HARD.TABLES)

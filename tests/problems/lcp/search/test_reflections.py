@@ -1,14 +1,19 @@
 """The search by reflections: what its sets are, in any units, and that it solves where paths seldom do."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 
+from continuation import Budget
 from problems import lcp
 from problems.lcp import LCP, MixedLCP
+from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.finish import Finish
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER
-from problems.lcp.search.reflections import RUNS_AT_ONCE, Reflections, rounds_within, run_length
+from problems.lcp.search.reflections import RUNS_AT_ONCE, Reflections, Sets
+from problems.lcp.search.search import Search
 
 
 def planted(n, seed, bounds=False):
@@ -38,7 +43,7 @@ def nearest_by_trial(problem, x, w):
 @pytest.mark.parametrize("bounds", [False, True])
 def test_both_projections_are_the_nearest_points(bounds):
     problem, r = planted(6, 1, bounds), np.random.default_rng(0)
-    sets = Reflections.of(problem)
+    sets = Sets.of(problem)
     z = r.standard_normal((12, RUNS_AT_ONCE)).astype(np.float32)
     near = sets.onto @ z + sets.nearest
     again = sets.onto @ near + sets.nearest
@@ -58,7 +63,7 @@ def test_both_projections_are_the_nearest_points(bounds):
 
 def test_the_affine_set_is_that_of_the_problem():
     problem = planted(5, 2)
-    sets = Reflections.of(problem)
+    sets = Sets.of(problem)
     # Points of it, in units that are those of x and w but for a factor each: all w = A x + q fit the same factors.
     points = sets.onto @ np.random.default_rng(1).standard_normal((10, 40)) + sets.nearest
     x, w = points[:5], points[5:]
@@ -73,7 +78,7 @@ def test_units_of_rows_and_columns_are_those_of_the_sets():
     problem, r = planted(20, 3), np.random.default_rng(4)
     rows, columns = 10.0 ** r.uniform(-6.0, 6.0, (2, 20))
     other = LCP(rows[:, None] * problem.A * columns, rows * problem.q)
-    one, two = Reflections.of(problem), Reflections.of(other)
+    one, two = Sets.of(problem), Sets.of(other)
     np.testing.assert_allclose(two.onto, one.onto, atol=0.005)
     np.testing.assert_allclose(two.nearest, one.nearest, atol=0.02)
 
@@ -82,14 +87,14 @@ def test_a_large_part_of_rank_one_is_not_what_units_are_taken_from():
     r = np.random.default_rng(6)
     game = LCP(r.standard_normal((40, 40)) + 1e4, -np.ones(40))
     # Along the others a step in x and one in w = A x weigh the same: of either a half is left.
-    assert 0.3 < np.median(Reflections.of(game).onto.diagonal()[:40]) < 0.7
+    assert 0.3 < np.median(Sets.of(game).onto.diagonal()[:40]) < 0.7
 
 
 def test_bounds_far_from_zero_are_those_of_the_sets():
     problem = planted(40, 8, bounds=True)
     off = 1e3 * np.random.default_rng(9).uniform(1.0, 2.0, 40)
     moved = MixedLCP(problem.A, problem.q - problem.A @ off, problem.lower + off, problem.upper + off)
-    sets = Reflections.of(moved)
+    sets = Sets.of(moved)
     assert not sets.lower[np.isfinite(sets.lower)].any()  # the bound nearest to zero is where x begins
     assert lcp.solve(moved, restarts=0).solved
 
@@ -127,18 +132,34 @@ def test_what_has_no_solution_comes_to_an_end():
     q = r.standard_normal(45)
     q[0] = -1.0
     assert lcp.solve(LCP(A, q), restarts=0).outcome is lcp.Outcome.UNSOLVABLE
-    sets = Reflections.of(LCP(A, q))
+    sets = Sets.of(LCP(A, q))
     looks = sets.rounds(np.random.default_rng(0))
     assert next(over for over, _ in looks if over) == 1
 
 
 def test_no_unit_of_length_is_no_search():
-    assert Reflections.of(LCP(np.eye(2), np.zeros(2))) is None
-    nothing = Reflections.of(LCP(np.zeros((2, 2)), [-1.0, 1.0]))
+    assert Sets.of(LCP(np.eye(2), np.zeros(2))) is None
+    nothing = Sets.of(LCP(np.zeros((2, 2)), [-1.0, 1.0]))
     assert np.isfinite(nothing.onto).all()
 
 
-def test_work_grows_with_the_order():
-    assert rounds_within(10, 1e9, 40) == 40
-    assert rounds_within(1000, 1.0, 40) == 1
-    assert rounds_within(300, 1.5e9, 10) == int(1.5e9 / (run_length(300) * 300**2)) == 4
+@pytest.mark.parametrize(("n", "share", "rounds"), [(10, 1.0, 6), (600, 1.0, 2), (10, 1e-3, 1)])
+def test_large_problems_and_small_budgets_have_fewer_rounds_but_one(n, share, rounds, monkeypatch):
+    over = []
+    monkeypatch.setattr(Sets, "of", classmethod(lambda *a: evolve_rounds(over)))
+    structure = lcp.Structure(LCP(-np.eye(n), -np.ones(n)))
+    search = Search(structure, Finish(Faces(structure), 1e-10), 1e-10, Budget(steps=math.inf, seconds=60.0 * share))
+    assert Reflections(search).run(6) == ""
+    assert len(over) - 1 == rounds
+
+
+def evolve_rounds(over):
+    """Sets on which no run stays anywhere."""
+
+    class Restless:
+        def rounds(self, random):
+            for k in itertools.count():
+                over.append(k)
+                yield k, []
+
+    return Restless()

@@ -9,7 +9,7 @@ import pytest
 import continuation
 from problems import lcp
 from problems.lcp.homotopies.starts import LOG_DEVIATION, natural_units, typical_units
-from problems.lcp.search.restarts import FAR_STARTS, NEAR_STARTS, Restart, light, search_preset, trace_light
+from problems.lcp.search.paths import FAR_STARTS, NEAR_STARTS, Restart, light, search_preset, trace_light
 
 PLANTED = 30
 
@@ -58,8 +58,9 @@ def test_a_restart_depends_on_seed_and_number_alone():
 
 
 def test_the_first_path_leaves_time_for_others(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.restarts.FIRST_PATH", 0.1)
-    monkeypatch.setattr("problems.lcp.search.reflections.Reflections.of", lambda problem: None)
+    monkeypatch.setattr("problems.lcp.search.paths.RESTART_STEPS", 4.5 - PLANTED)
+    monkeypatch.setattr("problems.lcp.search.reflections.Sets.of", lambda problem: None)
+    monkeypatch.setattr("problems.lcp.search.exclusion.LARGEST_TREE", 0)
     problem = next(p for p in map(planted, range(50)) if lcp.solve(p, restarts=0).paths)
     first = lcp.solve(problem, restarts=1).paths[0]
     assert "it has not ended after 9 steps" in first.message
@@ -80,7 +81,7 @@ def test_one_row_in_other_units_hardly_moves_the_starts():
 
 
 def test_a_hopeless_path_is_given_up_with_a_reason(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.restarts.SETTLED_PRODUCT", 1e-2)
+    monkeypatch.setattr("problems.lcp.search.paths.SETTLED_PRODUCT", 1e-2)
     problem = planted(3)
     paths = [restart(problem, k).trace(continuation.Budget()) for k in range(6)]
     given_up = [k for k, path in enumerate(paths) if "Given up: " in path.message]
@@ -114,7 +115,7 @@ def test_an_executor_finds_what_one_process_finds():
 
 
 def test_over_an_executor_restarts_are_the_same(monkeypatch):
-    monkeypatch.setattr("problems.lcp.search.search.IN_FLIGHT", 1)
+    monkeypatch.setattr("problems.lcp.search.paths.IN_FLIGHT", 1)
     problem = planted(17)
     alone = lcp.solve(problem, "kkt", restarts=300, seed=2)
     with ThreadPoolExecutor(2) as executor:
@@ -158,7 +159,7 @@ def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):
     assert "Restarts from random starts: 3" in endless.message
     assert not endless.solved
     limit = endless.counts.factorizations + 300
-    found = lcp.solve(problem, budget=continuation.Budget(steps=math.inf, factorizations=limit))
+    found = lcp.solve(problem, restarts=1000, budget=continuation.Budget(steps=math.inf, factorizations=limit))
     assert f"The budget is used up: {limit} factorisations." in found.message
     assert limit <= found.counts.factorizations < limit + 200
     assert len(found.paths) > len(endless.paths)

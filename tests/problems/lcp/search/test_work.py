@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.sparse import eye_array
 
+from continuation import Budget
 from problems import lcp
 from problems.lcp.search.work import default_budget
 
@@ -32,16 +33,20 @@ def test_large_problems_have_two_paths_at_least():
     assert default_budget(sparse(100_000)).factorizations == 100
 
 
-def test_no_clock_decides_the_answer(monkeypatch):
-    """Ten minutes pass between any two looks at the clock, and the search goes on as if none had."""
+@pytest.mark.parametrize("budget", [None, Budget(steps=math.inf, seconds=1800.0, factorizations=3000)])
+def test_no_clock_decides_the_answer(budget, monkeypatch):
+    """Ten minutes pass between any two looks at the clock, and the search goes on as if none had.
+
+    Seconds of a budget are the processor's, which a busy machine gives later, but no fewer.
+    """
     # Larger than what groups of faces decide.
     A = np.eye(61)
     A[:2, :2] = [[0.0, 1.0], [0.0, 0.0]]
     problem = lcp.LCP(A, np.append([-1.0, 1.0], -np.ones(59)))
-    usual = lcp.solve(problem, restarts=4)
+    usual = lcp.solve(problem, restarts=4, budget=budget)
     now = iter(range(0, 10**9, 600))
     monkeypatch.setattr("problems.lcp.search.search.time.perf_counter", lambda: float(next(now)))
-    slow = lcp.solve(problem, restarts=4)
+    slow = lcp.solve(problem, restarts=4, budget=budget)
     assert usual.outcome is slow.outcome
     assert usual.counts == slow.counts
     assert len(usual.paths) > 1

@@ -9,26 +9,23 @@ import numpy as np
 from attrs import evolve
 from numpy.typing import NDArray
 
-from continuation.arrays import Array, largest, least
+from continuation.arrays import Array
 from continuation.counts import Counts
 from problems.lcp.data.fixed import WithoutFixed
 from problems.lcp.data.problem import MixedLCP
 from problems.lcp.data.program import Program
-from problems.lcp.data.scaling import Scaled
-from problems.lcp.proof.certificate import Certificate, certify
+from problems.lcp.data.scaling import Scaled, balanced, without_far_factor
+from problems.lcp.data.spread import far_apart
+from problems.lcp.proof.certificate import certify
 from problems.lcp.proof.farkas import Farkas, FloatFarkas, multiplier
 from problems.lcp.proof.verdict import LARGEST_DECIDED, NEARLY, confirmed, exact_nearby, to_precision
-from problems.lcp.reference.enumeration import exhaust
+from problems.lcp.reference.enumeration import decidable, exhaust
+from problems.lcp.search.exclusion import TRIED
 from problems.lcp.search.outcome import Outcome, Solution
 from problems.lcp.search.search import Candidate, Search
 
 MOST_LISTED = 5
 """Fixed unknowns that a message names."""
-
-
-MOST_MOVED = 100
-"""Powers of two by which x, rows and columns may differ from one, so that terms of rows remain far within the range of
-floats, where units that are powers of two change no digit of a certificate."""
 
 
 def answer(search: Search, message: str) -> Solution:
@@ -41,10 +38,8 @@ def answer(search: Search, message: str) -> Solution:
         What was done; the outcome's own sentence, and that of the proof, are put before it.
     """
     end, proof = search.best(), search.proof
-    found = Solution(
-        search.problem,
-        _outcome(search, end),
-        message,
+    outcome = _outcome(search, end)
+    rest = (
         None if end is None else end.certificate,
         tuple(search.paths),
         -1 if end is None else end.path,
@@ -54,7 +49,9 @@ def answer(search: Search, message: str) -> Solution:
         search.exhaustion,
         proof if isinstance(proof, FloatFarkas) else None,
     )
-    return evolve(found, message=" ".join(part for part in (found.sentence, found.proof, message) if part))
+    found = Solution(search.problem, outcome, "", *rest)
+    message = " ".join(part for part in (found.sentence, found.proof, message) if part)
+    return Solution(search.problem, outcome, message, *rest)
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:
@@ -78,6 +75,38 @@ def _outcome(search: Search, end: Candidate | None) -> Outcome:
     return Outcome.NOT_FOUND
 
 
+def exactly(search: Search, found: Solution) -> Solution:
+    """The answer where active sets have ended within a singular face, which holds no solution of the data as given.
+
+    Another face may hold one: all of a small problem are tried.
+    """
+    if not decidable(search.problem, LARGEST_DECIDED) or not (search.scaled is None or search.scaled.exact):
+        return found
+    tried = exhaust(search.problem, filtered=True)
+    if tried.point is None or not np.isfinite(tried.point).all():
+        return found
+    before, search.ends, search.exhaustion = (search.ends, search.exhaustion), [], tried
+    if search.accept(tried.point):
+        return answer(search, TRIED)
+    search.ends, search.exhaustion = before
+    return found
+
+
+def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
+    """How the problem comes to the units in which it is searched, once; None where they are those given.
+
+    `roughly`: Whether an LCP whose largest entries of rows and columns are alike, but for a common factor, keeps its
+    units: to find others takes as long as to solve it.
+    """
+    if roughly and problem.standard:
+        scaled, alike = without_far_factor(problem)
+        # What scaling to floats would round is decided by exact arithmetic where that is cheap.
+        plain = problem if scaled is None else scaled.problem
+        if alike and (problem.n > LARGEST_DECIDED or not far_apart(plain)):
+            return scaled
+    return balanced(problem)
+
+
 def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: float) -> Solution:
     """The answer for the problem as given: the scaling is exact, and what was judged does not depend on units.
 
@@ -89,7 +118,8 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
     rounded = _rounded(found, tolerance)
     found = evolve(found, problem=problem, message=f"{found.message} {said}".rstrip())
-    exact, nearly = found.farkas, found.float_farkas
+    # Where faces were excluded at once a Farkas vector is sought, of the problem as given, when it is asked for.
+    exact, nearly = found.farkas if found.exhaustion is None else None, found.float_farkas
     if exact is not None:
         moved = exact.in_units(problem, scaled.rows)
         if moved is None or not moved.gap < 0:
@@ -103,27 +133,7 @@ def unscaled(problem: MixedLCP, scaled: Scaled, found: Solution, tolerance: floa
         found = evolve(found, float_farkas=nearly.in_units(scaled.rows))
     if found.x is None:
         return found
-    x = scaled.x(found.x)
-    same = _moved(problem, scaled, found, x) if found.solved and not rounded else None
-    return _at(found, x, tolerance, rounded) if same is None else evolve(found, certificate=same)
-
-
-def _moved(problem: MixedLCP, scaled: Scaled, found: Solution, x: Array) -> Certificate | None:
-    """The certificate in the units given, in which no digit is another one; None where something is out of range."""
-    end, rows, columns = found.certificate, scaled.rows, scaled.columns
-    inside = problem.standard and scaled.exact and max(np.abs(rows).max(), np.abs(columns).max()) <= MOST_MOVED
-    if end is None or not inside or np.abs(np.frexp(end.x)[1]).max() > MOST_MOVED:
-        return None
-    w = np.ldexp(end.w, -rows)
-    return evolve(
-        end,
-        x=x,
-        w=w,
-        residual=largest(np.minimum(x, w)),
-        negative_x=max(-least(x), 0.0),
-        negative_w=max(-least(w), 0.0),
-        complementarity=largest(x * w),
-    )
+    return _at(found, scaled.x(found.x), tolerance, rounded)
 
 
 def with_fixed(small: WithoutFixed, rest: Solution | None, tolerance: float) -> Solution:
@@ -189,7 +199,6 @@ def beyond_floats(problem: MixedLCP, tolerance: float) -> Solution:
     """
     began = time.perf_counter()
     decided = exhaust(problem)
-    assert decided is not None
     outcome = Outcome.SOLVED if decided.solvable else Outcome.UNSOLVABLE
     message = "Its entries are too far apart for floats; all complementary faces were tried in exact arithmetic."
     found = Solution(

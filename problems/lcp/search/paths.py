@@ -1,0 +1,331 @@
+"""Paths: of Wang's homotopy and of the KKT homotopy, and of the latter from random starts.
+
+The end of Wang's path solves the problem, where it has one. The KKT path has an end for any matrix, which may be a
+stationary point of x'w that does not solve the problem; another start leads elsewhere (`homotopies.starts.random_start`
+has what was measured).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from typing import Any
+
+import numpy as np
+from attrs import define, evolve, frozen
+
+from continuation.budget import Budget
+from continuation.controllers import AllgowerGeorg
+from continuation.correctors import BorderedNewton
+from continuation.path import Path, Step
+from continuation.predictors import Hermite
+from continuation.status import Kind, Status
+from continuation.step.presets import FAST, Preset
+from continuation.step.tracer import Observer, Tracer
+from continuation.tolerance import Tolerance
+from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.finish import Finish, with_zeros
+from problems.lcp.active_set.iteration import Policy
+from problems.lcp.active_set.on_path import AlongPath, smallest_parameter
+from problems.lcp.data.problem import LCP
+from problems.lcp.homotopies import Structure
+from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy
+from problems.lcp.homotopies.starts import START_DISTANCES, natural_units, random_start
+from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
+from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
+from problems.lcp.proof.verdict import stationary
+from problems.lcp.search.padded import Padded, show
+from problems.lcp.search.search import Candidate, Search
+
+Band = tuple[float, float]
+
+FAR_STARTS: tuple[Band, ...] = (START_DISTANCES,)
+NEAR_STARTS: tuple[Band, ...] = ((-0.5, 0.0), (0.0, 0.5))
+"""The distances of starts, in turn; see `random_start`. For A >= 0 (bimatrix games) only near ones do well."""
+
+LEAST_START = 1e-3
+"""In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
+
+SETTLED_PRODUCT = 5e-5
+"""Products x z1 below this, in natural units: what the active set is then, it remains."""
+
+RESTART_STEPS = 60
+"""Steps, and n more, after which a restart is given up: of 144 paths that solved one took nearly as many. The first
+path, which takes shorter ones, has twice as many: of a Hankel matrix of order 100 one had not ended after 3,000."""
+
+LARGEST_FRESH = 150
+"""Up to this order a factorisation costs no more than the solves by which an old one is refined."""
+
+LARGEST_MADE_DENSE = 500
+"""A sparse matrix of at most this order is made dense for paths, whose matrices of order n or 2n fill: with 5 % entries
+and n = 200 a path takes a tenth of the time then."""
+
+LOOSE, PURE = Tolerance(relative=5e-2), 1e-4
+"""Of the last increment on a restart, which Newton's method about squares: with the finish, whose end is exact, and
+without."""
+
+IN_FLIGHT = 64
+"""Restarts handed to an executor before the first of them has come back: more than one machine has workers."""
+
+LARGEST_KEPT = 4_000_000
+"""Numbers of path points kept in memory (32 MB); of further paths only the two ends are."""
+
+Patience = Callable[[Step], str]
+"""A step to the reason for which its path is given up, or to nothing."""
+
+
+def search_preset(n: int) -> Preset:
+    """The parts of a restart for a problem of order n: the longest steps that pay."""
+    return Preset(
+        "SEARCH",
+        "steps that turn up to 40 degrees, for one path among many",
+        Hermite(),
+        BorderedNewton(reuse=0.0 if n <= LARGEST_FRESH else 0.5),
+        AllgowerGeorg(contraction=0.7, distance=0.6, angle=0.7, deceleration=2.0),
+    )
+
+
+def follow(
+    homotopy: LCPHomotopy,
+    finish: Finish | None,
+    budget: Budget,
+    patience: Patience = lambda step: "",
+    observers: tuple[Observer, ...] = (),
+    **options: Any,
+) -> Path:
+    """Trace a path, with the finish along it, whose factorisations become the path's.
+
+    `finish`: None for the pure path. `patience`: When the path is given up; the path's message then has the reason.
+    `**options`: As for `continuation.Tracer`.
+    """
+    before = 0 if finish is None else finish.counts.factorizations
+    along = None if finish is None else AlongPath.of(finish, homotopy)
+    tracer = Tracer(homotopy, finish=along, budget=budget, observers=observers, **options)
+    for step in tracer:
+        if reason := patience(step):
+            tracer.give_up(reason)
+            break
+    if finish is not None:
+        tracer.path.counts.factorizations += finish.counts.factorizations - before
+        finish.counts.factorizations = before
+    return tracer.path
+
+
+@frozen(eq=False)
+class Restart:
+    """The k-th restart: it depends on what is here alone, and can be sent to another process.
+
+    `structure`: Of the problem. `name`: "kkt", or that of a homotopy in (x, y). `bands`: How far out it may begin.
+    `tolerance`: Of the finish; None to go without it. `options`: For the tracer, over those of `search_preset`.
+    """
+
+    structure: Structure
+    name: str
+    bands: tuple[Band, ...]
+    seed: int
+    k: int
+    tolerance: float | None
+    options: Mapping[str, Any]
+
+    def homotopy(self) -> LCPHomotopy:
+        """The homotopy at its start; with the finish its solves are not refined, which a loose tolerance allows."""
+        problem, k = self.structure.problem, self.k
+        start = random_start(problem, np.random.default_rng([self.seed, k]), self.bands[k % len(self.bands)])
+        return HOMOTOPIES[self.name].at(problem, start, self.structure, refine=self.tolerance is None)
+
+    def trace(self, budget: Budget, exhausted: Callable[[], str] = str, observers: tuple[Observer, ...] = ()) -> Path:
+        """The path, to its end or until it is given up."""
+        # The end of a pure path is the answer. With the finish only the active set counts that the path leads to.
+        homotopy, pure = self.homotopy(), self.tolerance is None
+        finish = None if self.tolerance is None else Finish(Faces(self.structure), self.tolerance)
+        least = 0.0 if pure else smallest_parameter(homotopy, SETTLED_PRODUCT)
+        longest = np.inf if pure else RESTART_STEPS + homotopy.n
+
+        def patience(step: Step) -> str:
+            if step.kind == Kind.REGULAR and step.lam < least:
+                return "so near the end the active set no longer changes, and it is not that of a solution"
+            return unending(step, longest) or exhausted()
+
+        parts = {"preset": search_preset(self.structure.n), "tolerance": PURE if pure else LOOSE, "examine": pure}
+        return follow(homotopy, finish, budget, patience, observers, **{**parts, **self.options})
+
+
+def unending(step: Step, longest: float) -> str:
+    """Why a path is given up that is as long."""
+    late = step.kind == Kind.REGULAR and step.index >= longest
+    return f"it has not ended after {step.index} steps" if late else ""
+
+
+def light(path: Path) -> Path:
+    """The same path with only its two ends, and no curve between them.
+
+    `path`: Is changed.
+    """
+    if path.steps:
+        path.steps = [evolve(step, segment=None) for step in (path.steps[0], path.steps[-1])]
+    return path
+
+
+def trace_light(restart: Restart, budget: Budget) -> Path:
+    """What a worker does: trace a restart and send back what is small enough to send."""
+    return light(restart.trace(budget))
+
+
+@define(eq=False)
+class Paths:
+    """The paths of one problem: the first, of one or two homotopies, and then from random starts."""
+
+    search: Search
+    _begun: bool = False
+    _kept: int = 0
+
+    def run(self, work: float) -> str:
+        """The first path, and the next time up to so many restarts; what settled the problem."""
+        search = self.search
+        if not self._begun:
+            self._begun = True
+            problem = search.problem
+            if problem.sparse and problem.n <= LARGEST_MADE_DENSE:
+                search.structure = Structure(evolve(problem, A=problem.A.toarray()))
+            return next((said for name in self._names() if (said := self._first(name))), "")
+        asked = search.asked
+        name = ("kkt" if search.problem.standard else "wang") if asked.homotopy == "auto" else asked.homotopy
+        # Of a matrix that a homotopy by name was chosen for nothing was found out.
+        near = asked.homotopy == "auto" and search.facts.nonnegative
+        search.tried = self._restarted(name, NEAR_STARTS if near else FAR_STARTS, int(min(work, asked.restarts)))
+        start = f"random start {search.tried} (seed {asked.seed})"
+        return f"Solved by a path of the {name} homotopy from {start}." if search.solved else ""
+
+    def _names(self) -> tuple[str, ...]:
+        """With some a_ii < 0 the matrix is not copositive, and Wang's path mostly diverges; in a box it cannot."""
+        search = self.search
+        if search.asked.homotopy != "auto":
+            return (search.asked.homotopy,)
+        return ("kkt",) if search.problem.standard and search.facts.negative_diagonal else ("wang", "kkt")
+
+    def _first(self, name: str) -> str:
+        """One path to its end; what settled the problem."""
+        search, problem, asked, known = self.search, self.search.problem, self.search.asked, HOMOTOPIES[name]
+        start, automatic = asked.x0, asked.homotopy == "auto"
+        if search.exhausted:
+            return ""
+        if start is None and known.feasible:
+            try:
+                assert isinstance(problem, LCP)
+                start = strictly_feasible_start(problem)
+            except NoStrictlyFeasiblePoint as error:
+                # That there is no feasible point settles the problem, and without a start there is no path.
+                if error.certificate is not None and error.certificate.no_feasible_point:
+                    search.proof = error.certificate
+                return str(error)
+        if start is not None and problem.standard and not start.all():
+            start = np.where(start > 0.0, start, LEAST_START * natural_units(problem)[0])
+        homotopy = known.from_x0(problem, start, search.structure)
+        if automatic and not np.isfinite(homotopy.start()[0]).all():  # products with x0 overflow
+            homotopy = known.from_x0(problem, None, search.structure)
+        # Restarts are to have time after a path that is neither asked for nor made of the caller's parts.
+        hurried = name == "kkt" and automatic and asked.restarts > 0 and search.finish is not None and not asked.options
+        longest = 2.0 * (RESTART_STEPS + problem.n) if hurried else np.inf
+        preset = {"preset": FAST} if automatic else {}
+        # The arcs are examined where the path is asked for; with the finish its end is certified, whatever led there.
+        options = {"examine": search.finish is None or asked.shown, **preset, **asked.options}
+        self.add(follow(homotopy, search.finish, self._left(), lambda step: unending(step, longest) or search.exhausted,
+                        self._observers(), **options))  # fmt: skip
+        return f"Solved by the path of the {name} homotopy." if search.solved else ""
+
+    def add(self, path: Path) -> None:
+        """Take a traced path into account."""
+        search = self.search
+        search.traced = search.traced + path.counts
+        if path.steps:
+            arrived = path.status is Status.REACHED_TARGET
+            at_stationary = arrived and stationary(search.problem, path.endpoint.y)
+            search.ends.append(Candidate(self._certified(path, arrived), len(search.paths), at_stationary))
+            self._kept += len(path) * path.endpoint.u.size
+        search.paths.append(light(path) if self._kept > LARGEST_KEPT else path)
+
+    def _certified(self, path: Path, arrived: bool) -> Certificate:
+        """The certificate of a path's end, which the finish brings to round-off where it can."""
+        search, problem = self.search, self.search.problem
+        x = problem.clipped(path.endpoint.y[: problem.n])
+        end = certify(problem, x)
+        if not arrived:
+            return end
+        if not search.confirmed(end):
+            zeros = certify(problem, x, search.tolerance)
+            end = zeros if zeros.relative_residual < end.relative_residual else end
+        if not problem.standard:
+            end = with_zeros(problem, end, search.tolerance)
+        finish = search.finish
+        if finish is None or end.relative_residual <= ROUND_OFF:
+            return end
+        polished = finish.settle(problem.states(x, end.w), Policy(steps=0), x)
+        return finish.certificate if polished is not None and finish.certificate is not None else end
+
+    def _restarted(self, name: str, bands: tuple[Band, ...], count: int) -> int:
+        """Trace restarts until one solves the problem, or the budget or the count is used up; how many were begun.
+
+        Over an executor the first solution in the order of the restarts is taken among those that are there.
+        """
+        search, asked = self.search, self.search.asked
+        tolerance = None if search.finish is None else search.tolerance
+
+        def task(k: int) -> Restart:
+            return Restart(search.structure, name, bands, asked.seed, k, tolerance, asked.options)
+
+        if asked.executor is not None:
+            return self._distributed(asked.executor, task, count)
+        for k in range(count):
+            if search.exhausted:
+                return k
+            self.add(task(k).trace(self._left(), lambda: search.exhausted, self._observers()))
+            if search.solved:
+                return k + 1
+        return count
+
+    def _distributed(self, executor: Executor, task: Callable[[int], Restart], count: int) -> int:
+        search = self.search
+        waiting: dict[Future[Path], Restart] = {}
+        begun = 0
+
+        def submit() -> None:
+            nonlocal begun
+            # Here the processor is the workers', and nothing but the clock says how long they take.
+            if begun < count and not search.exhausted and search.seconds < search.budget.seconds:
+                one, seconds = task(begun), max(search.budget.seconds - search.seconds, 1e-3)
+                waiting[executor.submit(trace_light, one, evolve(self._left(), seconds=seconds))] = one
+                begun += 1
+
+        try:
+            for _ in range(IN_FLIGHT):
+                submit()
+            while waiting:
+                done, _ = wait(waiting, return_when=FIRST_COMPLETED)
+                for future in sorted(done, key=lambda one: waiting[one].k):
+                    restart, path = waiting.pop(future), future.result()
+                    if search.asked.log is not None:
+                        show(path, restart.homotopy(), Padded.of(search.asked.log, search.problem))
+                    self.add(path)
+                    if search.solved:
+                        return begun
+                    submit()
+            return begun
+        finally:
+            for future in waiting:
+                future.cancel()
+
+    def _observers(self) -> tuple[Observer, ...]:
+        asked = self.search.asked
+        archive = () if asked.log is None else (Padded.of(asked.log, self.search.problem),)
+        if not asked.progress:
+            return archive
+        from continuation.step.progress import Progress
+
+        return (*archive, Progress())
+
+    def _left(self) -> Budget:
+        """What of the work is left, at least a little of each; that the seconds are over is asked at each step."""
+        b, counts = self.search.budget, self.search.counts
+        return Budget(
+            steps=max(b.steps - counts.accepted, 1.0), factorizations=max(b.factorizations - counts.factorizations, 1.0)
+        )

@@ -1,0 +1,83 @@
+"""What `solve` tries, in which order: one table for all problems.
+
+A solution lies on one of 2^n complementary faces, and a face is settled by one linear system. Five methods look for it:
+*active sets* move to the face that the signs on the last one ask for, *pivots* to a neighbour, *reflections* through
+points of no face, *paths* through points inside, *exclusion* proves of faces, many at once, that they hold none. The
+first two are quick and mostly right; reflections find what is of no class; exclusion proves that there is nothing;
+paths need no class at all. Each face goes to one judge (`Finish.judged`), and the outcome to another (`judge.answer`).
+The problem was scaled before, once. A row tells its method how far to go: in work, so that no clock decides.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Protocol
+
+from attrs import frozen
+
+from problems.lcp.search.active_sets import ActiveSets
+from problems.lcp.search.exclusion import Exclusion, Leaves, few_faces
+from problems.lcp.search.paths import Paths
+from problems.lcp.search.pivots import Pivots, game, pivotable
+from problems.lcp.search.reflections import Reflections, reflectable
+from problems.lcp.search.search import Search
+
+
+class Method(Protocol):
+    """A method on one problem, which it is made with; called again it goes on where it was left."""
+
+    def run(self, work: float) -> str:
+        """What settled the problem, as a sentence; empty where nothing did."""
+
+
+@frozen
+class Row:
+    """A method, where it is tried, and how long: `unit` says of what."""
+
+    name: str
+    method: Callable[[Search], Method]
+    when: Callable[[Search], bool]
+    work: float
+    unit: str
+
+
+def always(search: Search) -> bool:
+    """Any problem."""
+    return True
+
+
+AUTOMATIC = (
+    Row("active sets", ActiveSets, lambda s: not game(s), 30, "corrections of each guess"),
+    Row("all faces", Leaves, few_faces, 8, "faces in doubt"),
+    Row("pivots", Pivots, pivotable, 10, "pivots times the order, at most 1e6 over it, at least 3 times"),
+    Row("root", Exclusion, lambda s: 20 < s.problem.n <= 40, 1, "linear programs"),
+    Row("few groups of faces", Exclusion, lambda s: s.problem.n <= 20, 1000, "linear programs"),
+    Row("reflections", Reflections, reflectable, 6, "rounds, of 8e8 iterations times n^2 at most"),
+    Row("groups of faces", Exclusion, always, 10_000, "linear programs, of n <= 40, else one"),
+    Row("paths", Paths, always, 1, "path of each homotopy"),
+    Row("restarts", Paths, lambda s: s.asked.restarts > 0, math.inf, "paths, as many as were asked for"),
+)
+"""For any matrix."""
+
+*_, _REFLECTIONS, _GROUPS, _PATHS, _RESTARTS = AUTOMATIC
+
+PATHS = (_PATHS, _GROUPS, _REFLECTIONS, _RESTARTS)
+"""The same where a path is wanted."""
+
+NAMED = (_PATHS, Row("root", Exclusion, always, 0, "linear programs beside the first"), _RESTARTS)
+"""For a homotopy by name."""
+
+
+def settled_by(search: Search, table: tuple[Row, ...]) -> str:
+    """What settled the problem, as a sentence: a solution, or a proof that there is none; empty where nothing did."""
+    made: dict[Callable[[Search], Method], Method] = {}
+    for row in table:
+        if row.when(search):
+            if row.method not in made:
+                made[row.method] = row.method(search)
+            if said := made[row.method].run(row.work):
+                return said
+            if search.exhausted:
+                break
+    return ""

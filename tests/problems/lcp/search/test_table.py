@@ -1,0 +1,144 @@
+"""The table of methods: what is tried for which problem, and that a method is a row like any other."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from attrs import evolve
+
+import continuation
+from problems import lcp
+from problems.lcp.active_set.face import Faces
+from problems.lcp.active_set.finish import Finish
+from problems.lcp.proof.farkas import infeasibility
+from problems.lcp.search import exclusion
+from problems.lcp.search.search import Asked, Search
+from problems.lcp.search.table import AUTOMATIC, NAMED, PATHS, Row, settled_by
+
+INFEASIBLE = lcp.LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
+GAME = lcp.LCP([[0.0, 1.0], [2.0, 0.0]], [-1.0, -1.0])
+
+
+def search(problem, **asked):
+    structure = lcp.Structure(problem)
+    given = {"restarts": 2, **asked}
+    return Search(structure, Finish(Faces(structure), 1e-10), 1e-10, continuation.Budget(), Asked(**given))
+
+
+def tried(one, table):
+    """The names of the rows, if none of them settles anything."""
+    names = []
+
+    class Noted:
+        def __init__(self, name):
+            self.name = name
+
+        def run(self, work):
+            names.append(self.name)
+            return ""
+
+    noted = tuple(evolve(row, method=lambda _, name=row.name: Noted(name)) for row in table)
+    assert settled_by(one, noted) == ""
+    return names
+
+
+def test_the_table_fits_one_screen_and_every_row_is_tried_somewhere():
+    seen = set()
+    for problem in (INFEASIBLE, GAME, lcp.LCP(np.eye(30) - 2.0, -np.ones(30)), lcp.LCP(-np.eye(3), -np.ones(3))):
+        seen |= set(tried(search(problem), AUTOMATIC))
+    assert seen == {row.name for row in AUTOMATIC}
+    assert len(AUTOMATIC) <= 10
+
+
+@pytest.mark.parametrize(
+    ("problem", "left_out"),
+    [
+        (INFEASIBLE, {"root", "reflections"}),
+        (GAME, {"active sets", "root"}),
+        (lcp.LCP(np.eye(30) - 2.0, -np.ones(30)), {"all faces", "few groups of faces"}),
+        (lcp.LCP(np.eye(41) - 2.0, -np.ones(41)), {"all faces", "few groups of faces", "root"}),
+        (lcp.MixedLCP(np.eye(3) - 2.0, np.ones(3), -np.ones(3), np.ones(3)), {"all faces", "pivots", "root"}),
+        (lcp.LCP(sp.eye_array(4000, format="csr") * -1.0, -np.ones(4000)),
+         {"all faces", "few groups of faces", "root", "pivots", "reflections"}),
+    ],
+)  # fmt: skip
+def test_the_order_depends_on_the_problem(problem, left_out):
+    expected = [row.name for row in AUTOMATIC if row.name not in left_out]
+    assert tried(search(problem), AUTOMATIC) == expected
+
+
+def test_without_the_finish_and_with_a_path_that_is_wanted_paths_come_first():
+    assert tried(search(INFEASIBLE), PATHS)[0] == "paths"
+    assert tried(search(INFEASIBLE, restarts=0), NAMED) == ["paths", "root"]
+
+
+def test_what_is_dear_is_left_out_when_the_budget_is_spent():
+    one = search(lcp.LCP(np.eye(50) - 2.0, -np.ones(50)))
+    one.traced.accepted = 10_000
+    assert settled_by(one, PATHS) == ""
+    assert not one.paths
+
+
+def test_another_method_is_one_more_row():
+    class Guess:
+        def __init__(self, search):
+            self.search = search
+
+        def run(self, work):
+            return "Guessed." if self.search.settle(np.zeros(2, dtype=np.int8)) else ""
+
+    one = search(lcp.LCP(np.eye(2), [-1.0, -1.0]))
+    assert settled_by(one, (Row("a guess", Guess, lambda s: True, 1, "guesses"), *AUTOMATIC)) == "Guessed."
+    np.testing.assert_array_equal(one.best().certificate.x, [1.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("problem", "options", "expected"),
+    [
+        # All faces are excluded at once; the vector is sought where it is asked for.
+        (INFEASIBLE, {}, 0),
+        (INFEASIBLE, {"homotopy": "kkt"}, 1),
+        # Phase I has the proof already.
+        (INFEASIBLE, {"homotopy": "zhao"}, 0),
+        # The tree's root is the proof.
+        (INFEASIBLE, {"path": True}, 0),
+        # Scaled: the proof is moved to the problem as given.
+        (lcp.LCP([[0.0, 1e9], [-1e-9, 0.0]], [-1e9, -1.0]), {"homotopy": "kkt"}, 1),
+    ],
+)
+def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, options, expected, monkeypatch):
+    calls = []
+    monkeypatch.setattr(exclusion, "infeasibility", lambda *a: calls.append(a) or infeasibility(*a))
+    solution = lcp.solve(problem, **options)
+    assert solution.outcome is lcp.Outcome.UNSOLVABLE
+    y = np.array(solution.farkas.y, dtype=float)
+    assert (problem.A.T @ y <= 0.0).all()
+    assert problem.q @ y < 0.0
+    assert len(calls) == expected
+
+
+@pytest.mark.parametrize("n", [6, 20, 40])
+def test_the_root_of_the_tree_is_a_farkas_vector(n):
+    r = np.random.default_rng(n)
+    A, q = r.standard_normal((n, n)), r.standard_normal(n)
+    A[0], q[0] = -A[1:].sum(axis=0) - r.random(n), -q[1:].sum() - 0.1
+    problem = lcp.LCP(A, q)
+    found = lcp.solve(problem)
+    assert found.outcome is lcp.Outcome.UNSOLVABLE
+    assert found.farkas.holds(problem)
+    assert not found.paths
+
+
+def test_a_sparse_matrix_is_dense_for_paths():
+    r = np.random.default_rng(2)
+    A = sp.random_array((20, 20), density=0.2, rng=r, data_sampler=r.standard_normal).tocsr()
+    problem = lcp.LCP(A, -np.ones(20))
+    one = search(problem)
+    settled_by(one, PATHS[:1])
+    assert not one.problem.sparse
+    assert lcp.solve(problem, path=True, restarts=0).problem is problem
+
+
+def test_a_start_whose_products_overflow_is_left_for_the_path_s_own():
+    A = 1e300 * np.random.default_rng(0).standard_normal((5, 5))
+    found = lcp.solve(lcp.LCP(A, -np.full(5, 1e-2)), x0=np.ones(5), path=True, restarts=0)
+    assert found.paths[0].steps
