@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from enum import Enum
+from functools import partial
 
 import numpy as np
 from attrs import evolve, frozen
@@ -274,9 +275,9 @@ def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
             ways.append(z - z[-1] / near.tangent[-1] * near.tangent)
             ways[-1][-1] = 0.0
 
-    def excess(at: Array) -> float:
+    def excess(side: Array, length: float) -> float:
         try:
-            over = float((np.abs(evaluator.residual(at)) / (2.0 * allowed)).max())
+            over = float((np.abs(evaluator.residual(u + length * side)) / (2.0 * allowed)).max())
             return over if over == over else np.inf
         except EvaluationError:
             return np.inf
@@ -287,7 +288,7 @@ def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
     for way in ways:
         reach = 1.0
         for side in (way, -way) if way.any() else ():
-            reach = _reach(lambda length, side=side: excess(u + length * side), reach or 1.0)
+            reach = _reach(partial(excess, side), reach or 1.0)
             off = np.maximum(off, reach * np.abs(side))
     return off
 

@@ -165,8 +165,8 @@ class Crossings:
                 onward = self._told(arc, arc.segment.at(1.0 + ONWARD), 1.0, index)
                 if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
                     return _rejected(attempt, Rejection.ORIENTATION, 0.5)
-            touching = (t for t, *z in zip(told, left, left[1:], left[2:]) if z[0] + z[2] > SPAN * z[1])
-            if (t := next(touching, None)) is not None:
+            threes = zip(told, left, left[1:], left[2:])
+            for t in [t for t, first, between, last in threes if first + last > SPAN * between][:1]:
                 found = self._found(arc, prediction(t * arc.length))
         return None if found is None else _Seen(found, told)
 
