@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.sparse import diags_array
 
-from continuation import CONSERVATIVE, Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
+from continuation import CONSERVATIVE, DEFAULT, FAST, Budget, Kind, Status, TargetValue, Tracer, from_functions, trace
 from continuation.correctors import NaturalParameter
 from continuation.metric import Euclidean
 from continuation.rejection import Rejection
@@ -258,3 +258,27 @@ def test_an_unexamined_trace_does_not_cross_a_branch_point():
     path = trace(Pitchfork(), examine=False)
     assert path.status is Status.STEP_TOO_SMALL
     assert path.events == []
+
+
+@pytest.mark.parametrize("preset", [FAST, DEFAULT])
+def test_bends_as_wide_as_the_resolution_are_not_missed(preset):
+    """An S without a shift, which no look sees that is not inside of it (docs/guarantee.md has the whole table)."""
+    for seed in range(6):
+        rng, w = np.random.default_rng([55, seed]), 0.02
+        c, k, a = rng.uniform(2.0, 4.0), rng.uniform(2.0, 5.0), rng.uniform(0.2, 0.8)
+
+        def along(y, w=w, c=c, k=k, a=a):
+            x = (y - c) / w
+            bump = np.exp(-(x**2))
+            return y + a * np.sin(y) - w * k * x * bump, 1.0 + a * np.cos(y) - k * (1.0 - 2.0 * x * x) * bump
+
+        path = trace(
+            from_functions(
+                lambda y, lam, f=along: f(y)[0] - lam,
+                lambda y, lam, f=along: (np.diag(f(y)[1]), np.array([-1.0])),
+                start=(np.zeros(1), 0.0), target=None,
+            ),
+            preset=preset, direction=1, box={0: (None, 6.0)}, metric=Euclidean(), max_step=10.0 * w,
+        )  # fmt: skip
+        fine = along(np.linspace(0.0, 6.0, 60_001))[1]
+        assert len(path.turning_points) == np.count_nonzero(np.diff(np.sign(fine)))
