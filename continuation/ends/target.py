@@ -4,10 +4,7 @@ path is decided in `continuation.step.verdict`.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from enum import Enum
-from functools import partial
 
 import numpy as np
 from attrs import evolve, frozen
@@ -18,6 +15,7 @@ from continuation.ends.endgame import RELATIVE_FLOOR, Endgame, SingularLimit, to
 from continuation.ends.landing import SINGULAR_SHARE, crossing
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
+from continuation.evaluation.noise import allowed_along
 from continuation.metric import norm, share
 from continuation.point.arc import Arc, cut
 from continuation.point.linearization import Linearization, linearize
@@ -49,11 +47,6 @@ VANISHING_SHARE = 1e-18
 
 END_CORRECTIONS = 4
 """Increments of Newton's method at the target: what was located there is within the reach of quadratic convergence."""
-
-WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
-"""A way along which the equations hold to round-off is found to this factor, from a length that moves no digit of a
-float to one that has no end."""
-
 
 class EndsAt(Enum):
     """What a path may end on."""
@@ -275,40 +268,11 @@ def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
             ways.append(z - z[-1] / near.tangent[-1] * near.tangent)
             ways[-1][-1] = 0.0
 
-    def excess(side: Array, length: float) -> float:
-        try:
-            over = float((np.abs(evaluator.residual(u + length * side)) / (2.0 * allowed)).max())
-            return over if over == over else np.inf
-        except EvaluationError:
-            return np.inf
-
     off = np.spacing(np.abs(u))
     off[-1] = 0.0
-    allowed = np.maximum(allowed, np.finfo(float).tiny)
     for way in ways:
         reach = 1.0
         for side in (way, -way) if way.any() else ():
-            reach = _reach(partial(excess, side), reach or 1.0)
+            reach = allowed_along(evaluator.residual, u, side, 2.0 * allowed, reach or 1.0)
             off = np.maximum(off, reach * np.abs(side))
     return off
-
-
-def _reach(excess: Callable[[float], float], begin: float) -> float:
-    """A length at which `excess` is more than one, while it is not at 1/WIDENED of it; 0 or ENDLESS if there is none.
-
-    Between the two the next length is where the power of the length comes to one that the last two too long ones show.
-    """
-    low, high, over, power = 0.0, np.inf, np.inf, 2.0
-    length, factor = begin, WIDENED
-    while high > WIDENED * low and NOTHING_LEFT < length < ENDLESS:
-        found = excess(length)
-        if found <= 1.0:
-            low, length, factor = length, length * factor, factor * factor
-            length = min(length, math.sqrt(low * high))
-            continue
-        if np.isfinite(over) and found < over:
-            power = max(math.log(over / found) / math.log(high / length), 1.0)
-        high, over = length, found
-        length = 0.5 * high * over ** (-1.0 / power) if np.isfinite(over) else high / factor**2
-        length = max(min(length, 0.5 * high), math.sqrt(low * high))
-    return min(high, ENDLESS) if low else 0.0

@@ -1,7 +1,8 @@
-"""The noise of a residual: what stays of its differences however near the samples are."""
+"""The noise of a residual: what stays of its differences however near samples are, and what it does not tell apart."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -20,6 +21,10 @@ shrink with it: a thousandth makes a smooth fourth difference 1e12 times as smal
 
 NOISE_STEADY = 30.0
 """What is noise at two distances agrees to this factor: each is the largest of three samples of it."""
+
+WIDENED, NOTHING_LEFT, ENDLESS = 4.0, 1e-24, 1e150
+"""A way along which the equations hold to round-off is found to this factor, from a length that moves no digit of a
+float to one that has no end."""
 
 
 def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array) -> Array:
@@ -43,3 +48,31 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         if steady.all():
             break
     return least
+
+
+def allowed_along(
+    residual: Callable[[Array], Array], u: Array, way: Array, allowed: Array, begin: float = 1.0
+) -> float:
+    """How far along a way a residual stays within what is allowed of it, to a factor of WIDENED above.
+
+    0 or ENDLESS if it nowhere does, or everywhere. The next length is where the power of the length comes to one that
+    the last two too long ones show. `u`, `way` of shape (N + 1,); `allowed`, of shape (N,); `begin`: a first guess.
+    """
+    low, high, over, power = 0.0, np.inf, np.inf, 2.0
+    length, factor, allowed = begin, WIDENED, np.maximum(allowed, np.finfo(float).tiny)
+    while high > WIDENED * low and NOTHING_LEFT < length < ENDLESS:
+        try:
+            found = float((np.abs(residual(u + length * way)) / allowed).max())
+        except Exception:
+            # Nobody asked for H there: what it raises beyond its domain is shown by the step that needs that point.
+            found = np.inf
+        if found <= 1.0:  # not so where it is NaN
+            low, length, factor = length, length * factor, factor * factor
+            length = min(length, math.sqrt(low * high))
+            continue
+        if found < over < np.inf:
+            power = max(math.log(over / found) / math.log(high / length), 1.0)
+        high, over = length, found if found == found else np.inf
+        length = 0.5 * high * over ** (-1.0 / power) if over < np.inf else high / factor**2
+        length = max(min(length, 0.5 * high), math.sqrt(low * high))
+    return min(high, ENDLESS) if low else 0.0

@@ -15,6 +15,7 @@ import numpy as np
 from continuation.arrays import Array, dot, generic_vector, median
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
+from continuation.evaluation.noise import ENDLESS, allowed_along
 from continuation.point.linearization import Linearization
 
 TURN = 0.25
@@ -192,13 +193,18 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array) -> Array:
     """The tangent, with zeros for components that are round-off.
 
-    Which a component of 1e-17 is, that or one of another unit, one step of refinement tells, with H' a few units in the
-    last places away: it replaces round-off, that of H' too, by other round-off, and leaves what is known.
+    Which a component of 1e-17 is, that or one of another unit, one step of refinement tells, with H' at a point that H
+    does not tell from this one: a few units in the last places away, and as far along the path as H stays round-off. It
+    replaces round-off, that of H' too, and what the path has next to a fold, and leaves what is known.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
         return v
+    r = evaluator.residual(point.u)
+    onward = allowed_along(evaluator.residual, point.u, v, np.abs(r) + evaluator.round_off(point.u, r))
     beside = point.u + POINT_ULPS * np.spacing(np.abs(point.u)) * generic_vector(v.size)
+    if onward < ENDLESS:
+        beside += onward * v
     try:
         apply = evaluator.differential(beside)
     except EvaluationError:

@@ -89,8 +89,8 @@ class Options(PartOptions, total=False):
     finish : callable, default None
         ``(y, lam)`` to the end y or None, tried after each step in place of the homotopy's own; no archive holds it.
     max_step : float, default None
-        No step is longer, in arclength: for a picture with many points, or as the resolution of the path. Bends that are
-        narrower than half of it may lie between two looks (docs/guarantee.md).
+        No step is longer, in arclength: for a picture with many points, or as the resolution of the path. Bends that
+        are narrower than half of it may lie between two looks (docs/guarantee.md).
     box : mapping or None, default "homotopy"
         The path ends where it leaves it. From ``"lam"``, the number or the name of an unknown, or ``"y"`` for all
         unknowns, to (low, high), one of them perhaps None. By default the homotopy's own, if it has one; None for none.

@@ -159,3 +159,18 @@ def test_samples_of_one_field_have_one_scale():
     assert len(set(weights[:3])) == len(set(weights[3:6])) == 1
     assert weights[0] / weights[3] == pytest.approx(1e12, rel=1e-6)
     assert tracer.run().status is Status.REACHED_TARGET
+
+
+@every_preset
+@pytest.mark.parametrize("y", [6.1e-17, -6.1e-17, 1e-12, 1e-9])
+def test_a_start_at_a_fold_to_round_off(preset, y):
+    """The circle from its top: where y = cos(pi / 2) the parameter's tangent is what the path has next to its fold."""
+    for size, unit in ((1.0, 1.0), (5.0, 1e-6), (0.3, 1e4)):
+        homotopy = from_functions(
+            lambda x, lam, size=size, unit=unit: (x / (size * unit)) ** 2 + lam**2 - 1.0,
+            start=(np.array([size * unit * y]), 1.0),
+            target=None,
+        )
+        path = trace(homotopy, preset=preset)
+        assert path.status is Status.CLOSED
+        assert sorted(round(fold.lam, 9) for fold in path.turning_points) == [-1.0, 1.0]
