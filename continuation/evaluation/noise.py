@@ -42,12 +42,14 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         samples = np.stack([here, *(residual(u + j * h * w) for j in range(1, NOISE_SAMPLES))])
         # A fourth difference of noise of variance 1 has the variance 70.
         found = np.abs(np.diff(samples, 4, axis=0)).max(axis=0) / np.sqrt(70.0)
-        now = least <= NOISE_STEADY * found
+        # Samples that are all the same say nothing: single precision does not tell them apart.
+        found[np.ptp(samples, axis=0) == 0.0] = np.inf
+        now = (least <= NOISE_STEADY * found) & (least < np.inf)
         least = np.where(steady, least, np.minimum(least, found))
         steady |= now
         if steady.all():
             break
-    return least
+    return np.where(least < np.inf, least, 0.0)
 
 
 def allowed_along(

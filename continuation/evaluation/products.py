@@ -152,10 +152,15 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
 
     with np.errstate(all="ignore"):
         found = [at(float(h)) for h in DIFFERENCE_STEPS]
+        # Two zeros agree where an equation does not depend on w, and not where it only does not see so short a step, as
+        # one in single precision does.
+        seen = (np.array(found) != 0.0).any(axis=0)
         changes = []
         for one, other in pairwise(found):
             size = np.maximum(np.abs(one) + np.abs(other), rows)
-            change = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
+            change = np.where(
+                (one == 0.0) & (other == 0.0) & seen, 1.0, np.abs(one - other) / np.where(size > 0.0, size, 1.0)
+            )
             changes.append(np.maximum(np.where(np.isfinite(change), change, 1.0), CHANCE))
     return found, np.array(changes)
 

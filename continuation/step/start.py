@@ -36,8 +36,9 @@ CORRECTING = BorderedNewton(max_iterations=20)
 STEEP = 1e-8
 """The least component of the parameter in a tangent that one border, e_{N+1}, can tell: half of the digits."""
 
-CLEAR_OF_NOISE = 2.0
-"""The tolerance, in what noise makes of a correction, of which two samples are seen: one below that is not met."""
+CLEAR_OF_NOISE = 4.0
+"""The tolerance, in what noise makes of a correction: two standard deviations of a difference of two. With half of it
+CONSERVATIVE does not meet it in single precision."""
 
 COARSEST = 0.1
 """The tolerance where noise leaves no digit: a start that is known to less is found to be none by what comes next."""
@@ -124,6 +125,22 @@ def measured(
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent
     return point.with_weights(metric.weights(point.u, point.tangent, None)), extent
+
+
+def noisier(solver: PathSolver, point: Linearization) -> bool:
+    """Whether H has more noise at a point of the path than was seen before: the tolerance is raised to allow it."""
+    evaluator, before = solver.evaluator, solver.tolerance.relative
+    known, evaluator.noise = evaluator.noise, None
+    noise = evaluator.measure_noise(point.u, point.tangent, evaluator.residual(point.u))
+    if evaluator.noise is None:
+        evaluator.noise = known
+        return False
+    if known is not None:
+        evaluator.noise = np.maximum(evaluator.noise, known)
+    samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
+    blur = np.abs(samples).max(axis=0) * np.sqrt(point.weights)
+    solver.noisy(min(CLEAR_OF_NOISE * median(blur), COARSEST))
+    return solver.tolerance.relative > before
 
 
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
