@@ -16,7 +16,6 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive.atomic import ArchiveError, as_file, is_held, short
-from continuation.archive.checkpoint import HEAD
 from continuation.archive.checks import (
     GROUP,
     PLACES,
@@ -279,19 +278,13 @@ class Contents:
 
     def slots(self) -> list[bytes]:
         """The two checkpoints, as far as they are there; each says itself whether it is whole."""
-        return self._guarded(self._read_slots)
 
-    def _read_slots(self) -> list[bytes]:
-        if RESUME not in self._h5:
-            return []
-        slots = dataset(subgroup(self._h5, RESUME), "slots", np.dtype("u1"), (SLOTS, None), self.allowance)
-        found = []
-        for slot in range(SLOTS):
-            head = slots[slot, : HEAD.size].tobytes()
-            length = HEAD.unpack(head)[1] if len(head) == HEAD.size else 0
-            if 0 < length <= min(slots.shape[1] - HEAD.size, self.size):
-                found.append(slots[slot, : HEAD.size + length].tobytes())
-        return found
+        def read() -> list[bytes]:
+            shape = (SLOTS, None)
+            found = dataset(subgroup(self._h5, RESUME), "slots", np.dtype("u1"), shape, self.allowance)
+            return [slot.tobytes() for slot in found[()]]
+
+        return self._guarded(read) if RESUME in self._h5 else []
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
         """The first homotopy's description (JSON), and its arrays."""

@@ -204,12 +204,13 @@ def filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Column], 
     """The block in the columns of the layout; what it lacks is missing (NaN)."""
     whole = {}
     for column in columns:
-        whole[column.name] = np.full((rows, *layout.width(column)), column.missing, dtype=column.storage)
-        values = block.get(column.name)
-        if values is not None and values.shape == whole[column.name].shape:
-            whole[column.name] = np.ascontiguousarray(values)
-        elif values is not None:
-            whole[column.name][:, : values.shape[1]] = values
+        values, shape = block.get(column.name), (rows, *layout.width(column))
+        if values is None or values.shape != shape:
+            missing = np.full(shape, column.missing, dtype=column.storage)
+            if values is not None:
+                missing[:, : values.shape[1]] = values
+            values = missing
+        whole[column.name] = np.ascontiguousarray(values)
     return whole
 
 

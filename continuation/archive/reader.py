@@ -139,32 +139,30 @@ class Archive(Sequence[Path]):
         except ValueError as error:
             raise self.contents.damaged(error) from error
 
-    def _path(self, index: int, row: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
+    def _path(self, index: int, rows: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
         """A path of its row of the one table, and of its rows of the other if they are to be in memory."""
+        steps: Any
+        row = {name: column[0] for name, column in rows.items()}
         try:
-            return self._made(index, {name: column[0] for name, column in row.items()}, points)
+            if points is not None:
+                steps, events = from_columns(points, self.event_names, self.layout.observed)
+            else:
+                steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
+            end_error, winding = float(row["end_error"]), int(row["winding_number"])
+            return Path(
+                steps,
+                events,
+                Status(int(row["status"])),
+                row["message"].decode(errors="replace"),
+                Counts(*(int(row[column]) for column in COUNT_NAMES.values())),
+                float(row["wall_time"]),
+                references=entries(str(self.attributes.get("references", ""))),
+                end_error=None if math.isnan(end_error) else end_error,
+                winding_number=winding or None,
+                labels=Labels.from_attributes(self.attributes),
+            )
         except (ValueError, LookupError) as error:
             raise self.contents.damaged(error) from error
-
-    def _made(self, index: int, row: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
-        steps: Any
-        if points is not None:
-            steps, events = from_columns(points, self.event_names, self.layout.observed)
-        else:
-            steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
-        end_error, winding = float(row["end_error"]), int(row["winding_number"])
-        return Path(
-            steps,
-            events,
-            Status(int(row["status"])),
-            row["message"].decode(errors="replace"),
-            Counts(*(int(row[column]) for column in COUNT_NAMES.values())),
-            float(row["wall_time"]),
-            references=entries(str(self.attributes.get("references", ""))),
-            end_error=None if math.isnan(end_error) else end_error,
-            winding_number=winding or None,
-            labels=Labels.from_attributes(self.attributes),
-        )
 
     def __iter__(self) -> Iterator[Path]:
         # In runs of paths: many short reads cost much more.

@@ -56,13 +56,6 @@ class Row:
     tangent: Array
     switch: int = -1
 
-    @classmethod
-    def of(cls, point: Step | LocatedEvent, last: LocatedEvent | None = None) -> Row:
-        """An event, or a step and the `last` of its events."""
-        if isinstance(point, LocatedEvent):
-            return cls(point, point, LOCATED, point.tangent)
-        return cls(point, last, ACCEPTED, point.tangent)
-
 
 def parts_of(event: LocatedEvent | None) -> list[Row]:
     """The rows of a kink's switches and rays, which follow its own; none for other events."""
@@ -78,10 +71,11 @@ def parts_of(event: LocatedEvent | None) -> list[Row]:
 
 def rows_at(step: Step, events: Sequence[LocatedEvent], pieces: bool) -> list[Row]:
     """A step and the events that have come since the one before; the last one shares its row if the step ends there."""
-    shares = bool(events) and events[-1].ends_step and events[-1].kind == step.kind
-    last = events[-1] if shares else None
-    before = [Row.of(event) for event in (events[:-1] if shares else events)]
-    return [*before, Row.of(step, last), *(parts_of(last) if pieces else ())]
+    if not events:
+        return [Row(step, None, ACCEPTED, step.tangent)]
+    last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
+    before = [Row(event, event, LOCATED, event.tangent) for event in (events if last is None else events[:-1])]
+    return [*before, Row(step, last, ACCEPTED, step.tangent), *(parts_of(last) if pieces else ())]
 
 
 def rows_of(path: Path, pieces: bool = False) -> list[Row]:

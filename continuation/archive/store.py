@@ -80,7 +80,8 @@ class Store:
         self.layout = layout
         self.durable = durable
         self.events: list[str] = []
-        self._committed = Committed(sequence=1)
+        # What is written, and valid now or with the next commit.
+        self.committed = Committed(sequence=1)
         self._abandoned, self._process = False, os.getpid()
         # Made in memory: HDF5 ends the process where a write fails while it closes a file.
         made = BytesIO()
@@ -138,7 +139,7 @@ class Store:
         """
         if not self.ours:
             raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
-        before = self._committed
+        before = self.committed
         after = Committed(
             before.sequence + 1,
             max(point + _rows(points), before.points),
@@ -164,7 +165,7 @@ class Store:
             self._record(after, 0)
             self._flush()
             # All of it is written: whatever interrupts from here on, the next commit goes on after it.
-            self._committed = after
+            self.committed = after
             self._record(after, PLACES)
             self._counters["points"][()], self._counters["paths"][()] = after.points, after.paths
             self._flush()
@@ -172,11 +173,6 @@ class Store:
             self.abandon()
             reason = f"could not be written ({short(error)}); what was committed is safe"
             raise ArchiveError(f"{self.file}: {reason}") from error
-
-    @property
-    def committed(self) -> Committed:
-        """What is written, and valid now or with the next commit."""
-        return self._committed
 
     def _record(self, committed: Committed, first: int) -> None:
         """One of the two records of a commit, in the place whose turn it is."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
-from itertools import takewhile
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
@@ -31,7 +30,7 @@ from continuation.archive.rows import (
     rows_at,
     to_columns,
 )
-from continuation.archive.schema import ACCEPTED, COUNT_NAMES, KINK_PART, SLOTS, check_names
+from continuation.archive.schema import ACCEPTED, COUNT_NAMES, KINK_PART, LOCATED, SLOTS, check_names
 from continuation.archive.store import Store, create
 from continuation.archive.tables import StoredSteps, kept_whole
 from continuation.arguments.checks import complain
@@ -165,8 +164,11 @@ class PathLog:
         if path.skipped is not None:
             # Not a point to resume from either: that is one whose row is there.
             return
-        here = takewhile(lambda event: event.ends_step and event.step == step.index, reversed(tracer.path.events))
-        for row in rows_at(step, [*here][::-1], self._store is not None and self._store.layout.pieces):
+        events = tracer.path.events
+        first = len(events)
+        while first and events[first - 1].ends_step and events[first - 1].step == step.index:
+            first -= 1
+        for row in rows_at(step, events[first:], self._store is not None and self._store.layout.pieces):
             self._add(path, row)
         state = tracer.state
         if state is not None and state.index == step.index:
@@ -181,7 +183,7 @@ class PathLog:
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
         """See `continuation.Observer`."""
-        self._add(self._path(tracer), Row.of(event))
+        self._add(self._path(tracer), Row(event, event, LOCATED, event.tangent))
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
@@ -190,7 +192,7 @@ class PathLog:
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         if path.skipped is not None:
-            self._add(path, Row.of(path.skipped))
+            self._add(path, Row(path.skipped, None, ACCEPTED, path.skipped.tangent))
         row = record_of(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
         refused = self._store is None and found.status in (Status.INTERRUPTED, Status.RAISED)
