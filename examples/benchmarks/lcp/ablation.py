@@ -1,10 +1,14 @@
 """What each method of `lcp.solve` is worth: a mix of problems with all of them, and with each taken out in turn.
 
-    python examples/benchmarks/lcp/ablation.py [all] [each] [sets] [--seed S] [--share F] [--limit S] [--json FILE]
+    python examples/benchmarks/lcp/ablation.py [all] [each] [sets] [--seed S] [--limit S]
 
-"all" prints each family, "each" a line for every method that is taken out, "sets" one for a few that are kept alone.
+"all" prints each family, "each" a line for every row of the table that is taken out, "sets" one for a few kept alone.
 """
 
+import argparse
+import math
+import signal
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -14,7 +18,10 @@ import numpy as np
 import outside
 import units
 
+from continuation import Budget
 from problems import lcp
+from problems.lcp.search import solver
+from problems.lcp.search.table import AUTOMATIC
 from problems.scenes.registry import available, make
 
 Problem = Any
@@ -121,6 +128,68 @@ MIX: dict[str, Callable[[int], Iterator[Problem]]] = {
 }  # fmt: skip
 
 
-def mix(seed: int) -> dict[str, list[Problem]]:
-    """All families."""
-    return {name: list(family(seed)) for name, family in MIX.items()}
+SETS = {
+    "active sets, pivots": ("active sets", "pivots"),
+    "without active sets": ("all faces", "pivots", "root", "few groups of faces", "reflections", "groups of faces",
+                            "paths", "reflections, further", "restarts"),
+    "without exclusion": ("active sets", "pivots", "reflections", "paths", "reflections, further", "restarts"),
+    "without paths": ("active sets", "all faces", "pivots", "root", "few groups of faces", "reflections",
+                      "groups of faces", "reflections, further"),
+    "paths, restarts": ("paths", "restarts"),
+}  # fmt: skip
+"""Rows of the table that are kept."""
+
+DECIDED = ("SOLVED", "SOLVED_TO_PRECISION", "UNSOLVABLE", "INFEASIBLE_TO_PRECISION")
+
+
+def late(*_: object) -> None:
+    """Ends a solve at the limit."""
+    raise TimeoutError
+
+
+def measured(problem: Problem, limit: float) -> tuple[str, float]:
+    """Outcome and seconds of the processor."""
+    began = time.thread_time()
+    signal.setitimer(signal.ITIMER_PROF, limit)
+    try:
+        outcome = lcp.solve(problem, budget=Budget(steps=math.inf)).outcome.name
+    except TimeoutError:
+        outcome = "late"
+    signal.setitimer(signal.ITIMER_PROF, 0.0)
+    return outcome, time.thread_time() - began
+
+
+def line(title: str, found: list[tuple[str, float]]) -> str:
+    """A row of a table in Markdown: solved, proved, left, seconds together and in the median."""
+    outcomes = [outcome for outcome, _ in found]
+    solved, decided = (sum(o in DECIDED[:k] for o in outcomes) for k in (2, 4))
+    seconds = [s for _, s in found]
+    counts = f"{solved} | {decided - solved} | {len(found) - decided}"
+    return f"| {title} | {counts} | {sum(seconds):.1f} s | {1e3 * float(np.median(seconds)):.2f} ms |"
+
+
+def main() -> None:
+    """Run what is asked for."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("what", nargs="*", default=["all"])
+    parser.add_argument("--seed", type=int, default=5)
+    parser.add_argument("--limit", type=float, default=1.5)
+    arguments = parser.parse_args()
+    signal.signal(signal.SIGPROF, late)
+    problems = {name: list(family(arguments.seed)) for name, family in MIX.items()}
+    every = [problem for family in problems.values() for problem in family]
+    print("| | solved | proved to have no solution | left | all | median |\n|---|---:|---:|---:|---:|---:|")
+    if "all" in arguments.what:
+        for name, family in problems.items():
+            print(line(name, [measured(problem, arguments.limit) for problem in family]), flush=True)
+    kept = {"the table": tuple(row.name for row in AUTOMATIC)}
+    if "each" in arguments.what:
+        kept |= {f"without {row.name}": tuple(r.name for r in AUTOMATIC if r is not row) for row in AUTOMATIC}
+    kept |= SETS if "sets" in arguments.what else {}
+    for title, names in kept.items():
+        solver.AUTOMATIC = tuple(row for row in AUTOMATIC if row.name in names)
+        print(line(title, [measured(problem, arguments.limit) for problem in every]), flush=True)
+
+
+if __name__ == "__main__":
+    main()

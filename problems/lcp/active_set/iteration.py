@@ -48,7 +48,7 @@ class Policy:
     patience : int or None
         Corrections in a row without a new low of the number of changed indices, after which it is given up.
     regular : bool
-        Whether it ends before the first face whose equations are singular, after those that are allowed.
+        Whether it ends before the first face whose equations are singular.
     singular : int
         So many faces with singular equations are allowed then, and are no steps, whose points may lie anywhere on them.
     """
@@ -145,10 +145,9 @@ def iterate(
             return Iterated(Ended.TRIED, state, x)
         if counts is not None:
             counts.factorizations += 1
-        regular = policy.regular and singular >= policy.singular
-        face = faces.face(state, shift or 0.0, centre, regular, x)
+        face = faces.face(state, shift or 0.0, centre, policy.regular, x)
         singular += face is None or not face.exact
-        if regular and singular > policy.singular:
+        if policy.regular and singular:
             if tried is not None:
                 tried.forget(state)
             return Iterated(Ended.IRREGULAR, state, x)

@@ -1,4 +1,4 @@
-"""What is quickly found out about the matrix; `search.strategy` decides by it what is tried."""
+"""What is quickly found out about the matrix; `search.table` decides by it what is tried."""
 
 from __future__ import annotations
 

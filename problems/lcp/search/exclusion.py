@@ -18,7 +18,7 @@ from problems.lcp.reference.branching import Branching
 from problems.lcp.reference.enumeration import Exhaustion, decidable, exhaust
 from problems.lcp.search.search import Search
 
-LARGEST_AT_ONCE = 5
+LARGEST_LEAVES = 5
 """Up to this order floats exclude all faces together in 0.1 ms, less than pivots take; at n = 6 it is as much."""
 
 LARGEST_TREE = 40
@@ -42,7 +42,7 @@ def groupable(search: Search) -> bool:
 
 def few_faces(search: Search) -> bool:
     """Whether all faces are excluded together."""
-    return search.problem.n <= LARGEST_AT_ONCE and groupable(search)
+    return search.problem.n <= LARGEST_LEAVES and groupable(search)
 
 
 @define(eq=False)

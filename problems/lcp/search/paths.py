@@ -30,18 +30,12 @@ from problems.lcp.active_set.on_path import AlongPath, smallest_parameter
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import Structure
 from problems.lcp.homotopies.registry import HOMOTOPIES, LCPHomotopy
-from problems.lcp.homotopies.starts import START_DISTANCES, natural_units, random_start
+from problems.lcp.homotopies.starts import natural_units, random_start
 from problems.lcp.proof.certificate import ROUND_OFF, Certificate, certify
 from problems.lcp.proof.phase1 import NoStrictlyFeasiblePoint, strictly_feasible_start
 from problems.lcp.proof.verdict import stationary
 from problems.lcp.search.padded import Padded, show
 from problems.lcp.search.search import Candidate, Search
-
-Band = tuple[float, float]
-
-FAR_STARTS: tuple[Band, ...] = (START_DISTANCES,)
-NEAR_STARTS: tuple[Band, ...] = ((-0.5, 0.0), (0.0, 0.5))
-"""The distances of starts, in turn; see `random_start`. For A >= 0 (bimatrix games) only near ones do well."""
 
 LEAST_START = 1e-3
 """In natural units: what a zero of x0 is where a path begins, which needs positive ones."""
@@ -52,9 +46,6 @@ SETTLED_PRODUCT = 5e-5
 RESTART_STEPS = 60
 """Steps, and n more, after which a restart is given up: of 144 paths that solved one took nearly as many. The first
 path, which takes shorter ones, has twice as many: of a Hankel matrix of order 100 one had not ended after 3,000."""
-
-LARGEST_FRESH = 150
-"""Up to this order a factorisation costs no more than the solves by which an old one is refined."""
 
 LARGEST_MADE_DENSE = 500
 """A sparse matrix of at most this order is made dense for paths, whose matrices of order n or 2n fill: with 5 % entries
@@ -74,15 +65,14 @@ Patience = Callable[[Step], str]
 """A step to the reason for which its path is given up, or to nothing."""
 
 
-def search_preset(n: int) -> Preset:
-    """The parts of a restart for a problem of order n: the longest steps that pay."""
-    return Preset(
-        "SEARCH",
-        "steps that turn up to 40 degrees, for one path among many",
-        Hermite(),
-        BorderedNewton(reuse=0.0 if n <= LARGEST_FRESH else 0.5),
-        AllgowerGeorg(contraction=0.7, distance=0.6, angle=0.7, deceleration=2.0),
-    )
+SEARCH = Preset(
+    "SEARCH",
+    "steps that turn up to 40 degrees, for one path among many",
+    Hermite(),
+    BorderedNewton(reuse=0.0),
+    AllgowerGeorg(contraction=0.7, distance=0.6, angle=0.7, deceleration=2.0),
+)
+"""The parts of a restart: the longest steps that pay."""
 
 
 def follow(
@@ -115,13 +105,12 @@ def follow(
 class Restart:
     """The k-th restart: it depends on what is here alone, and can be sent to another process.
 
-    `structure`: Of the problem. `name`: "kkt", or that of a homotopy in (x, y). `bands`: How far out it may begin.
-    `tolerance`: Of the finish; None to go without it. `options`: For the tracer, over those of `search_preset`.
+    `structure`: Of the problem. `name`: "kkt", or that of a homotopy in (x, y). `tolerance`: Of the finish;
+    None to go without it. `options`: For the tracer, over those of `SEARCH`.
     """
 
     structure: Structure
     name: str
-    bands: tuple[Band, ...]
     seed: int
     k: int
     tolerance: float | None
@@ -129,8 +118,8 @@ class Restart:
 
     def homotopy(self) -> LCPHomotopy:
         """The homotopy at its start; with the finish its solves are not refined, which a loose tolerance allows."""
-        problem, k = self.structure.problem, self.k
-        start = random_start(problem, np.random.default_rng([self.seed, k]), self.bands[k % len(self.bands)])
+        problem = self.structure.problem
+        start = random_start(problem, np.random.default_rng([self.seed, self.k]))
         return HOMOTOPIES[self.name].at(problem, start, self.structure, refine=self.tolerance is None)
 
     def trace(self, budget: Budget, exhausted: Callable[[], str] = str, observers: tuple[Observer, ...] = ()) -> Path:
@@ -146,7 +135,7 @@ class Restart:
                 return "so near the end the active set no longer changes, and it is not that of a solution"
             return unending(step, longest) or exhausted()
 
-        parts = {"preset": search_preset(self.structure.n), "tolerance": PURE if pure else LOOSE, "examine": pure}
+        parts = {"preset": SEARCH, "tolerance": PURE if pure else LOOSE, "examine": pure}
         return follow(homotopy, finish, budget, patience, observers, **{**parts, **self.options})
 
 
@@ -190,9 +179,7 @@ class Paths:
             return next((said for name in self._names() if (said := self._first(name))), "")
         asked = search.asked
         name = ("kkt" if search.problem.standard else "wang") if asked.homotopy == "auto" else asked.homotopy
-        # Of a matrix that a homotopy by name was chosen for nothing was found out.
-        near = asked.homotopy == "auto" and search.facts.nonnegative
-        search.tried = self._restarted(name, NEAR_STARTS if near else FAR_STARTS, int(min(work, asked.restarts)))
+        search.tried = self._restarted(name, int(min(work, asked.restarts)))
         start = f"random start {search.tried} (seed {asked.seed})"
         return f"Solved by a path of the {name} homotopy from {start}." if search.solved else ""
 
@@ -262,7 +249,7 @@ class Paths:
         polished = finish.settle(problem.states(x, end.w), Policy(steps=0), x)
         return finish.certificate if polished is not None and finish.certificate is not None else end
 
-    def _restarted(self, name: str, bands: tuple[Band, ...], count: int) -> int:
+    def _restarted(self, name: str, count: int) -> int:
         """Trace restarts until one solves the problem, or the budget or the count is used up; how many were begun.
 
         Over an executor the first solution in the order of the restarts is taken among those that are there.
@@ -271,7 +258,7 @@ class Paths:
         tolerance = None if search.finish is None else search.tolerance
 
         def task(k: int) -> Restart:
-            return Restart(search.structure, name, bands, asked.seed, k, tolerance, asked.options)
+            return Restart(search.structure, name, asked.seed, k, tolerance, asked.options)
 
         if asked.executor is not None:
             return self._distributed(asked.executor, task, count)

@@ -42,8 +42,8 @@ BALANCINGS = 5
 LARGEST_REFLECTED = 1000
 """A round takes a minute at this order, of which Gaussian problems need 5 to 17 s."""
 
-ROUND_WORK = 8e8
-"""Iterations times n^2 that are one round at least: 3 s. From order 400 on a round is more, 16 s of order 600."""
+ROUND_WORK = 4e8
+"""Iterations times n^2 that are one round at least: 1.3 s. From order 300 on a round is more, 16 s of order 600."""
 
 
 def run_length(n: int) -> int:

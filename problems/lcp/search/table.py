@@ -53,14 +53,15 @@ AUTOMATIC = (
     Row("pivots", Pivots, pivotable, 10, "pivots times the order, at most 1e6 over it, at least 3 times"),
     Row("root", Exclusion, lambda s: 20 < s.problem.n <= 40, 1, "linear programs"),
     Row("few groups of faces", Exclusion, lambda s: s.problem.n <= 20, 1000, "linear programs"),
-    Row("reflections", Reflections, reflectable, 6, "rounds, of 8e8 iterations times n^2 at most"),
+    Row("reflections", Reflections, reflectable, 4, "rounds, of 4e8 iterations times n^2 at most"),
     Row("groups of faces", Exclusion, always, 10_000, "linear programs, of n <= 40, else one"),
     Row("paths", Paths, always, 1, "path of each homotopy"),
+    Row("reflections, further", Reflections, reflectable, 16, "rounds"),
     Row("restarts", Paths, lambda s: s.asked.restarts > 0, math.inf, "paths, as many as were asked for"),
 )
 """For any matrix."""
 
-*_, _REFLECTIONS, _GROUPS, _PATHS, _RESTARTS = AUTOMATIC
+*_, _GROUPS, _PATHS, _REFLECTIONS, _RESTARTS = AUTOMATIC
 
 PATHS = (_PATHS, _GROUPS, _REFLECTIONS, _RESTARTS)
 """The same where a path is wanted."""

@@ -4,12 +4,11 @@ import math
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-import pytest
 
 import continuation
 from problems import lcp
-from problems.lcp.homotopies.starts import LOG_DEVIATION, natural_units, typical_units
-from problems.lcp.search.paths import FAR_STARTS, NEAR_STARTS, Restart, light, search_preset, trace_light
+from problems.lcp.homotopies.starts import LOG_DEVIATION, START_DISTANCES, natural_units, typical_units
+from problems.lcp.search.paths import Restart, light, trace_light
 
 PLANTED = 30
 
@@ -24,22 +23,21 @@ def planted(seed, n=PLANTED):
 
 
 def restart(problem, k, **changes):
-    settings = {"name": "kkt", "bands": FAR_STARTS, "seed": 0, "tolerance": 1e-10, "options": {}} | changes
+    settings = {"name": "kkt", "seed": 0, "tolerance": 1e-10, "options": {}} | changes
     return Restart(structure=lcp.Structure(problem), k=k, **settings)
 
 
-@pytest.mark.parametrize("bands", [FAR_STARTS, NEAR_STARTS])
-def test_starts_are_centred_positive_and_at_their_distance(bands):
+def test_starts_are_centred_positive_and_at_their_distance():
     problem = planted(1)
     x, w = typical_units(problem)
     for k in range(20):
-        start = lcp.random_start(problem, np.random.default_rng(k), bands[k % len(bands)])
+        start = lcp.random_start(problem, np.random.default_rng(k))
         assert min(a.min() for a in (start.x0, start.z1, start.z2, start.w0)) > 0.0
         first, second = start.x0 * start.z1, start.w0 * start.z2
         np.testing.assert_allclose(first, first[0], rtol=1e-12)
         np.testing.assert_allclose(second, second[0], rtol=1e-12)
         scale = np.sqrt(first[0] / (x * w))
-        low, high = bands[k % len(bands)]
+        low, high = START_DISTANCES
         assert 10**low <= scale <= 10**high
         spread = np.log(start.x0 / (scale * x))
         assert 0.5 * LOG_DEVIATION <= spread.std() <= 1.5 * LOG_DEVIATION
@@ -142,11 +140,6 @@ def test_light_paths_keep_their_ends():
     np.testing.assert_array_equal(kept.steps[0].u, first.u)
     np.testing.assert_array_equal(kept.endpoint.u, last.u)
     assert len(trace_light(restart(planted(0), 0), continuation.Budget())) == 2
-
-
-def test_the_preset_factors_anew_only_where_that_is_cheap():
-    assert search_preset(50).corrector.reuse == 0.0
-    assert search_preset(500).corrector.reuse > 0.0
 
 
 def test_restarts_go_on_until_the_budget_is_used_up(monkeypatch):
