@@ -139,18 +139,18 @@ def _of_path(problem: Problem, path: Path) -> tuple[str, str] | None:
 
 
 def tables(study: Study, results: Results) -> dict[str, Table]:
-    """The summary by method, and the study's own tables, by title."""
-    return {"Methods": summary(results), **{title: make(results) for title, make in study.tables.items()}}
+    """The summary by method, the study's own tables and the runs that failed, by title."""
+    own = {title: make(results) for title, make in study.tables.items()}
+    failed = runs(results, failures_only=True)
+    return {"Methods": summary(results), **own, **({"Failures": failed} if failed.rows else {})}
 
 
 def report(study: Study, results: Results, folder: File) -> list[File]:
-    """Write ``NAME.json``, ``NAME.md`` and one ``NAME-FIGURE.png`` a figure; what is there is replaced.
+    """Write ``NAME.json`` and one ``NAME-FIGURE.png`` a figure; what is there is replaced.
 
     The folder exists. Returned are the files; without matplotlib there are no figures among them.
     """
-    page = folder / f"{study.name}.md"
-    page.write_text(_page(study, results), encoding="utf-8")
-    files = [write(results, folder / f"{study.name}.json"), page]
+    files = [write(results, folder / f"{study.name}.json")]
     for figure in study.figures:
         try:
             drawing = figure.draw(results)
@@ -159,16 +159,3 @@ def report(study: Study, results: Results, folder: File) -> list[File]:
         files.append(folder / f"{study.name}-{figure.name}.png")
         drawing.savefig(files[-1])
     return files
-
-
-def _page(study: Study, results: Results) -> str:
-    """Everything as Markdown."""
-    parts = [f"# {results.title}"]
-    found = tables(study, results)
-    failed = runs(results, failures_only=True)
-    if failed.rows:
-        found["Failures"] = failed
-    found["Runs"] = runs(results)
-    parts += [f"## {title}\n\n{table.markdown()}" for title, table in found.items()]
-    parts.append("\n".join(f"- {name}: {value}" for name, value in results.provenance.items()))
-    return "\n\n".join(parts) + "\n"

@@ -1,4 +1,4 @@
-"""``continuation chart``: ready studies of speed against accuracy, as tables, files and figures."""
+"""``continuation chart``: ready studies of speed against accuracy, as tables and pictures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def register(subparsers: Subparsers) -> None:
     parser = subparsers.add_parser(
         "chart",
         help="speed against accuracy: run a ready study",
-        description="Run a study, print its table, and write results (JSON, Markdown) and pictures. Without a "
+        description="Run a study, print its table, and write results (JSON) and pictures. Without a "
         "name, list the studies.",
     )
     parser.add_argument("name", metavar="NAME", nargs="?", help=f"a study, or {EVERY}; or module:function of your own")

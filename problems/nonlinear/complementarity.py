@@ -18,7 +18,7 @@ from continuation.path import Path
 from continuation.status import Status
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import MixedLCP
-from problems.lcp.homotopies.in_full import pairs_in_full
+from problems.lcp.homotopies.cores import in_full
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, longest_step
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.references import WANG
@@ -205,7 +205,8 @@ class InteriorHomotopy:
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for reference: the engine uses `bordered`."""
-        return pairs_in_full(self._system(y, lam))
+        system = self._system(y, lam)
+        return in_full(system.apply, y.size, system.structure.problem.sparse)
 
     def max_step(self, u: Array, v: Array) -> float:
         """How far along v until a bound or a zero of y is reached."""

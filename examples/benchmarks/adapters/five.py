@@ -1,6 +1,6 @@
 """One model five times: in numpy with its Jacobian, in JAX, CasADi and SymPy, and as a residual alone.
 
-    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/adapters/five.py [--rounds 5] [--points 64] [--figure FILE]
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/adapters/five.py [--rounds 5] [--points 64]
 
 The Brusselator with diffusion, 2 x 64 unknowns, and a network of three layers at rest. Processor seconds a path, the
 least of several rounds; "made" is what it takes before, compilation included. What is not installed is left out.
@@ -140,26 +140,12 @@ def measured(make, rounds, preset="FAST"):
     return path, least, first - least
 
 
-def draw(seconds, file):
-    """Bars: seconds a path."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, len(seconds), figsize=(9, 3), layout="constrained")
-    for ax, (title, found) in zip(axes, seconds.items()):
-        ax.barh(list(found), [1e3 * value for value in found.values()])
-        ax.set(title=title, xlabel="ms a path, FAST, compilation apart")
-        ax.invert_yaxis()
-    figure.savefig(file, dpi=120)
-
-
 def main():
     """Print a line a way."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--points", type=int, default=64)
-    parser.add_argument("--figure")
     arguments = parser.parse_args()
-    seconds = {}
     models = {f"Brusselator, 2 x {arguments.points}": brusselator(arguments.points), "network": network(4)}
     for title, model in models.items():
         for preset in ("FAST", "SERIES"):
@@ -171,10 +157,6 @@ def main():
                     f"{path.status.name}, {len(path)} points, folds {folds or 'none'}; {path.counts}",
                     flush=True,
                 )
-                if preset == "FAST":
-                    seconds.setdefault(title, {})[name] = least
-    if arguments.figure:
-        draw(seconds, arguments.figure)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,12 @@
 """A residual alone beside the same with its Jacobian: Bratu in one and two dimensions, Swift-Hohenberg, and others.
 
     OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/no_jacobian.py [NAME ...] [--rounds 5] [--preset FAST]
-    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/no_jacobian.py --figure FILE
 
 Processor seconds, the least of several rounds in which all take turns. "differences" is the same residual as compiled
-code would give it, which neither jets nor complex numbers pass; "known" has the pattern as `sparsity`. The figure has
-Bratu's problem on squares, each run in a process of its own, beside a plain loop of scipy.
+code would give it, which neither jets nor complex numbers pass; "known" has the pattern as `sparsity`.
 """
 
 import argparse
-import resource
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -160,42 +156,6 @@ def folds_apart(path, other):
     return np.inf if one.shape != two.shape else float((np.abs(one - two) / np.abs(one + two)).max(initial=0.0))
 
 
-def alone_in_a_process(way, m):
-    """Seconds and MiB of one path through the fold, the process all told."""
-    if way == "plain loop":
-        from rivals import measure
-
-        seconds = measure("plain", "square", m, 1)["seconds"]
-    else:
-        # The first imports what the second is not to be charged with.
-        for homotopy in (Bratu2D(9), Bratu2D(m)):
-            one, given = ways(homotopy)[way], options(homotopy, "FAST")
-            began = time.process_time()
-            continuation.trace(one, **given)
-        seconds = time.process_time() - began
-    return seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-
-
-def draw(file, sides):
-    """Seconds and memory against the number of unknowns."""
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
-    for way, label in (("own", "with a Jacobian"), ("alone", "a residual alone"), ("plain loop", "plain loop")):
-        found = []
-        for m in sides:
-            command = [sys.executable, __file__, "--measure", way, str(m)]
-            answer = subprocess.run(command, capture_output=True, text=True, check=True)
-            found.append([float(value) for value in answer.stdout.split()])
-            print(way, m * m, *found[-1], flush=True)
-        for ax, values in zip(axes, zip(*found)):
-            ax.loglog([m * m for m in sides], values, "o-", label=label)
-    for ax, label in zip(axes, ("seconds of the processor", "MiB of the process")):
-        ax.set(xlabel="unknowns", ylabel=label)
-    axes[0].legend()
-    figure.savefig(file, dpi=120)
-
-
 def main():
     """Print a line a problem and way."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -203,15 +163,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--preset", default="FAST")
     parser.add_argument("--ways", nargs="*")
-    parser.add_argument("--figure")
-    parser.add_argument("--measure", nargs=2, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
-    if arguments.measure:
-        print(*alone_in_a_process(arguments.measure[0], int(arguments.measure[1])))
-        return
-    if arguments.figure:
-        draw(arguments.figure, (10, 20, 50, 100, 200))
-        return
     for name in arguments.names:
         found = measured(name, arguments.rounds, arguments.preset, arguments.ways)
         own, least = found["own"]

@@ -1,24 +1,18 @@
-"""What a step costs beside another version of the library: time, calls, factorisations; and beyond its linear algebra.
+"""What a step costs: time, calls, factorisations.
 
-    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/step.py [--against CHECKOUT] [--rounds 20]
+    OPENBLAS_NUM_THREADS=1 python examples/benchmarks/size/step.py [NAME ...]
 
-The versions take turns in processes of their own, so that a machine with other work to do slows both; the least time
-counts. Calls of functions, Python's and numpy's, are counted exactly, whatever else runs.
+Beside another checkout: the same with that in PYTHONPATH, in turns. Calls of functions, Python's and numpy's, are
+counted exactly, whatever else runs.
 """
 
-import argparse
-import json
-import os
-import subprocess
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 
-HERE = str(File(__file__).resolve().parents[3])
 PROBLEMS = (
     "circle", "cusp", "freudenstein-roth", "bratu-1d", "aircraft", "brown", "exponential-cosine-3",
     "exponential-cosine-10", "example-1", "example-10",
@@ -76,23 +70,6 @@ def calls(work: Callable[[], Any]) -> int:
     return number
 
 
-def linear_algebra(homotopy: Any, counts: Any) -> float:
-    """Seconds that a path's evaluations, factorisations and solves take by themselves, dense."""
-    from scipy.linalg.lapack import dgetrf, dgetrs
-
-    y, lam = homotopy.start()
-    n = np.size(y) + 1
-    matrix, right = np.eye(n) + 1e-3 * np.arange(n), np.ones(n)
-    factors, pivots, _ = dgetrf(matrix)
-    parts = (
-        (counts.residuals, lambda: homotopy.residual(y, lam)),
-        (counts.jacobians, lambda: homotopy.jacobian(y, lam)),
-        (counts.factorizations, lambda: dgetrf(matrix)),
-        (counts.solves, lambda: dgetrs(factors, pivots, right)),
-    )
-    return sum(count * best(work, 0.01) for count, work in parts)
-
-
 def measured(name: str) -> dict[str, float]:
     """A path in numbers."""
     import continuation
@@ -105,55 +82,19 @@ def measured(name: str) -> dict[str, float]:
     counts = work().counts
     found = {"steps": counts.accepted + counts.rejected, "factorizations": counts.factorizations}
     found |= {"solves": counts.solves, "residuals": counts.residuals}
-    found |= {"calls": calls(work), "seconds": best(work, 0.2), "algebra": np.nan}
-    dense = not hasattr(homotopy, "bordered") and isinstance(homotopy.jacobian(*homotopy.start())[0], np.ndarray)
-    if dense:
-        found["algebra"] = linear_algebra(homotopy, counts)
-    return found
-
-
-def asked(checkout: str, name: str) -> dict[str, float]:
-    """The same of another version, in a process of its own."""
-    environment = os.environ | {"PYTHONPATH": checkout, "OPENBLAS_NUM_THREADS": "1"}
-    command = [sys.executable, __file__, "--measure", name]
-    answer = subprocess.run(command, env=environment, cwd=checkout, capture_output=True, text=True, check=True)
-    found: dict[str, float] = json.loads(answer.stdout)
-    return found
+    return found | {"calls": calls(work), "seconds": best(work, 0.2)}
 
 
 def main() -> None:
     """Print a line a problem."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--against", help="another checkout")
-    parser.add_argument("--rounds", type=int, default=20)
-    parser.add_argument("--measure", help=argparse.SUPPRESS)
-    parser.add_argument("names", nargs="*", default=list(PROBLEMS))
-    arguments = parser.parse_args()
-    if arguments.measure:
-        print(json.dumps(measured(arguments.measure)))
-        return
-    versions = [HERE, *([arguments.against] if arguments.against else [])]
-    for name in arguments.names:
-        found: dict[str, dict[str, float]] = {}
-        for _ in range(arguments.rounds):
-            for version in versions:
-                new = asked(version, name)
-                old = found.get(version, new)
-                found[version] = new | {key: min(old[key], new[key]) for key in ("seconds", "algebra")}
-        lines = []
-        for one in found.values():
-            steps, seconds = one["steps"], one["seconds"]
-            lines.append(
-                f"{steps:.0f} steps, {one['factorizations']:.0f} factorisations, {one['solves']:.0f} solves, "
-                f"{one['residuals']:.0f} residuals, a step {1e6 * seconds / steps:.0f} us "
-                f"({1e6 * (seconds - one['algebra']) / steps:.0f} beyond), {one['calls'] / steps:.0f} calls"
-            )
-        ratio = ""
-        if len(found) == 2:
-            new, old = found.values()
-            a_path = new["seconds"] / old["seconds"]
-            ratio = f"; ratio a step {a_path * old['steps'] / new['steps']:.2f}, a path {a_path:.2f}"
-        print(f"{name}: {' | '.join(lines)}{ratio}", flush=True)
+    for name in sys.argv[1:] or PROBLEMS:
+        one = measured(name)
+        steps = one["steps"]
+        print(
+            f"{name}: {steps:.0f} steps, {one['factorizations']:.0f} factorisations, {one['solves']:.0f} solves, "
+            f"{one['residuals']:.0f} residuals, a step {1e6 * one['seconds'] / steps:.0f} us, "
+            f"{one['calls'] / steps:.0f} calls", flush=True,
+        )  # fmt: skip
 
 
 if __name__ == "__main__":

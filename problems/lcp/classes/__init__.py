@@ -1,4 +1,10 @@
-"""Exact matrix classes of the linear complementarity problem, each answer with its evidence."""
+"""Exact matrix classes of the linear complementarity problem, each answer with its evidence.
+
+Floats are rational numbers, so that a test in integers is a proof. There are four kinds of test: signs of principal
+minors (`minors`, and their limits, `closure`), a linear program for each index set (`cones`) or sign vector
+(`sufficiency`), and complementary cones subtracted from that of feasible right-hand sides (`solvability`). Beyond the
+order that a test names the answer is None.
+"""
 
 from __future__ import annotations
 

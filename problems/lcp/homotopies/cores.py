@@ -11,9 +11,10 @@ from functools import cached_property
 from typing import Generic, TypeVar
 
 import numpy as np
+import scipy.sparse as sp
 from attrs import define, frozen
 
-from continuation.arrays import Array
+from continuation.arrays import Array, Matrix
 from continuation.linear import BorderedSystem, SingularError
 from continuation.linear.silence import without_warnings
 
@@ -57,6 +58,14 @@ class Recent(Generic[System]):
         if found is None or found[:2] != (entries, lam):
             self.found = found = entries, lam, make(y.copy(), lam)
         return found[2]
+
+
+def in_full(apply: Callable[[Array], Array], size: int, sparse: bool) -> tuple[Matrix, Array]:
+    """(H_y, H_lam) from the products of H' with unit vectors: for what needs a matrix, as a singular point does."""
+    columns = [apply(np.eye(1, size + 1, k)[0]) for k in range(size + 1)]
+    if sparse:
+        return sp.csr_array(sp.hstack([sp.csc_array(column[:, None]) for column in columns[:-1]])), columns[-1]
+    return np.column_stack(columns[:-1]), columns[-1]
 
 
 @frozen(eq=False)

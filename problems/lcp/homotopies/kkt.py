@@ -13,8 +13,7 @@ from continuation.linear import BorderedSystem
 from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
-from problems.lcp.homotopies.cores import Recent
-from problems.lcp.homotopies.in_full import kkt_in_full
+from problems.lcp.homotopies.cores import Recent, in_full
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.kkt_system import KKTSystem, factor_kkt
 from problems.lcp.homotopies.quadratics import exact_end, kkt_form
@@ -246,7 +245,7 @@ class KKTHomotopy:
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for an LCP of order 3n, sparse as A is: for reference, the engine uses `bordered`."""
-        return kkt_in_full(self._system(y, lam))
+        return in_full(self._system(y, lam).apply, y.size, self.problem.sparse)
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:

@@ -17,8 +17,7 @@ from continuation.point.linearization import Linearization
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import LCP, MixedLCP
 from problems.lcp.homotopies import references
-from problems.lcp.homotopies.cores import Recent
-from problems.lcp.homotopies.in_full import pairs_in_full
+from problems.lcp.homotopies.cores import Recent, in_full
 from problems.lcp.homotopies.interior import OwnMetric, RelativeMetric, convolved, longest_step, observed
 from problems.lcp.homotopies.pair_system import Blend, PairSystem, factor_pairs
 from problems.lcp.homotopies.quadratics import exact_end, pairs_form
@@ -131,7 +130,7 @@ class TwoVectorHomotopy:
 
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) in full, for an LCP of order 2n, sparse as A is: for reference, the engine uses `bordered`."""
-        return pairs_in_full(self._system(y, lam))
+        return in_full(self._system(y, lam).apply, y.size, self.problem.sparse)
 
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:

@@ -17,7 +17,7 @@ _DIVERGED = 1e20
 """An iterate of this size is on its way to overflow; no problem in floats of usual size has such a solution."""
 
 
-ITERATIONS = 10_000
+MODULUS_ITERATIONS = 10_000
 """At most: each is a solve, and where it converges some hundred are enough."""
 
 
@@ -39,7 +39,7 @@ def modulus(problem: LCP) -> ReferenceResult:
     solve = _factored(problem)
     if solve is None:
         return without_point(0, 1, "The matrix I + A is singular.")
-    for iteration in range(1, ITERATIONS + 1):
+    for iteration in range(1, MODULUS_ITERATIONS + 1):
         size = np.abs(z)
         z = solve(size - problem.A @ size - problem.q)
         if not np.isfinite(z).all() or np.abs(z).max() > _DIVERGED:
@@ -47,7 +47,7 @@ def modulus(problem: LCP) -> ReferenceResult:
         x = np.abs(z) + z
         if is_solved(problem, x):
             break
-    return at_point(problem, x, iteration, 1, f"No convergence within {ITERATIONS} iterations.")
+    return at_point(problem, x, iteration, 1, f"No convergence within {MODULUS_ITERATIONS} iterations.")
 
 
 def _factored(problem: LCP) -> Callable[[Array], Array] | None:

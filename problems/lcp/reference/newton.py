@@ -19,7 +19,7 @@ _SHORTEST = 1e-10
 """Shortest step of the line search: below it the merit changes by round-off only."""
 
 
-ITERATIONS = 300
+MIN_NEWTON_ITERATIONS = 300
 """At most: from zero it takes some ten where it arrives."""
 
 
@@ -40,14 +40,15 @@ def min_newton(problem: LCP) -> ReferenceResult:
     Kunisch, SIAM J. Optim. 13, 2003.
     """
     x = np.zeros(problem.n)
-    for iteration in range(ITERATIONS):
+    for iteration in range(MIN_NEWTON_ITERATIONS):
         w = problem.w(x)
         trial = _line_search(problem, x, _newton_step(problem.A, x > w, -np.minimum(x, w)))
         # A point that passes is polished until it gets no better: with the right active set one step is exact.
         if is_solved(problem, x) and problem.natural_residual(trial) >= problem.natural_residual(x):
             return at_point(problem, x, iteration, iteration + 1, "")
         x = trial
-    return at_point(problem, x, ITERATIONS, ITERATIONS, f"No convergence within {ITERATIONS} iterations.")
+    most = MIN_NEWTON_ITERATIONS
+    return at_point(problem, x, most, most, f"No convergence within {most} iterations.")
 
 
 def _newton_step(matrix: Matrix, active: NDArray[np.bool_], right: Array) -> Array:

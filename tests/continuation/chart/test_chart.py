@@ -267,4 +267,4 @@ def test_without_matplotlib_there_are_no_figures(study, results, tmp_path, monke
         raise ImportError("none here")
 
     monkeypatch.setattr("continuation.chart.panels.require_matplotlib", missing)
-    assert [file.suffix for file in report(study, results, tmp_path)] == [".json", ".md"]
+    assert [file.suffix for file in report(study, results, tmp_path)] == [".json"]
