@@ -28,7 +28,7 @@ tried, down to a billionth of the one asked for."""
 SAME_LINE = 1.0 - 1e-5
 """The cosine between the two rays of one smooth branch, whose directions are extrapolated from points on it."""
 
-STILL = 1e-12
+ROUND_OFF_SHARE = 1e-12
 """A component of a tangent that is smaller than this, beside the largest, may be round-off."""
 
 
@@ -125,7 +125,7 @@ def metric_at(event: LocatedEvent) -> Array:
     if event.weights is not None:
         return event.weights
     size = np.abs(event.tangent)
-    return Automatic().weights(event.u, np.where(size > STILL * size.max(), size, 0.0), None)
+    return Automatic().weights(event.u, np.where(size > ROUND_OFF_SHARE * size.max(), size, 0.0), None)
 
 
 def switch_branch(

@@ -20,7 +20,7 @@ from continuation.arguments.checks import integer, one_of, sign
 from continuation.arrays import Array
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
-from continuation.linear.followed import Followed
+from continuation.linear.followed import FollowedEigenvalue
 from continuation.linear.spectrum import Spectrum, plain, spectrum
 from continuation.path import LocatedEvent, Step
 from continuation.point.arc import Arc, position
@@ -254,7 +254,7 @@ class BoundHopf:
                     break
                 matrix = plain(self.evaluator.matrix(solver.project(arc.a, arc.segment.at(t), arc.border)[0]))
                 if pair is None:
-                    pair = Followed.of(matrix, side * (p + (t - left) / (right - left) * (q - p)))
+                    pair = FollowedEigenvalue.of(matrix, side * (p + (t - left) / (right - left) * (q - p)))
                     counts.factorizations += pair.near.made
                 z, solves = pair.at(matrix)
                 counts.solves, h = counts.solves + solves, side * z.real

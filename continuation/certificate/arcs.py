@@ -36,7 +36,7 @@ Prove = Callable[[Any, Path, Cells | None], tuple[Proof, Engine]]
 
 
 @frozen(eq=False)
-class Arc:
+class SmoothPart:
     """What is between two kinks.
 
     Attributes
@@ -90,7 +90,7 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
         status = path.status if last == places[-1] else Status.STOPPED_AT_EVENT
         points = _from(steps, kinks[k - 1] if k else None)
         proof, engine = prove(homotopy.piece(signs), Path(steps=points, events=events, status=status), known)
-        arc = Arc(signs, proof, engine, ends)
+        arc = SmoothPart(signs, proof, engine, ends)
         gaps += [*proof.gaps, *_kept(arc, switches, (begin, end))]
         arcs.append(arc)
     by_end = {arc.proof.cells.place[-1, 1]: arc for arc in arcs if len(arc.proof.cells)}
@@ -164,7 +164,7 @@ def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
     return [evolve(steps[0], tangent=away), *steps[1:]]
 
 
-def _kept(arc: Arc, switches: ByIntervals, span: tuple[float, float]) -> list[Gap]:
+def _kept(arc: SmoothPart, switches: ByIntervals, span: tuple[float, float]) -> list[Gap]:
     """Where switches do not surely keep their signs."""
     cells = arc.proof.cells
     if not len(cells):
@@ -177,7 +177,9 @@ def _kept(arc: Arc, switches: ByIntervals, span: tuple[float, float]) -> list[Ga
     return gaps
 
 
-def _joined(homotopy: Any, before: Arc, after: Arc | None, kink: LocatedEvent) -> tuple[float, float] | str:
+def _joined(
+    homotopy: Any, before: SmoothPart, after: SmoothPart | None, kink: LocatedEvent
+) -> tuple[float, float] | str:
     """A range of arclength with the kink in which one arc goes over into the next, or why they are not proved to.
 
     Where the path ends in the kink there is no arc `after` it, and the next piece alone says whether the parameter

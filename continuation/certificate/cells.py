@@ -106,7 +106,7 @@ def between(
     return Cells(begin[None], end[None], first, last, chart[None], nothing, one, np.array([place]))
 
 
-def sizes(cells: Cells, still: Array | None = None) -> Array:
+def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
     """How far a cell goes in each component; where that is little, a share of what its metric counts as much.
 
     Parameters

@@ -10,7 +10,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.certificate.arcs import by_pieces
-from continuation.certificate.cells import Cells, between, joined, sizes
+from continuation.certificate.cells import Cells, between, cell_sizes, joined
 from continuation.certificate.closing import made
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import Piece, pieces
@@ -100,7 +100,7 @@ def _smooth(homotopy: Any, path: Path, cells: Cells | None) -> tuple[Proof, Engi
     engine = engine_of(homotopy, path.u)
     if cells is not None:
         return verified(engine, cells, path, homotopy, []), engine
-    cells, gaps, found, ends = Search(engine, homotopy, path).run()
+    cells, gaps, found, ends = TubeSearch(engine, homotopy, path).run()
     return verified(engine, cells, path, homotopy, gaps, (found, ends)), engine
 
 
@@ -126,7 +126,7 @@ def recheck(cells: Cells, path: Path, homotopy: Any) -> Proof:
 
 
 @frozen(eq=False, slots=False)
-class Search:
+class TubeSearch:
     """The search for cells and tubes.
 
     Attributes
@@ -212,7 +212,7 @@ class Search:
             return nodes
         cell = _cell(before, end)
         # Whether the end can be proved to be a point of the curve: where it cannot, no tube reaches it.
-        regular = bool(ends_of(self.engine, cell.with_tubes(sizes(cell), cell.slabs), np.ones(1)).proved.all())
+        regular = bool(ends_of(self.engine, cell.with_tubes(cell_sizes(cell), cell.slabs), np.ones(1)).proved.all())
         if regular and search(self.engine, cell).proved.all():
             return nodes
         lam, goal = float(before.u[-1]), float(end.u[-1])

@@ -163,7 +163,7 @@ def applied(Y: Array, v: Ends) -> Ends:
     return Ends(image.lo[..., 0], image.hi[..., 0])
 
 
-def solved(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
+def solution_range(judged: Judged, v: Ends, radius: Array, tube: Array) -> Ends:
     """The solutions of G' z = b, all over the slab, for v that holds Y(s) b.
 
     With E = I - Y(s) G', z = (I - E)^{-1} Y(s) b, so that |z - Y(s) b| is at most the sum of E^k |Y(s) b| over k >= 1:

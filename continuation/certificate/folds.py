@@ -9,7 +9,7 @@ from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.certificate.cells import OVERHANG, Cells, Index, Slabs, at_node, slabs_of
-from continuation.certificate.engine import Engine, Judged, solved, together
+from continuation.certificate.engine import Engine, Judged, solution_range, together
 from continuation.numbers.ends import EPS, Ends
 
 SLAB_CUTS, LAST_CUTS = 3, 6
@@ -19,7 +19,7 @@ any more: two turning points within 3e-8 of the parameter, on a way of 1, took f
 HOPE, HOPE_CUTS, LAST_HOPE_CUTS = 0.3, 2, 4
 """A cell of whose parts fewer than that are told after so many cuts is not cut further: its tube is too wide."""
 
-Look = Callable[[Judged, Slabs, Array], tuple[Index, Index]]
+AskSigns = Callable[[Judged, Slabs, Array], tuple[Index, Index]]
 """Signs of some numbers on slabs, and of their derivatives along the curve where they have none, shape (slabs, k)."""
 
 NEAR_LISTED = (1e-3, 1e-2, 0.1)
@@ -65,7 +65,7 @@ class Turn:
     bend: int
 
 
-def scanned(engine: Engine, cells: Cells, look: Look, last: bool = True) -> list[list[Piece]]:
+def scanned(engine: Engine, cells: Cells, look: AskSigns, last: bool = True) -> list[list[Piece]]:
     """Of each number pieces of all cells in order, cut until its sign, or that of its derivative, is known.
 
     Parameters
@@ -206,7 +206,7 @@ def _bends(engine: Engine, judged: Judged, slabs: Slabs, radius: Array, tube: Ar
         if second is None:  # no derivative has a sign
             return np.zeros_like(sign)
         lo, hi = (np.concatenate([half, np.zeros((len(slabs), 1))], axis=1) for half in (second.lo, second.hi))
-        v = solved(judged, judged.applied(Ends(lo, hi)), radius, tube)
+        v = solution_range(judged, judged.applied(Ends(lo, hi)), radius, tube)
         bend = np.where(v.hi[:, -1] < 0.0, 1, np.where(v.lo[:, -1] > 0.0, -1, 0))
     return np.where(sign == 0, bend, 0)
 

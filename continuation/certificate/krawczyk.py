@@ -18,8 +18,8 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Slabs, sizes
-from continuation.certificate.engine import Engine, Judged, SupportsProofEngine, applied, solved, up_by
+from continuation.certificate.cells import Slabs, cell_sizes
+from continuation.certificate.engine import Engine, Judged, SupportsProofEngine, applied, solution_range, up_by
 from continuation.certificate.inverse import inverses, times
 from continuation.numbers import Interval, UndecidedError
 from continuation.numbers.algebra import lengthened
@@ -37,7 +37,7 @@ Bratu's equation with 30 none, and its proof took eight times as long."""
 STANDS_STILL = 1e-10
 """Of the size of a component: one that moves by less is where it is to the accuracy of the path's points."""
 
-PARTS = 4
+MISFIT_PARTS = 4
 """Into so many parts a slab is cut to bound H along the cubic: what Taylor's formula leaves of it is of third order."""
 
 
@@ -131,7 +131,7 @@ class ByIntervals:
         Y, R = self._inverse(slabs, slabs.cubic[:, 0] + Ends(-radius, radius))
         left = Y[:, :, :-1]
         with np.errstate(all="ignore"):
-            W = self._change(slabs.box(radius), slabs.velocity, sizes(slabs.cells))
+            W = self._change(slabs.box(radius), slabs.velocity, cell_sizes(slabs.cells))
             middle = W.middle()
             E = np.matmul(left, middle)
             size_E = np.abs(E)
@@ -179,7 +179,7 @@ class ByIntervals:
 
     def _misfit(self, slabs: Slabs, Y: Array) -> Array:
         """|Y H(p(s))| by Taylor's formula about the middle of each part, to second order; to first at kinks."""
-        parts = PARTS if self.moving and slabs.half.any() else 1
+        parts = MISFIT_PARTS if self.moving and slabs.half.any() else 1
         fine = slabs.halved(parts)
         x, left, count = fine.offset[:, None], np.repeat(Y[:, :, :-1], parts, axis=0), len(fine)
         both = [moved(lambda *ends: np.concatenate(ends), fine.cubic[:, k], fine.over[k]) for k in range(3)]
@@ -242,7 +242,7 @@ class Bounded:
 
     def tangent(self, radius: Array, tube: Array) -> Ends:
         """See `Judged.tangent`; c . t = 1."""
-        return solved(self, self._moved(thin(self.Y[:, :, -1])), radius, tube)
+        return solution_range(self, self._moved(thin(self.Y[:, :, -1])), radius, tube)
 
     def pace(self, radius: Array, tube: Array) -> None:
         """They are valid for one tube."""

@@ -13,7 +13,7 @@ from continuation.certificate.proof import Gap, Proof
 from continuation.path import Path, Step
 
 
-class WrittenOut(Protocol):
+class Lifting(Protocol):
     """A homotopy with further unknowns in front, whose zeros are those of another with what these are there."""
 
     def start(self) -> tuple[Array, float]:
@@ -33,7 +33,7 @@ class WrittenOut(Protocol):
 class SupportsWrittenOut(Protocol):
     """A homotopy that may eliminate unknowns by factorisations, and says what it is without that."""
 
-    def written_out(self, points: Array) -> WrittenOut | None:
+    def written_out(self, points: Array) -> Lifting | None:
         """The equations with all unknowns, for a path with these points; None where nothing is eliminated.
 
         Parameters
@@ -62,7 +62,7 @@ def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, 
     return homotopy if whole is None else whole, longer
 
 
-def _lifted(whole: WrittenOut, path: Path, cells: Cells | None) -> Path:
+def _lifted(whole: Lifting, path: Path, cells: Cells | None) -> Path:
     """The path with the further unknowns."""
     rows = () if cells is None else (*cells.begin, *cells.end)
     known = {row[-path.steps[0].u.size :].tobytes(): row for row in rows}

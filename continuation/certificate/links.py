@@ -120,11 +120,11 @@ def settled(judged: Judged, owner: Index, least: Array, bounded: Array, wide: Ar
         Radii to begin with, those for which bounds are valid, and those that are given up.
     """
     with np.errstate(all="ignore"):
-        off = largest(judged.misfit, owner, len(least))
+        off = largest_by_cell(judged.misfit, owner, len(least))
         radius = np.minimum(np.maximum(2.0 * off, least), bounded)
         radius = np.where(np.isfinite(radius), radius, least)
         for _ in range(RADII):
-            image = largest(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, len(least))
+            image = largest_by_cell(judged.spread(radius[owner], np.minimum(radius, bounded)[owner]), owner, len(least))
             kappa, total = (image / radius).max(axis=1), off + image
             inside = np.asarray((total * (1.0 + 8.0 * EPS) < radius).all(axis=1))
             if (inside | ~(radius <= wide).all(axis=1)).all():
@@ -133,7 +133,7 @@ def settled(judged: Judged, owner: Index, least: Array, bounded: Array, wide: Ar
     return radius, kappa, inside
 
 
-def largest(values: Array, owner: Index, count: int) -> Array:
+def largest_by_cell(values: Array, owner: Index, count: int) -> Array:
     """The largest of each cell's slabs, of which it has one at least; nan where one is."""
     if len(values) == count:
         return values

@@ -6,10 +6,10 @@ import numpy as np
 from attrs import frozen
 
 from continuation.arrays import Array
-from continuation.certificate.cells import Cells, Index, Slabs, advance, joined, sizes, slabs_of
+from continuation.certificate.cells import Cells, Index, Slabs, advance, cell_sizes, joined, slabs_of
 from continuation.certificate.engine import Engine, Judged, together
 from continuation.certificate.folds import Piece, told
-from continuation.certificate.links import INFLATION, Nodes, largest, settled
+from continuation.certificate.links import INFLATION, Nodes, largest_by_cell, settled
 from continuation.numbers.ends import EPS, Mask
 
 LEAST_RADIUS = 1e-6
@@ -33,7 +33,7 @@ CONTRACTING = 0.6
 power that is the engine's order; at half of it a test holds at once."""
 
 
-def holds(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
+def contracts(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
     """Whether the test holds, slab by slab: the only place where something is proved.
 
     Parameters
@@ -53,7 +53,7 @@ def holds(slabs: Slabs, judged: Judged, radius: Array) -> Mask:
 
 
 @frozen(eq=False)
-class Found:
+class Tubes:
     """What came of a search for tubes.
 
     Attributes
@@ -76,7 +76,7 @@ class Found:
     ends: Nodes
 
 
-def search(engine: Engine, cells: Cells) -> Found:
+def search(engine: Engine, cells: Cells) -> Tubes:
     """Radii and slabs for cells that have none, many of them in one batch a round.
 
     Parameters
@@ -86,7 +86,7 @@ def search(engine: Engine, cells: Cells) -> Found:
         With lengths of components that stand still for radii.
     """
     found = [_search(engine, cells.take(place)) for place in together(engine, cells)]
-    return Found(
+    return Tubes(
         joined([one.cells for one in found]),
         np.concatenate([one.proved for one in found]),
         np.concatenate([one.undefined for one in found]),
@@ -95,8 +95,8 @@ def search(engine: Engine, cells: Cells) -> Found:
     )
 
 
-def _search(engine: Engine, cells: Cells) -> Found:
-    count, scale = len(cells), sizes(cells, cells.radius)
+def _search(engine: Engine, cells: Cells) -> Tubes:
+    count, scale = len(cells), cell_sizes(cells, cells.radius)
     ends, slabs = Nodes.unknown(count, scale.shape[1]), cells.slabs.copy()
     radius = FIRST_RADII * scale / (2.0 * slabs[:, None])
     proved, undefined = np.zeros(count, bool), np.zeros(count, bool)
@@ -112,7 +112,7 @@ def _search(engine: Engine, cells: Cells) -> Found:
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
         least = LEAST_RADIUS * scale[pending] + STILL_ULPS * EPS * np.maximum(np.abs(tried.begin), np.abs(tried.end))
         wanted, kappa, _ = settled(judged, parts.owner, least, bounded, WIDE * scale[pending])
-        good = _every(holds(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
+        good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
         if engine.exact and good.any():
             tube = wanted[parts.owner]
             for piece in told(judged, parts, tube):
@@ -120,7 +120,7 @@ def _search(engine: Engine, cells: Cells) -> Found:
                     known[pending[piece.cell]].append(piece)
             ends.put(pending[good], _ends(parts, judged, tube).take(good))
         proved[pending] = good
-        undefined[pending] = ~np.isfinite(largest(judged.misfit, parts.owner, len(tried))).all(axis=1)
+        undefined[pending] = ~np.isfinite(largest_by_cell(judged.misfit, parts.owner, len(tried))).all(axis=1)
         # Bounds that hold for all radii are the same again; the others are not.
         more = ~good & (engine.exact | ~(kappa < CONTRACTING))
         with np.errstate(all="ignore"):
@@ -132,7 +132,7 @@ def _search(engine: Engine, cells: Cells) -> Found:
         again = ~good & (more | ~np.isfinite(wanted).all(axis=1))
         radius[pending] = np.where(again[:, None], first, wider)
         pending = pending[~good & (slabs[pending] <= engine.most)]
-    return Found(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known, ends)
+    return Tubes(cells.with_tubes(radius, np.minimum(slabs, engine.most)), proved, undefined, known, ends)
 
 
 def _ends(slabs: Slabs, judged: Judged, tube: Array) -> Nodes:
@@ -169,6 +169,6 @@ def check(engine: Engine, cells: Cells) -> tuple[Mask, Nodes]:
         parts = slabs_of(some)
         radius = some.radius[parts.owner]
         judged = engine.judge(parts, radius)
-        good.append(_every(holds(parts, judged, radius), parts.owner, len(some)))
+        good.append(_every(contracts(parts, judged, radius), parts.owner, len(some)))
         ends.append(_ends(parts, judged, radius))
     return np.concatenate(good), Nodes.joined(ends)

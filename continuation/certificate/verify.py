@@ -10,7 +10,7 @@ from attrs import evolve
 from numpy.typing import NDArray
 
 from continuation.arrays import Array
-from continuation.certificate.cells import OVERHANG, Cells, Index, at_node, joined, sizes
+from continuation.certificate.cells import OVERHANG, Cells, Index, at_node, cell_sizes, joined
 from continuation.certificate.closing import LIMIT, ending
 from continuation.certificate.engine import Engine
 from continuation.certificate.folds import RANGE, Piece, located, pieces, turns
@@ -186,7 +186,7 @@ def _beside(engine: Engine, cells: Cells, at: Nodes, first: Nodes, path: Path) -
 
 def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
     """How far a point in a cell may be from the curve, component by component."""
-    size = np.maximum(sizes(own), np.abs(np.diff(path.u, axis=0))[_later(path.arclength, arclength) - 1])
+    size = np.maximum(cell_sizes(own), np.abs(np.diff(path.u, axis=0))[_later(path.arclength, arclength) - 1])
     # Of what stands still a cell knows no size but the tube's.
     return np.where(own.begin == own.end, own.radius, POINT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
 

@@ -12,7 +12,7 @@ from continuation.evaluation.products import sizes
 from continuation.path.steps import LocatedEvent
 from continuation.status import Kind
 
-KINDS = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
+BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
 """What an event can be by its kind alone; of others the function is needed."""
 
 
@@ -22,9 +22,9 @@ def as_event(value: Any) -> Any:
     if isinstance(value, LocatedEvent):
         if kind == Kind.TURNING_POINT and value.name != "turning point":
             raise ValueError(f"event: a {value.name} is no fold; give TurningPoint(component), and the point as `at`")
-    elif hasattr(value, "monitor") and (kind not in KINDS or getattr(value, "component", -1) != -1):
+    elif hasattr(value, "monitor") and (kind not in BY_KIND or getattr(value, "component", -1) != -1):
         return value
-    if kind not in KINDS:
+    if kind not in BY_KIND:
         expected = "a turning point, branch point, Hopf point or kink, located or as a Kind, or an event with a monitor"
         raise complain(TypeError, "event", expected, value)
     return Kind(kind)

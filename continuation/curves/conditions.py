@@ -80,7 +80,7 @@ class Singular:
 
 
 @frozen(eq=False)
-class HopfPoint:
+class HopfCondition:
     """i omega is an eigenvalue of H_y; omega is an unknown.
 
     s = 0 in [[H_y - i omega I, b], [c*, 0]] (v, s) = (0, 1): two equations, the real and the imaginary part
@@ -94,7 +94,7 @@ class HopfPoint:
     beside: ClassVar[tuple[str, ...]] = ("frequency",)
 
     @classmethod
-    def at_start(cls, calculus: Calculus, frequency: float) -> HopfPoint:
+    def at_start(cls, calculus: Calculus, frequency: float) -> HopfCondition:
         """With borders made for the start."""
         scaled, empty = Scaled.at_start(calculus), np.empty(0)
         u, mu = calculus.u0[:-1], float(calculus.u0[-1])

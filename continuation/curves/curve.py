@@ -15,7 +15,7 @@ from continuation.arrays import Array, Matrix
 from continuation.citation.bibliography import GOVAERTS
 from continuation.curves.arguments import as_event, as_point, as_size
 from continuation.curves.calculus import Calculus, calculus_at
-from continuation.curves.conditions import HopfPoint, Singular
+from continuation.curves.conditions import HopfCondition, Singular
 from continuation.curves.correcting import corrected
 from continuation.curves.frequency import frequency_at
 from continuation.curves.here import Here
@@ -197,7 +197,7 @@ class Curve:
         if event in (Kind.TURNING_POINT, Kind.BRANCH_POINT):
             return Singular.at_start(calculus, event == Kind.BRANCH_POINT)
         if event == Kind.HOPF:
-            return HopfPoint.at_start(calculus, self._frequency)
+            return HopfCondition.at_start(calculus, self._frequency)
         if self._plain is not None:
             return Vanishing.at_start(calculus, self._plain)
         return AlongTangent.at_start(calculus, lambda x: plainly(event)(*np.split(x, 2)))

@@ -19,7 +19,7 @@ RAY_COSINE = 0.99
 """The cosine between a ray and the tangent of a branch that came along it; rays that are nearer to each other than
 eight degrees are told by the nearest."""
 
-OPPOSITE = -1.0 + 1e-3
+STRAIGHT_ON = -1.0 + 1e-3
 """The cosine between two rays that make one smooth branch: those of a multiple branch point are extrapolated."""
 
 
@@ -79,7 +79,7 @@ class Junction:
             return None
         along = self._cosines(self.rays[ray])
         nearest = int(np.argmin(along))
-        return nearest if along[nearest] <= OPPOSITE else None
+        return nearest if along[nearest] <= STRAIGHT_ON else None
 
 
 def meetings(path: Path) -> list[LocatedEvent]:

@@ -21,7 +21,7 @@ Item = TypeVar("Item")
 
 
 @define(eq=False)
-class Places(Generic[Item]):
+class PointIndex(Generic[Item]):
     """Items at points, each with the metric there.
 
     All are sorted by the number a . u, with a in general position. By the inequality of Cauchy and Schwarz, numbers of

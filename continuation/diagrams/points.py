@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from continuation.branch_switching import metric_at
 from continuation.diagrams.branches import LABELS, Branch, Special
 from continuation.diagrams.junctions import Junction
-from continuation.diagrams.places import Places
+from continuation.diagrams.places import PointIndex
 from continuation.path import LocatedEvent
 
 
@@ -16,7 +16,7 @@ def points_of(branches: Sequence[Branch], junctions: Sequence[Junction]) -> list
     """Junctions, turning points, Hopf points and kinks, each once, in the order of the branches."""
     labels: Counter[str] = Counter()
     found: list[tuple[str, LocatedEvent, list[int]]] = []
-    places: Places[tuple[str, list[int]]] = Places()
+    places: PointIndex[tuple[str, list[int]]] = PointIndex()
 
     def entry(label: str, event: LocatedEvent) -> list[int]:
         through: list[int] = []

@@ -18,7 +18,7 @@ from continuation.counts import Counts
 from continuation.diagrams.branches import LABELS, Branch, Diagram, from_point
 from continuation.diagrams.deflation import others, same_solution, solved
 from continuation.diagrams.junctions import Junction, directions_of, meetings
-from continuation.diagrams.places import Places
+from continuation.diagrams.places import PointIndex
 from continuation.diagrams.points import points_of
 from continuation.events.box import is_inside
 from continuation.metric import Inherited
@@ -81,7 +81,7 @@ def _path(homotopy: Any, start: Any, direction: int, options: Options, before: A
 
 
 @define(eq=False)
-class Search:
+class BranchSearch:
     """A search under way."""
 
     homotopy: Any
@@ -93,7 +93,7 @@ class Search:
     log: Growing | None = None
     branches: list[Branch] = field(factory=list)
     junctions: list[Junction] = field(factory=list)
-    places: Places[Junction] = field(factory=Places)
+    places: PointIndex[Junction] = field(factory=PointIndex)
     labels: Counter[str] = field(factory=Counter)
     missing: list[str] = field(factory=list)
     counts: Counts = field(factory=Counts)

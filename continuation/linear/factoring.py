@@ -50,7 +50,7 @@ class SparseMethod(Protocol):
 EXTRAS: tuple[SparseMethod, ...] = (MultigridMethod(), CholmodMethod(), PardisoMethod())
 """What may be installed besides, in the order in which it is chosen."""
 
-NAMES = ("auto", SuperLUMethod.name, *(one.name for one in EXTRAS))
+METHODS = ("auto", SuperLUMethod.name, *(one.name for one in EXTRAS))
 """What may be asked for."""
 
 
@@ -60,9 +60,9 @@ def check_method(argument: str, name: object) -> str:
     `argument`: What an error calls it. Raises `ValueError` if there is no such method. Raises `ImportError` if its
     package is not installed.
     """
-    if not isinstance(name, str) or name not in NAMES:
+    if not isinstance(name, str) or name not in METHODS:
         found = repr(name) if isinstance(name, str) else type(name).__name__
-        raise ValueError(f"{argument}: expected one of {', '.join(NAMES)}, found {found}")
+        raise ValueError(f"{argument}: expected one of {', '.join(METHODS)}, found {found}")
     for one in EXTRAS:
         if one.name == name and not installed(one):
             raise ImportError(f"{argument}={name!r} needs {one.needs}: pip install 'pseudoarclength[{name}]'")

@@ -12,14 +12,14 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.contraction import Contraction, Iteration
 from continuation.linear.nullspace import NearlySingular, null_vectors
 
-CHORD = Contraction(iterations=15)
+FOLLOWING = Contraction(iterations=15)
 
 SETTLED, NEARLY_SETTLED = 1e-15, 1e-10
 """The last change of the eigenvalue, relative to it, and the one that will do where round-off ends the contraction."""
 
 
 @frozen(eq=False)
-class Followed:
+class FollowedEigenvalue:
     """An eigenvalue of a matrix, with its vector, and a bordered factorisation made with a value near to it.
 
     `turned`, of shape (N + 1,): The bordered solution for the vector: what a change of the eigenvalue makes of it.
@@ -30,7 +30,7 @@ class Followed:
     turned: Any
 
     @classmethod
-    def of(cls, matrix: Matrix, value: complex) -> Followed:
+    def of(cls, matrix: Matrix, value: complex) -> FollowedEigenvalue:
         """The eigenvalue nearest to a value.
 
         `matrix` of shape (N, N). Raises `ArithmeticError` if the bordered matrix is singular.
@@ -46,7 +46,7 @@ class Followed:
 
         `matrix` of shape (N, N). Raises `ArithmeticError` if it does not converge.
         """
-        pair = Iteration(np.append(self.near.right, self.value), CHORD)
+        pair = Iteration(np.append(self.near.right, self.value), FOLLOWING)
 
         def increment() -> Array:
             v, z = pair.x[:-1], pair.x[-1]

@@ -20,7 +20,7 @@ from numpy.linalg import _umath_linalg
 from scipy.linalg import _fblas
 
 CHOSEN = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
-NAMES = ("scipy_openblas_{}_num_threads64_", "scipy_openblas_{}_num_threads", "openblas_{}_num_threads")
+SYMBOLS = ("scipy_openblas_{}_num_threads64_", "scipy_openblas_{}_num_threads", "openblas_{}_num_threads")
 """What OpenBLAS calls its functions in the wheels of numpy and of scipy, and in other distributions."""
 
 
@@ -32,7 +32,7 @@ def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
         for module in (_umath_linalg, _fblas):
             # A symbol is looked for in what the module was linked with, too.
             library = ctypes.CDLL(module.__file__)
-            name = next((name for name in NAMES if hasattr(library, name.format("set"))), None)
+            name = next((name for name in SYMBOLS if hasattr(library, name.format("set"))), None)
             if name is not None:
                 found.append((getattr(library, name.format("get")), getattr(library, name.format("set"))))
     return tuple(found)

@@ -6,11 +6,11 @@ functions serves all of them. Users call `continuation.jets` and `continuation.i
 """
 
 from continuation.numbers.array import Interval, Jet
-from continuation.numbers.functions import RULES
+from continuation.numbers.functions import FUNCTION_RULES
 from continuation.numbers.series import JetDomainError
 from continuation.numbers.truncated import FUNCTIONS
 from continuation.numbers.ufuncs import UndecidedError
 
 __all__ = ["Interval", "Jet", "JetDomainError", "UndecidedError"]
 
-FUNCTIONS.update(RULES)
+FUNCTIONS.update(FUNCTION_RULES)

@@ -1,6 +1,6 @@
 """Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d, whose products beyond some order are zero.
 
-One direction to high order (`Taylor`), many to first order (`Gradient`), or either one beside one direction more
+One direction to high order (`TaylorAlgebra`), many to first order (`Gradient`), or either one beside one direction more
 (`Beside`). All keep coefficients along the leading axis, so everything linear is shared. They differ in products, and
 so in f(c_0 + d) = sum_k f_k d^k, where f_k are the Taylor coefficients of f at c_0.
 """
@@ -42,7 +42,7 @@ class Algebra(Protocol):
 
 
 @frozen
-class Taylor:
+class TaylorAlgebra:
     """sum_k c_k s**k, truncated: the coefficients of one direction."""
 
     def degrees(self, length: int) -> list[int]:
@@ -149,7 +149,7 @@ def joined(*parts: Store) -> Store:
 
 def lengthened(a: Store, length: int) -> Store:
     """With zeros for the coefficients behind."""
-    return a if len(a) == length else moved(lambda x: series.extended(x, length), a)
+    return a if len(a) == length else moved(lambda x: series.padded(x, length), a)
 
 
 def product(algebra: Algebra, multiply: Callable[[Any, Any], Any], a: Store, b: Store) -> Store:
@@ -169,7 +169,7 @@ def compose(algebra: Algebra, rule: series.Rule, a: Store) -> Store:
     order = 0 if len(a) == 1 else algebra.degrees(len(a))[-1]
     if isinstance(a, Ends):
         return _at(algebra, _ranges(rule, [a[0], 1.0, *[0.0] * (order - 1)][: order + 1]), a)
-    if isinstance(algebra, Taylor):
+    if isinstance(algebra, TaylorAlgebra):
         return rule(a)
     return _at(
         algebra, rule(np.stack([a[0], np.ones_like(a[0]), *[np.zeros_like(a[0])] * (order - 1)][: order + 1])), a
@@ -183,5 +183,5 @@ def _ranges(rule: series.Rule, argument: list[Any]) -> list[Ends]:
     return f if told.all() else [f[0], *(c.where(told) for c in f[1:])]
 
 
-TAYLOR = Taylor()
+TAYLOR = TaylorAlgebra()
 GRADIENT = Gradient()

@@ -229,7 +229,7 @@ def _split(ary: Any, indices_or_sections: Any, axis: int = 0) -> list[Any]:
     return [_moved(np.take)(ary, part, axis) for part in places]
 
 
-RULES: dict[Any, Callable[..., Any]] = {
+FUNCTION_RULES: dict[Any, Callable[..., Any]] = {
     np.sum: _sum,
     np.mean: _mean,
     np.prod: _prod,

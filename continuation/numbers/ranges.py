@@ -13,7 +13,7 @@ import numpy as np
 from continuation.arrays import Array
 from continuation.numbers.ends import EPS, Ends, Mask, absolute, down, up
 
-ULPS = 8.0
+LIBRARY_ULPS = 8.0
 
 LARGEST_ANGLE = 1e5
 """Arguments of circular functions beyond this are not reduced: the range is then all of [-1, 1]."""
@@ -31,7 +31,7 @@ PI, LN2, LN10 = near(np.pi), near(float(np.log(2.0))), near(float(np.log(10.0)))
 
 def widened(lo: Array, hi: Array) -> Ends:
     """Ends as a library function computed them, moved apart by what it may be wrong; none where one is not finite."""
-    apart = Ends(lo - ULPS * np.spacing(np.abs(lo)), hi + ULPS * np.spacing(np.abs(hi)))
+    apart = Ends(lo - LIBRARY_ULPS * np.spacing(np.abs(lo)), hi + LIBRARY_ULPS * np.spacing(np.abs(hi)))
     return apart.where(np.isfinite(lo) & np.isfinite(hi))
 
 

@@ -21,10 +21,10 @@ from continuation.numbers.ends import Ends, as_ends, thin
 from continuation.numbers.ranges import LN2, LN10, RANGES, near
 from continuation.numbers.ranges import power as power_range
 
-Series: TypeAlias = Any
+PowerSeries: TypeAlias = Any
 """An array, or a list of intervals and of exact numbers."""
 
-Rule: TypeAlias = Callable[[Series], Series]
+Rule: TypeAlias = Callable[[PowerSeries], PowerSeries]
 """A function of one series."""
 
 
@@ -38,13 +38,13 @@ def demand(fine: Any, operation: str, need: str) -> None:
         raise JetDomainError(f"{operation} has no Taylor series here: {need}")
 
 
-def _demand(u: Series, fine: Callable[[Array], Any], operation: str, need: str) -> None:
+def _demand(u: PowerSeries, fine: Callable[[Array], Any], operation: str, need: str) -> None:
     """As `demand`, of the leading coefficient; intervals have no value (nan) where a function has none."""
     if not isinstance(u, list):
         demand(fine(u[0]), operation, f"its argument's leading coefficient must {need}")
 
 
-def extended(u: Array, length: int) -> Array:
+def padded(u: Array, length: int) -> Array:
     """The same series with zero coefficients behind it."""
     out = np.zeros((length, *u.shape[1:]), u.dtype)
     out[: len(u)] = u
@@ -59,7 +59,7 @@ def of(function: np.ufunc, x: Any) -> Any:
 # --- products and quotients -------------------------------------------------------------------------------
 
 
-def multiply(a: Series, b: Series) -> Series:
+def multiply(a: PowerSeries, b: PowerSeries) -> PowerSeries:
     """Cauchy product of series of one length, as one contraction with a Toeplitz view of the second factor."""
     if isinstance(a, list):
         return [_dot(a[: k + 1], b[k::-1]) for k in range(len(a))]
@@ -77,13 +77,13 @@ def multiply(a: Series, b: Series) -> Series:
     return np.asarray(np.einsum("j...,kj...->k...", a, toeplitz))
 
 
-def divide(a: Series, b: Series) -> Series:
+def divide(a: PowerSeries, b: PowerSeries) -> PowerSeries:
     """Quotient of two series; b[0] must not vanish."""
     if not isinstance(b, list):
         demand(b[0] != 0, "numpy.divide", "the divisor's leading coefficient is 0")
         if len(b) == 1:
             return a / b
-        a = extended(a, len(b))
+        a = padded(a, len(b))
     out = _room(a, b)
     out[0] = _over(a[0], b[0])
     for k in range(1, len(b)):
@@ -91,7 +91,7 @@ def divide(a: Series, b: Series) -> Series:
     return out
 
 
-def _dot(p: Series, q: Series) -> Any:
+def _dot(p: PowerSeries, q: PowerSeries) -> Any:
     """sum_j p_j q_j."""
     if not isinstance(p, list):
         return np.einsum("j...,j...->...", p, q)
@@ -103,7 +103,7 @@ def _dot(p: Series, q: Series) -> Any:
     return total
 
 
-def _tail(p: Series, q: Series, k: int) -> Any:
+def _tail(p: PowerSeries, q: PowerSeries, k: int) -> Any:
     """sum_{j=1..k} p_j q_{k-j}."""
     return _dot(p[1 : k + 1], q[k - 1 :: -1])
 
@@ -118,7 +118,7 @@ def _over(a: Any, b: Any) -> Any:
 # --- helpers of the recurrences ---------------------------------------------------------------------------
 
 
-def _room(*series: Series) -> Series:
+def _room(*series: PowerSeries) -> PowerSeries:
     if isinstance(series[0], list):
         return [0.0] * len(series[0])
     if len(series) == 1:
@@ -130,24 +130,24 @@ def _orders(u: Array) -> Array:
     return np.arange(float(len(u))).reshape(-1, *(1,) * (u.ndim - 1))
 
 
-def _weighted(u: Series) -> Series:
+def _weighted(u: PowerSeries) -> PowerSeries:
     """The coefficients k u_k, of s u'(s)."""
     return [0.0, *(k * x for k, x in enumerate(u[1:], 1))] if isinstance(u, list) else _orders(u) * u
 
 
-def _scaled(u: Series, factor: Any) -> Series:
+def _scaled(u: PowerSeries, factor: Any) -> PowerSeries:
     """The series factor u."""
     if isinstance(u, list):
         return [_dot([factor], [x]) for x in u]
     return u if type(factor) is float and factor == 1.0 else factor * u
 
 
-def _known(u: Series, constant: Ends) -> Any:
+def _known(u: PowerSeries, constant: Ends) -> Any:
     """A constant as an interval, or as the number that it is near to."""
     return constant if isinstance(u, list) else float(constant.middle())
 
 
-def _shifted(u: Series, constant: float, sign: int = 1) -> Series:
+def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
     """The series sign u + constant."""
     if isinstance(u, list):
         return [constant + u[0] if sign > 0 else constant - u[0], *(sign * x for x in u[1:])]
@@ -159,7 +159,7 @@ def _shifted(u: Series, constant: float, sign: int = 1) -> Series:
 # --- elementary functions ---------------------------------------------------------------------------------
 
 
-def _exponential(u: Series, value: Any, rate: Any = 1.0) -> Series:
+def _exponential(u: PowerSeries, value: Any, rate: Any = 1.0) -> PowerSeries:
     """Solves v' = rate v u'."""
     du, out = _scaled(_weighted(u), rate), _room(u)
     out[0] = value
@@ -168,13 +168,13 @@ def _exponential(u: Series, value: Any, rate: Any = 1.0) -> Series:
     return out
 
 
-def _expm1(u: Series) -> Series:
+def _expm1(u: PowerSeries) -> PowerSeries:
     out = _exponential(u, of(np.exp, u[0]))
     out[0] = of(np.expm1, u[0])
     return out
 
 
-def _pair(u: Series, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[Series, Series]:
+def _pair(u: PowerSeries, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[PowerSeries, PowerSeries]:
     """Circular (sign -1) or hyperbolic (+1): v' = w u', w' = sign v u'."""
     du, v, w = _weighted(u), _room(u), _room(u)
     v[0], w[0] = of(sine, u[0]), of(cosine, u[0])
@@ -185,7 +185,7 @@ def _pair(u: Series, sine: np.ufunc, cosine: np.ufunc, sign: int) -> tuple[Serie
     return v, w
 
 
-def _tangent(u: Series, function: np.ufunc, cosine: np.ufunc, sign: int) -> Series:
+def _tangent(u: PowerSeries, function: np.ufunc, cosine: np.ufunc, sign: int) -> PowerSeries:
     """Solves v' = w u' with w = 1 + sign v**2; tan for sign +1, tanh for -1."""
     du, v, w = _weighted(u), _room(u), _room(u)
     v[0] = of(function, u[0])
@@ -200,12 +200,12 @@ def _tangent(u: Series, function: np.ufunc, cosine: np.ufunc, sign: int) -> Seri
     return v
 
 
-def _circle(u: Series, sign: int) -> Series:
+def _circle(u: PowerSeries, sign: int) -> PowerSeries:
     """Sign (1 - u**2), its factors kept apart so that nothing cancels near its zeros."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 
-Inverse: TypeAlias = tuple[Callable[[Series], Series], Callable[[Array], Any], str]
+Inverse: TypeAlias = tuple[Callable[[PowerSeries], PowerSeries], Callable[[Array], Any], str]
 
 BY_SLOPE: dict[np.ufunc, Inverse] = {
     np.log: (lambda u: u, lambda x: x <= 0, "be positive"),
@@ -222,7 +222,7 @@ BY_SLOPE: dict[np.ufunc, Inverse] = {
 """Functions with the derivative 1 / D(u): D, where there is none, and what the argument must do instead."""
 
 
-def _by_slope(function: np.ufunc, u: Series) -> Series:
+def _by_slope(function: np.ufunc, u: PowerSeries) -> PowerSeries:
     """Solves v' = u' / D(u)."""
     divisor, outside, need = BY_SLOPE[function]
     _demand(u, lambda x: ~np.asarray(outside(x)), f"numpy.{function.__name__}", need)
@@ -237,7 +237,7 @@ def _by_slope(function: np.ufunc, u: Series) -> Series:
 # --- powers and roots -------------------------------------------------------------------------------------
 
 
-def sqrt(u: Series) -> Series:
+def sqrt(u: PowerSeries) -> PowerSeries:
     """u**(1/2)."""
     _demand(u, lambda x: ~(x <= 0), "numpy.sqrt", "be positive")
     if not isinstance(u, list):
@@ -249,13 +249,13 @@ def sqrt(u: Series) -> Series:
     return out
 
 
-def cbrt(u: Series) -> Series:
+def cbrt(u: PowerSeries) -> PowerSeries:
     """u**(1/3), for negative u too."""
     _demand(u, lambda x: x != 0, "numpy.cbrt", "not be 0")
     return _power(u, as_ends(1.0) / 3.0 if isinstance(u, list) else 1 / 3, of(np.cbrt, u[0]))
 
 
-def absolute(u: Series) -> Series:
+def absolute(u: PowerSeries) -> PowerSeries:
     """The branch of +-u that is positive; over an interval with zero inside it has the slopes of both, and no more."""
     _demand(u, lambda x: x != 0, "numpy.absolute", "not be 0")
     if not isinstance(u, list):
@@ -266,18 +266,18 @@ def absolute(u: Series) -> Series:
     return [of(np.absolute, x), sign, *(thin(np.where(decided, 0.0, np.nan)) for _ in u[2:])][: len(u)]
 
 
-def square(u: Series) -> Series:
+def square(u: PowerSeries) -> PowerSeries:
     """u**2."""
     return power(u, 2) if isinstance(u, list) else multiply(u, u)
 
 
-def reciprocal(u: Series) -> Series:
+def reciprocal(u: PowerSeries) -> PowerSeries:
     """1 / u."""
     _demand(u, lambda x: x != 0, "numpy.reciprocal", "not be 0")
     return power(u, -1) if isinstance(u, list) else divide(np.ones((1,) * u.ndim), u)
 
 
-def power(u: Series, r: float) -> Series:
+def power(u: PowerSeries, r: float) -> PowerSeries:
     """u**r; whole r allow a leading coefficient <= 0, negative ones no 0."""
     if r != int(r):
         _demand(u, lambda x: ~(x <= 0), "numpy.power", "be positive for a fractional power")
@@ -296,17 +296,17 @@ def _whole_power(u: Array, n: int) -> Array:
         demand(u[0] != 0, "numpy.power", "a negative power of a leading coefficient 0")
         return np.asarray(reciprocal(_whole_power(u, -n)))
     if n == 0:
-        return extended(np.ones((1, *u.shape[1:])), len(u))
+        return padded(np.ones((1, *u.shape[1:])), len(u))
     if n == 1:
         return u.copy()
     half = _whole_power(u, n // 2)
     return np.asarray(multiply(multiply(half, half), u) if n % 2 else multiply(half, half))
 
 
-def _power(u: Series, r: Any, v0: Any) -> Series:
+def _power(u: PowerSeries, r: Any, v0: Any) -> PowerSeries:
     """Solves u v' = r v u'."""
     if isinstance(u, list):  # of x + s
-        out: Series = [v0]
+        out: PowerSeries = [v0]
         for k in range(1, len(u)):
             out.append(out[k - 1] * (as_ends(r) - (k - 1.0)) / (float(k) * u[0]))
         return out

@@ -259,8 +259,8 @@ class Truncated:
             stores = list(ufuncs.aligned(*stores))
         # Overflow shows as inf, as in any array; where no series exists, demand() raises.
         with np.errstate(all="ignore"):
-            if ufunc in ufuncs.RULES:
-                return wrap(ufuncs.RULES[ufunc](algebra, *stores), algebra)
+            if ufunc in ufuncs.UFUNC_RULES:
+                return wrap(ufuncs.UFUNC_RULES[ufunc](algebra, *stores), algebra)
             if ufunc in ufuncs.DECIDED:
                 return ufuncs.DECIDED[ufunc](*stores)
         raise self.unknown(f"numpy.{ufunc.__name__}")

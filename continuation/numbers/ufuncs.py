@@ -179,7 +179,7 @@ def _composed(rule: series.Rule, algebra: Algebra, a: Store) -> Store:
     return compose(algebra, rule, a)
 
 
-RULES: dict[np.ufunc, Callable[..., Store]] = {
+UFUNC_RULES: dict[np.ufunc, Callable[..., Store]] = {
     np.positive: lambda algebra, a: a.copy(),
     np.negative: lambda algebra, a: -a,
     np.fabs: partial(_composed, series.absolute),
@@ -202,8 +202,8 @@ RULES: dict[np.ufunc, Callable[..., Store]] = {
 # --- comparisons ---------------------------------------------------------------------------------------------
 
 
-OPPOSITE: dict[np.ufunc, np.ufunc] = {np.less: np.greater_equal, np.greater: np.less_equal, np.equal: np.not_equal}
-OPPOSITE |= {other: one for one, other in OPPOSITE.items()}
+NEGATION: dict[np.ufunc, np.ufunc] = {np.less: np.greater_equal, np.greater: np.less_equal, np.equal: np.not_equal}
+NEGATION |= {other: one for one, other in NEGATION.items()}
 """What holds where a comparison of two numbers does not."""
 
 
@@ -219,7 +219,7 @@ def compared(ufunc: np.ufunc, a: Store, b: Store) -> Any:
     """A comparison; UndecidedError unless it holds for all numbers of all boxes, or for none."""
     if not isinstance(a, Ends):
         return ufunc(a[0], b[0])
-    yes, no = (_surely(f, a[0], b[0]).all(axis=0) for f in (ufunc, OPPOSITE[ufunc]))
+    yes, no = (_surely(f, a[0], b[0]).all(axis=0) for f in (ufunc, NEGATION[ufunc]))
     if not (yes | no).all():
         raise UndecidedError("a comparison is not decided on a box: it holds for some of its points only")
     return yes
@@ -233,7 +233,7 @@ def finite(c: Store) -> Any:
 
 
 DECIDED: dict[np.ufunc, Callable[..., Any]] = {
-    **{f: partial(compared, f) for f in OPPOSITE},
+    **{f: partial(compared, f) for f in NEGATION},
     np.isfinite: finite,
     np.isnan: lambda c: ~finite(c) if isinstance(c, Ends) else np.isnan(c).any(axis=0),
 }

@@ -17,7 +17,7 @@ from continuation.status import Kind
 MEET = 1e-6
 """How near two ends must be, relative to the larger of the two paths' extents, to be one point."""
 
-Pieces: TypeAlias = tuple[list[Step], list[LocatedEvent]]
+StepsAndEvents: TypeAlias = tuple[list[Step], list[LocatedEvent]]
 """The steps and the events of a path."""
 
 
@@ -49,7 +49,7 @@ class Backwards:
         return hermite(self.at(0.0), self.derivative(0.0), end, v, border)
 
 
-def part_of(steps: Sequence[Step], events: Sequence[LocatedEvent], chosen: slice) -> Pieces:
+def part_of(steps: Sequence[Step], events: Sequence[LocatedEvent], chosen: slice) -> StepsAndEvents:
     """Some consecutive steps of a path, or every k-th of them, with the events between the first and the last.
 
     Raises `ValueError` if the step is negative: `Path.reversed` turns a path round.
@@ -71,7 +71,7 @@ def _cubic(a: Step, b: Step) -> Segment | None:
     return hermite(a.u, a.tangent, b.u, b.tangent, a.tangent) if known else None
 
 
-def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Pieces:
+def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> StepsAndEvents:
     """The path from its end to its start."""
     old, last = list(steps), len(steps) - 1
     whole = old[-1].arclength if old else 0.0
@@ -111,7 +111,9 @@ def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Piece
     return turned, met
 
 
-def following(first: Sequence[Step], second: Sequence[Step], events: Sequence[LocatedEvent], extent: float) -> Pieces:
+def following(
+    first: Sequence[Step], second: Sequence[Step], events: Sequence[LocatedEvent], extent: float
+) -> StepsAndEvents:
     """The steps of a second path behind its start, and its events, counted on from the end of the first path.
 
     `extent`: The larger of the two paths' extents. Raises `ValueError` if the second does not begin where the first
@@ -123,7 +125,7 @@ def following(first: Sequence[Step], second: Sequence[Step], events: Sequence[Lo
     return shifted(evolve(a, index=len(first) - 1), second, events)
 
 
-def shifted(a: Step, second: Sequence[Step], events: Sequence[LocatedEvent]) -> Pieces:
+def shifted(a: Step, second: Sequence[Step], events: Sequence[LocatedEvent]) -> StepsAndEvents:
     """The steps of a path behind its start, and its events, counted on from a step at that start."""
     return (
         [evolve(s, index=s.index + a.index, arclength=a.arclength + s.arclength) for s in list(second)[1:]],

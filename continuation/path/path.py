@@ -16,7 +16,7 @@ from continuation.arguments.checks import complain, real_vector
 from continuation.arguments.labels import Labels
 from continuation.arrays import Array
 from continuation.counts import Counts
-from continuation.path.parts import Pieces, following, part_of, turned_round
+from continuation.path.parts import StepsAndEvents, following, part_of, turned_round
 from continuation.path.steps import LocatedEvent, Step
 from continuation.point.segment import parameter_at
 from continuation.rejection import Rejected
@@ -82,7 +82,7 @@ class Path:
         """A step, or the part of the path between two steps; arclengths stay what they are."""
         return self._of(part_of(self.steps, self.events, index)) if isinstance(index, slice) else self.steps[index]
 
-    def _of(self, pieces: Pieces) -> Path:
+    def _of(self, pieces: StepsAndEvents) -> Path:
         return evolve(self, steps=pieces[0], events=pieces[1])
 
     def __repr__(self) -> str:

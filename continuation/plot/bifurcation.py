@@ -14,10 +14,10 @@ from continuation.plot.drawing import (
     Drawn,
     across,
     axes_or_new,
-    between,
     check_path,
     chosen_components,
     height,
+    interpolated,
     label_axis,
     line_style,
     mark_events,
@@ -136,7 +136,7 @@ def _observed(path: Drawn, drawing: Drawing, name: str) -> Array:
     known = [(step.arclength, step.observed[name]) for step in path.steps]
     known += [(event.arclength, event.observed[name]) for event in path.events if name in event.observed]
     s, values = np.array(known).T
-    return between(s, values, drawing.s)
+    return interpolated(s, values, drawing.s)
 
 
 def _parts(path: Drawn, drawing: Drawing, stable: Stable) -> list[Stretch] | None:

@@ -96,11 +96,11 @@ class Drawing:
         fine = np.unique(np.append(fine, s))
         drawn = np.full((fine.size, u.shape[1]), np.nan)
         known = np.isfinite(u).all(axis=0)
-        drawn[:, known] = between(s[:, 0], u[:, known], fine)
+        drawn[:, known] = interpolated(s[:, 0], u[:, known], fine)
         return cls(fine, drawn)
 
 
-def between(s: Array, values: Array, wanted: Array) -> Array:
+def interpolated(s: Array, values: Array, wanted: Array) -> Array:
     """Values given at some arclengths, elsewhere: by monotone cubics, which have no extremum that the points have not.
 
     `s`: In any order; of two that are one, the first counts.

@@ -11,7 +11,7 @@ from continuation.arrays import Array
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.point.linearization import Linearization
 from continuation.predictors.taylor import series_reach
-from continuation.testing.subject import Place, Subject, called, directions, fail
+from continuation.testing.subject import Place, Subject, fail, random_directions, reporting
 
 COMPARED_ORDER = 6
 """Of the Taylor coefficients that are compared: a wrong recurrence shows at order 2 or 3, and the jets cost order^2."""
@@ -45,7 +45,7 @@ def jacobian(subject: Subject) -> None:
     """`jacobian` is the derivative of the residual, H_y and H_lam."""
     h = subject.homotopy
     for place in subject.places:
-        with called("jacobian", place.where):
+        with reporting("jacobian", place.where):
             report = check_jacobian(JacobianAlone(h.start, h.residual, h.jacobian), place.u)
         if not report.correct:
             fail(f"{report.sentence}, {place.where}")
@@ -55,8 +55,8 @@ def differential(subject: Subject) -> None:
     """`differential` is the derivative of the residual along a direction."""
     for place in subject.places:
         reference = subject.derivative(place)
-        for v in directions(place.u.size, 3, 11):
-            with called("differential", place.where):
+        for v in random_directions(place.u.size, 3, 11):
+            with reporting("differential", place.where):
                 found = np.asarray(subject.homotopy.differential(place.y, place.lam, v.copy()), dtype=float)
             expected = reference @ v
             if found.shape != expected.shape:
@@ -71,9 +71,9 @@ def bordered(subject: Subject) -> None:
     """`bordered` solves with [[H_y, H_lam], [border']], and gives the sign of its determinant."""
     for place in subject.places:
         matrix = subject.derivative(place)
-        for border in directions(place.u.size, 2, 13):
+        for border in random_directions(place.u.size, 2, 13):
             whole = np.vstack([matrix, border])
-            with called("bordered", place.where):
+            with reporting("bordered", place.where):
                 system = subject.homotopy.bordered(place.y, place.lam, border.copy())
             _check_solves(place, whole, system)
             _check_sign(place, whole, system.sign)
@@ -81,8 +81,8 @@ def bordered(subject: Subject) -> None:
 
 def _check_solves(place: Place, whole: Array, system: Any) -> None:
     n = len(whole) - 1
-    for b in (np.eye(n + 1)[-1], *directions(n + 1, 2, 17)):
-        with called("bordered.solve", place.where):
+    for b in (np.eye(n + 1)[-1], *random_directions(n + 1, 2, 17)):
+        with reporting("bordered.solve", place.where):
             z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
         if z.shape != b.shape:
             fail(f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
@@ -107,7 +107,7 @@ def taylor(subject: Subject) -> None:
     """`taylor` gives the coefficients of the path in the pseudo-arclength of the point."""
     n = subject.start.u.size
     for place, point in subject.points():
-        with called("taylor", place.where):
+        with reporting("taylor", place.where):
             c = np.asarray(subject.homotopy.taylor(point, COMPARED_ORDER), dtype=float)
         if c.shape != (COMPARED_ORDER + 1, n):
             shape = (COMPARED_ORDER + 1, n)
@@ -129,7 +129,7 @@ def _check_order(subject: Subject, place: Place, point: Linearization, c: Array)
     sizes = []
     for t in (h, 0.5 * h):
         u = (t**powers) @ c
-        with called("residual", f"{place.where}, {t:.3g} along the series"):
+        with reporting("residual", f"{place.where}, {t:.3g} along the series"):
             sizes.append(float(np.abs(np.asarray(subject.homotopy.residual(u[:-1], float(u[-1])))).max()))
     floor = 1e-12 * (1.0 + float(np.abs(subject.derivative(place)).max()) * (1.0 + float(np.abs(c[0]).max())))
     if sizes[1] > floor and not sizes[0] > 2.0**COMPARED_ORDER * sizes[1]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import sys
 import tempfile
 from operator import attrgetter
@@ -21,8 +22,8 @@ from continuation.auditing import audit
 from continuation.budget import Budget
 from continuation.path import Path
 from continuation.status import Status
-from continuation.testing.protocol import difference
-from continuation.testing.subject import Place, Subject, called, directions, fail
+from continuation.testing.protocol import same_residual
+from continuation.testing.subject import Place, Subject, fail, random_directions, reporting
 
 MAX_STEP_ERROR = 1e-6
 """Relative error of `max_step` that is let pass."""
@@ -33,7 +34,7 @@ def max_step(subject: Subject) -> None:
     for place in subject.places:
         # In units of the point, since interior points live in orders of magnitude.
         size = np.where(place.u == 0.0, 1.0, np.abs(place.u))
-        for v in size * np.array(directions(place.u.size, 4, 19)):
+        for v in size * np.array(random_directions(place.u.size, 4, 19)):
             whole = _longest(subject, place.where, place.u, v)
             for share, factor in () if math.isinf(whole) else ((0.0, 2.0), (0.5, 1.0), (0.999, 1.0)):
                 rest = (1.0 - share) / factor * whole
@@ -43,40 +44,25 @@ def max_step(subject: Subject) -> None:
                          f"{factor:g} v should be left, found {left:.6g}")  # fmt: skip
             if math.isfinite(whole) and not subject.finite(Place("", place.u + 0.999 * whole * v)):
                 fail(f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that")
-        with called("max_step", place.where):
+        with reporting("max_step", place.where):
             still = float(subject.homotopy.max_step(place.u.copy(), np.zeros_like(place.u)))
         if not still > 1.0:
             fail(f"max_step: {place.where} it is {still:g} along v = 0, expected inf: staying is always admissible")
 
 
 def _longest(subject: Subject, where: str, u: Array, v: Array) -> float:
-    with called("max_step", where):
+    with reporting("max_step", where):
         longest = float(subject.homotopy.max_step(u.copy(), v.copy()))
     if not longest > 0.0:
         fail(f"max_step: {where} it is {longest:g}, expected a positive number: the point is inside the domain")
     return longest
 
 
-def trace(subject: Subject) -> None:
-    """The path can be followed."""
-    _ = subject.path  # Traced when it is first asked for.
-
-
-def refinement(subject: Subject) -> None:
-    """A retrace with half the steps finds the same points, the same end and the same turning points."""
-    audited(subject, False, "step refinement")
-
-
-def reversal(subject: Subject) -> None:
-    """A retrace from the end comes back to the start through the same points."""
-    audited(subject, True, "reversal")
-
-
-def audited(subject: Subject, backwards: bool, name: str) -> None:
-    """A retrace is the same path."""
+def audited(name: str, backwards: bool, subject: Subject) -> None:
+    """A retrace, with half the steps or from the end to the start, is the same path."""
     if len(subject.regular) < 2:
         return
-    with called(name, "along the path"):
+    with reporting(name, "along the path"):
         report = audit(subject.homotopy, subject.regular, backwards=backwards)
     if not report.same:
         fail(f"{name}: {report.sentence}")
@@ -89,42 +75,26 @@ def archive(subject: Subject) -> None:
     if "unstorable" in tree:
         # Said in the archive; such a homotopy is handed to `resume` by its owner.
         return
+    # Classes and functions that the description names are at hand, as it was made just now.
+    named = re.findall(r'"(?:class|function)": "([\w.]+):([\w.]+)"', text)
+    trusted = registry([attrgetter(name)(sys.modules[module]) for module, name in named])
     try:
-        homotopy: Any = decode(tree, arrays.__getitem__, registry(_named(tree)))
+        homotopy: Any = decode(tree, arrays.__getitem__, trusted)
     except UnknownError as error:
         fail(f"archive: the homotopy was stored and cannot be made again: {error}")
-    for place in subject.places:
-        with called("residual of the homotopy read back", place.where):
-            found = np.asarray(homotopy.residual(place.y, place.lam))
-        wanted = np.asarray(subject.homotopy.residual(place.y, place.lam))
-        if not np.array_equal(found, wanted, equal_nan=True):
-            apart = difference(found, wanted)
-            fail(f"archive: {place.where} the homotopy read back has another residual, by {apart:.3g}")
-
-
-def _named(tree: Any) -> list[Any]:
-    """The classes and functions of a description that was made of the subject just now, so that they are at hand."""
-    if isinstance(tree, list):
-        return [thing for item in tree for thing in _named(item)]
-    if not isinstance(tree, dict):
-        return []
-    found = _named(list(tree.values()))
-    for path in (tree[kind] for kind in ("class", "function") if isinstance(tree.get(kind), str)):
-        module, _, name = path.partition(":")
-        found.append(attrgetter(name)(sys.modules[module]))
-    return found
+    same_residual(subject, homotopy, "archive", "the homotopy read back")
 
 
 def resumed(subject: Subject) -> None:
     """A path stopped half-way and resumed from its archive is, bit for bit, the path that was never stopped."""
-    with called("resume", "while the whole path is traced"):
+    with reporting("resume", "while the whole path is traced"):
         whole = subject.traced()
     half = (len(whole) - 1) // 2
     if half < 1:
         return
     with tempfile.TemporaryDirectory() as folder:
         file = File(folder) / "half.h5"
-        with called("resume", "while the first half is traced"):
+        with reporting("resume", "while the first half is traced"):
             first = subject.traced(observers=(PathLog(file),), budget=Budget(steps=half))
             if first.status is not Status.BUDGET_EXHAUSTED:
                 fail(f"resume: the first {half} steps ended as {first.status.name}, those of the whole path did not")
@@ -136,16 +106,17 @@ def resumed(subject: Subject) -> None:
 
 
 def _same_path(name: str, wanted: Path, found: Path) -> None:
-    if len(wanted) != len(found) or len(wanted.events) != len(found.events):
-        fail(f"{name}: expected {len(wanted)} points and {len(wanted.events)} events, "
-             f"found {len(found)} and {len(found.events)}")  # fmt: skip
-    for p, q in zip(wanted.steps, found.steps):
-        if not np.array_equal(p.u, q.u):
-            fail(f"{name}: step {p.index} (lam = {p.lam:.6g}) differs by {float(np.abs(p.u - q.u).max()):.3g}")
-        # By name, as an archive has an order of its own; a scalar that is NaN in both is the same.
-        scalars = list(p.observed.values()), [q.observed.get(key, math.inf) for key in p.observed]
-        if len(p.observed) != len(q.observed) or not np.array_equal(scalars[0], scalars[1], equal_nan=True):
-            fail(f"{name}: step {p.index} observed {dict(p.observed)}, found {dict(q.observed)}")
-    for event, other in zip(wanted.events, found.events):
-        if event.name != other.name or not np.array_equal(event.u, other.u):
-            fail(f"{name}: the event {event.name!r} at lam = {event.lam:.6g} is {other.name!r} at {other.lam:.6g}")
+    both: list[tuple[list[Any], list[Any]]] = [(wanted.steps, found.steps), (wanted.events, found.events)]
+    for p, q in both:
+        if len(p) != len(q):
+            fail(f"{name}: expected {len(wanted)} points and {len(wanted.events)} events, "
+                 f"found {len(found)} and {len(found.events)}")  # fmt: skip
+        for a, b in zip(p, q):
+            if not np.array_equal(a.u, b.u):
+                fail(f"{name}: expected {a!r}, found {b!r}, which differs by {float(np.abs(a.u - b.u).max()):.3g}")
+            # By name, as an archive has an order of its own; a scalar that is NaN in both is the same.
+            scalars = list(a.observed.values()), [b.observed.get(key, math.inf) for key in a.observed]
+            if len(a.observed) != len(b.observed) or not np.array_equal(*scalars, equal_nan=True):
+                fail(f"{name}: {a!r} observed {dict(a.observed)}, found {dict(b.observed)}")
+    if [event.name for event in wanted.events] != [event.name for event in found.events]:
+        fail(f"{name}: expected the events {wanted.events}, found {found.events}")

@@ -12,12 +12,12 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.testing import derivatives
 from continuation.testing.protocol import answers, difference
-from continuation.testing.subject import Place, Subject, called, directions, fail
+from continuation.testing.subject import Place, Subject, fail, random_directions, reporting
 
 SAME_VALUE = 1e4
 """Values of one map from two formulas, in units of their round-off: a mistake is larger."""
 
-LOOK = 64.0
+MOVED_ULPS = 64.0
 """Last places by which a point is moved to see what they make of the map."""
 
 SMOOTH = 1e-4
@@ -46,13 +46,13 @@ _vectors = answers(
 
 def _smooth(subject: Subject, place: Place) -> None:
     """One-sided differences agree but for their curvature, which ten times shorter ones show."""
-    v = directions(place.u.size, 1, 23)[0]
+    v = random_directions(place.u.size, 1, 23)[0]
     values = Pieces(subject.homotopy).values
 
     def kink(h: float) -> Array:
         return np.abs(values(place.u + h * v) - 2.0 * values(place.u) + values(place.u - h * v)) / h
 
-    with called("switches", f"beside the point {place.where}"):
+    with reporting("switches", f"beside the point {place.where}"):
         far, near = kink(1e-4), kink(1e-5)
         slope = np.abs(Pieces(subject.homotopy).along(place.u, v))
     bad = (near > SMOOTH * (1.0 + slope)) & (near > 0.5 * far)
@@ -64,26 +64,22 @@ def pieces(subject: Subject) -> None:
     """Each piece is a homotopy, and is the map where its signs hold; at a kink all that meet there are."""
     for place, signs in _met(subject):
         piece = _piece(subject, place, signs)
-        for name in ("start", "residual"):
-            if not callable(getattr(piece, name, None)):
-                fail(f"piece: {place.where} expected a method `{name}` of the piece, found none")
-        with called("residual of the piece", place.where):
+        with reporting("residual of the piece", place.where):
             found = np.asarray(piece.residual(place.y, place.lam), dtype=float)
             wanted = np.asarray(subject.homotopy.residual(place.y, place.lam), dtype=float)
             round_off = _round_off(subject, place, wanted)
-        if found.shape != wanted.shape:
-            fail(f"piece: {place.where} expected a residual of shape {wanted.shape}, found {found.shape}")
-        if not (np.abs(found - wanted) <= SAME_VALUE * round_off + np.finfo(float).tiny).all():
+        allowed = SAME_VALUE * round_off + np.finfo(float).tiny
+        if found.shape != wanted.shape or not (np.abs(found - wanted) <= allowed).all():
             signed = _shown(signs)
             fail(f"piece: {place.where} the piece {signed} differs from the map by {difference(found, wanted):.3g}")
 
 
 def _round_off(subject: Subject, place: Place, value: Array) -> Array:
     """What a last place of the largest values along the path makes of the map at a place."""
-    move = np.spacing(np.abs(subject.path.u).max(axis=0)) * np.sign(directions(place.u.size, 1, 29)[0])
-    moves = [LOOK * move, -LOOK * move, LOOK * np.where(np.arange(move.size) % 2, move, -move)]
+    move = np.spacing(np.abs(subject.path.u).max(axis=0)) * np.sign(random_directions(place.u.size, 1, 29)[0])
+    moves = [MOVED_ULPS * move, -MOVED_ULPS * move, MOVED_ULPS * np.where(np.arange(move.size) % 2, move, -move)]
     looks = [np.asarray(subject.homotopy.residual((place.u + m)[:-1], float((place.u + m)[-1]))) for m in moves]
-    rounded: Array = np.max([np.abs(look - value) for look in looks], axis=0) / LOOK
+    rounded: Array = np.max([np.abs(look - value) for look in looks], axis=0) / MOVED_ULPS
     return rounded
 
 
@@ -103,7 +99,7 @@ def _met(subject: Subject) -> list[tuple[Place, Signs]]:
     each = Pieces(subject.homotopy)
     found = []
     for place in subject.places:
-        with called("switches", place.where):
+        with reporting("switches", place.where):
             found.append((place, each.signs(place.u)))
     for event in subject.path.kinks[:3]:
         signs = each.signs(event.u)
@@ -114,7 +110,7 @@ def _met(subject: Subject) -> list[tuple[Place, Signs]]:
 
 
 def _piece(subject: Subject, place: Place, signs: Signs) -> Any:
-    with called("piece", place.where):
+    with reporting("piece", place.where):
         piece = subject.homotopy.piece(np.array(signs))
         Evaluator(piece, Counts())
     return piece

@@ -12,19 +12,9 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.linear import SingularError, factor_bordered
-from continuation.testing.subject import Place, Subject, called, dense, directions, fail
+from continuation.testing.subject import Place, Subject, dense, fail, random_directions, reporting
 
 _ENTRY = re.compile(r"\s*@\w+\s*\{\s*[^,\s]+\s*,", re.ASCII)
-
-
-def start(subject: Subject) -> None:
-    """`start` gives a finite vector and a number, and the residual fits it."""
-    _ = subject.start  # It is checked when it is first asked for, as a trace checks it.
-
-
-def start_on_path(subject: Subject) -> None:
-    """The start is on the path or near it, and H' has full rank there."""
-    _ = subject.first  # Computed when it is first asked for, as a trace begins.
 
 
 def answers(
@@ -34,7 +24,7 @@ def answers(
 
     def examine(subject: Subject) -> None:
         for place in subject.places:
-            with called(name, place.where):
+            with reporting(name, place.where):
                 found = ask(subject.homotopy, place)
                 well = good(found, place.u.size - 1)
             if not well:
@@ -54,7 +44,7 @@ def _double(x: Any, n: int) -> bool:
 
 def _weights(homotopy: Any, place: Place) -> tuple[Any, Any]:
     """At a start, and after it."""
-    v = directions(place.u.size, 1, 2)[0]
+    v = random_directions(place.u.size, 1, 2)[0]
     first = homotopy.metric.weights(place.u.copy(), v, None)
     return first, homotopy.metric.weights(place.u.copy(), v, first)
 
@@ -67,7 +57,7 @@ def _observed(homotopy: Any, place: Place) -> tuple[Any, Any]:
 
 def _monitored(homotopy: Any, place: Place) -> list[float]:
     """What the monitors of the homotopy's events give."""
-    v = directions(place.u.size, 1, 3)[0]
+    v = random_directions(place.u.size, 1, 3)[0]
     return [float(event.monitor(place.u.copy(), v)) for event in homotopy.events]
 
 
@@ -113,7 +103,7 @@ references = answers(
 def jacobian_types(subject: Subject) -> None:
     """`jacobian` gives a matrix that the engine factors, and a vector, of the right shapes."""
     for place in subject.places:
-        with called("jacobian", place.where):
+        with reporting("jacobian", place.where):
             answer = subject.homotopy.jacobian(place.y, place.lam)
         if not isinstance(answer, tuple) or len(answer) != 2:
             fail(f"jacobian: {place.where} expected a tuple (H_y, H_lam), found {type(answer).__name__}")
@@ -156,14 +146,17 @@ def picklable(subject: Subject) -> None:
         again = pickle.loads(pickle.dumps(subject.homotopy))
     except Exception as error:  # Pickle raises what the object's methods raise.
         fail(f"picklable: {type(error).__name__}: {error} (sweeps in several processes need it)")
-    twin = Subject(again)
-    if not np.array_equal(twin.start.u, subject.start.u):
-        fail(f"picklable: the copy starts elsewhere, by {float(np.abs(twin.start.u - subject.start.u).max()):.3g}")
+    if not np.array_equal(Subject(again).start.u, subject.start.u):
+        fail("picklable: the copy starts elsewhere")
+    same_residual(subject, again, "picklable", "the copy")
+
+
+def same_residual(subject: Subject, other: Any, name: str, what: str) -> None:
+    """Another object has the residual of the homotopy, bit for bit."""
     for place in subject.places:
-        with called("residual of the pickled copy", place.where):
-            found, wanted = (h.residual(place.y, place.lam) for h in (again, subject.homotopy))
-        if not np.array_equal(found, wanted):
-            fail(f"picklable: {place.where} the copy's residual differs by {difference(found, wanted):.3g}")
+        with reporting(f"residual of {what}", place.where):
+            found, wanted = (np.asarray(h.residual(place.y, place.lam)) for h in (other, subject.homotopy))
+        _same(name, place, [wanted], [found], f"{what} has another residual")
 
 
 _METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "observe", "switches")
@@ -171,11 +164,11 @@ _METHODS = ("residual", "jacobian", "bordered", "differential", "max_step", "obs
 
 def _asked(subject: Subject, place: Place, name: str) -> Any:
     """What a method answers at a place, which has left its arguments alone."""
-    v, border = directions(place.u.size, 2, 1)
+    v, border = random_directions(place.u.size, 2, 1)
     more = {"bordered": (border,), "differential": (v,)}.get(name, ())
     arguments = (place.u, v) if name == "max_step" else (place.y, place.lam, *more)
     given = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
-    with called(name, place.where):
+    with reporting(name, place.where):
         answer = getattr(subject.homotopy, name)(*given)
     before, after = ([np.asarray(x) for x in some] for some in (arguments, given))
     _same(name, place, before, after, "it changes its arguments")

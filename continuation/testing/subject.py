@@ -17,7 +17,6 @@ from continuation.budget import Budget
 from continuation.controllers import AllgowerGeorg, Bounds, Controller
 from continuation.counts import Counts
 from continuation.evaluation.derivatives import from_residual
-from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import Automatic
 from continuation.path import Path
@@ -50,7 +49,7 @@ def fail(sentence: str) -> NoReturn:
 
 
 @contextmanager
-def called(method: str, where: str) -> Iterator[None]:
+def reporting(method: str, where: str) -> Iterator[None]:
     """Report an exception of a method as a failed check."""
     try:
         with np.errstate(all="ignore"):
@@ -93,20 +92,14 @@ class Subject:
     @cached_property
     def evaluator(self) -> Evaluator:
         """Counted access, as the tracer has it."""
-        try:
+        with reporting("homotopy", "looked at"):
             return Evaluator(self.homotopy, Counts())
-        except TypeError as error:
-            fail(str(error))
 
     @cached_property
     def start(self) -> Place:
         """The start, checked as a trace checks it."""
-        evaluator = self.evaluator
-        with called("start", "called without arguments"):
-            try:
-                return Place("at the start", evaluator.start())
-            except (ValueError, TypeError) as error:
-                fail(str(error))
+        with reporting("start", "called without arguments"):
+            return Place("at the start", self.evaluator.start())
 
     @cached_property
     def places(self) -> tuple[Place, ...]:
@@ -116,7 +109,7 @@ class Subject:
         aside = 1e-2 * (1.0 + np.abs(start.u)) * generator.uniform(0.5, 1.0, start.u.size)
         aside *= generator.choice((-1.0, 1.0), start.u.size)
         if self.has("max_step"):
-            with called("max_step", "near the start"):
+            with reporting("max_step", "near the start"):
                 aside *= np.clip(0.5 * float(self.homotopy.max_step(start.u.copy(), aside.copy())), 0.0, 1.0)
         beside = Place("beside the start", start.u + aside)
         return (start, *([beside] if self.finite(beside) else []), *map(self._at, self._sampled()))
@@ -135,18 +128,14 @@ class Subject:
 
     def finite(self, place: Place) -> bool:
         """Whether the residual can be evaluated there."""
-        try:
-            self.evaluator.residual(place.u)
-        except EvaluationError:
-            return False
-        return True
+        return bool(np.isfinite(self.evaluator.residual_norm(place.u)))
 
     @cached_property
     def first(self) -> Linearization:
         """The first point of the path, as the tracer begins."""
         metric = self.homotopy.metric if self.has("metric") else Automatic()
         target = getattr(self.homotopy, "target", 0.0)
-        with called("start", "linearized"):
+        with reporting("start", "linearized"):
             try:
                 return first_point(PathSolver(self.evaluator, Tolerance()), self.start.u, metric, 0, target)[0]
             except StartError as error:
@@ -163,7 +152,7 @@ class Subject:
     @cached_property
     def path(self) -> Path:
         """The path from the start, or its first steps."""
-        with called("trace", "from the start"):
+        with reporting("trace", "from the start"):
             path = self.traced()
         bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.RAISED, Status.PREDICTOR_FAILED)
         if path.status in bad or len(path) < 2:
@@ -205,13 +194,13 @@ class Subject:
         for k in self._sampled():
             step = self.path.steps[k]
             border = step.tangent / float(np.linalg.norm(step.tangent))
-            with called("bordered" if self.has("bordered") else "jacobian", f"at step {k} of the path"):
+            with reporting("bordered" if self.has("bordered") else "jacobian", f"at step {k} of the path"):
                 yield self._at(k), linearize(self.evaluator, step.u, np.ones_like(step.u), border)
 
     def derivative(self, place: Place) -> Array:
         """[H_y, H_lam] as a dense matrix, shape (N, N + 1): by `jacobian`, else from the residual."""
         if self.has("jacobian"):
-            with called("jacobian", place.where):
+            with reporting("jacobian", place.where):
                 H_y, H_lam = self.homotopy.jacobian(place.y, place.lam)
         else:
             H_y, H_lam = from_residual(self.homotopy.residual, self.homotopy.start())(place.y, place.lam)
@@ -220,12 +209,10 @@ class Subject:
 
 def dense(H_y: Any, n: int) -> Array:
     """A matrix of any type as an array: what it does to the unit vectors."""
-    if isinstance(H_y, np.ndarray):
-        return np.asarray(H_y, dtype=float)
-    return np.column_stack([np.asarray(H_y @ unit, dtype=float) for unit in np.eye(n)])
+    return np.asarray(H_y @ np.eye(n), dtype=float)
 
 
-def directions(n: int, count: int, seed: int) -> list[Array]:
+def random_directions(n: int, count: int, seed: int) -> list[Array]:
     """Random directions of unit length."""
     generator = np.random.default_rng(seed)
     vectors = [generator.standard_normal(n) for _ in range(count)]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
+from operator import attrgetter
 from typing import Any
 
 from attrs import evolve, field, frozen
@@ -48,8 +50,8 @@ class Check:
         return self.name
 
 
-RULES = (
-    Check("start", protocol.start, after=""),
+CHECKS = (
+    Check("start", attrgetter("start"), after=""),
     Check("residual", protocol.residual),
     Check("repeatable", protocol.repeatable),
     Check("target", protocol.target, "target"),
@@ -57,7 +59,7 @@ RULES = (
     Check("jacobian", derivatives.jacobian, "jacobian", "jacobian_types"),
     Check("differential", derivatives.differential, "differential"),
     Check("bordered", derivatives.bordered, "bordered"),
-    Check("start_on_path", protocol.start_on_path),
+    Check("start_on_path", attrgetter("first")),
     Check("metric", protocol.metric, "metric"),
     Check("max_step", paths.max_step, "max_step"),
     Check("observe", protocol.observe, "observe"),
@@ -69,13 +71,14 @@ RULES = (
     Check("pieces", pieces.pieces, "piece", "switches"),
     Check("derivatives_of_pieces", pieces.derivatives_of_pieces, "piece", "pieces"),
     Check("taylor", derivatives.taylor, "taylor", "start_on_path"),
-    Check("trace", paths.trace, after="start_on_path"),
-    Check("refinement", paths.refinement, after="trace"),
-    Check("reversal", paths.reversal, after="trace"),
+    Check("trace", attrgetter("path"), after="start_on_path"),
+    Check("refinement", partial(paths.audited, "step refinement", False), after="trace"),
+    Check("reversal", partial(paths.audited, "reversal", True), after="trace"),
     Check("archive", paths.archive, after="trace"),
     Check("resume", paths.resumed, after="trace"),
 )
-"""The basic and cheap ones first: correct the first failure first."""
+"""The basic and cheap ones first: correct the first failure first. What several need is checked when it is first asked
+for: the start, a first point on the path, the path."""
 
 
 @frozen
@@ -104,7 +107,7 @@ def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, 
         How many steps of the path are looked at: 60 where there is a target, 12 where there is none.
     """
     subject = Subject(homotopy, steps)
-    called_for = (rule for rule in RULES if not rule.capability or subject.has(rule.capability))
+    called_for = (rule for rule in CHECKS if not rule.capability or subject.has(rule.capability))
     return tuple(evolve(rule, subject=subject) for rule in called_for)
 
 
@@ -131,7 +134,7 @@ def run_checks(
         If an expected failure is none of the checks.
     """
     expected = dict(expected_failed_checks or {})
-    known = [rule.name for rule in RULES]
+    known = [rule.name for rule in CHECKS]
     unknown = [name for name in expected if name not in known]
     if unknown:
         raise ValueError(f"expected_failed_checks: expected names among {', '.join(known)}, found {unknown[0]!r}")

@@ -179,7 +179,7 @@ def test_without_the_spread_of_derivatives_wide_tubes_would_pass(monkeypatch):
     wide = proof.cells.with_tubes(30.0 * proof.cells.radius, proof.cells.slabs)
     assert tubes.check(engine, proof.cells)[0].all()
     assert not tubes.check(engine, wide)[0].all()
-    monkeypatch.setattr(tubes, "holds", lambda slabs, judged, radius: (judged.misfit < radius).all(axis=1))
+    monkeypatch.setattr(tubes, "contracts", lambda slabs, judged, radius: (judged.misfit < radius).all(axis=1))
     assert tubes.check(engine, wide)[0].all()
 
 

@@ -3,11 +3,11 @@
 import pytest
 
 from continuation.testing import CheckFailure, check_homotopy, homotopy_checks, run_checks
-from continuation.testing.suite import RULES
+from continuation.testing.suite import CHECKS
 
 from .util import Interior, NoSolution, WrongSeries, interior
 
-SMOOTH = [rule for rule in RULES if rule.capability not in ("switches", "piece")]
+SMOOTH = [rule for rule in CHECKS if rule.capability not in ("switches", "piece")]
 CAPABILITIES = {rule.capability for rule in SMOOTH} - {""}
 
 

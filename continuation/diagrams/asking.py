@@ -16,7 +16,7 @@ from continuation.archive.growing import Growing
 from continuation.arguments.checks import complain, instance_with, is_number
 from continuation.counts import Counts
 from continuation.diagrams.branches import Diagram
-from continuation.diagrams.search import Search
+from continuation.diagrams.search import BranchSearch
 from continuation.evaluation.evaluator import Evaluator
 from continuation.events.box import is_boundless
 from continuation.homotopy import SupportsPieces
@@ -121,7 +121,7 @@ def diagram(
     if stability is not None:
         asked["events"] = (*options.get("events", ()), *stability.events)
     log = None if file is None else Growing(file, "A diagram", isinstance(homotopy, SupportsPieces), keep)
-    search = Search(homotopy, asked, executor, float(step), branches, generations, log)
+    search = BranchSearch(homotopy, asked, executor, float(step), branches, generations, log)
     with nullcontext() if log is None else log:
         try:
             search.run([None, *starts], [float(lam) for lam in deflate])
