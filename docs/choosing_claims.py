@@ -120,10 +120,6 @@ def secant_is_worse(charts):
     return 1.1 < ratio(results, "secant", "Hermite (DEFAULT)") < 1.3 and 11 / 12 <= solved(results, "tangent") < 1.0
 
 
-def runge_kutta_is_dear(charts):
-    return ratio(charts["engine-predictors"], "Runge-Kutta 4", "Hermite (DEFAULT)") > 3.0
-
-
 def series_and_pade_pay(charts):
     results = charts["engine-predictors"]
     series, pade = SERIES

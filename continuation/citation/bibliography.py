@@ -66,14 +66,6 @@ GRIEWANK_WALTHER = """@book{GriewankWalther2008,
   year = {2008},
 }"""
 
-HAIRER_NORSETT_WANNER = """@book{HairerNorsettWanner1993,
-  author = {Hairer, Ernst and N{\\o}rsett, Syvert P. and Wanner, Gerhard},
-  title = {Solving Ordinary Differential Equations I: Nonstiff Problems},
-  edition = {2},
-  publisher = {Springer},
-  year = {1993},
-}"""
-
 KELLER = """@incollection{Keller1977,
   author = {Keller, Herbert B.},
   title = {Numerical Solution of Bifurcation and Nonlinear Eigenvalue Problems},

@@ -9,7 +9,7 @@ from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE, SHARE, integer
 from continuation.arrays import Array
-from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER
+from continuation.citation.bibliography import ALLGOWER_GEORG, DEUFLHARD, KELLER, KELLEY
 from continuation.correctors.base import Correction, iterate
 from continuation.correctors.broyden import updated
 from continuation.evaluation.evaluator import Evaluator
@@ -34,13 +34,12 @@ class BorderedNewton:
     References
     ----------
     H. B. Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977; the reuse is the
-    simplified Newton method with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1).
+    simplified Newton method with Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1);
+    while a factorisation serves, increments have Broyden's good update (C. T. Kelley, Iterative Methods for Linear and
+    Nonlinear Equations, Section 7.3).
     """
 
-    references: ClassVar[tuple[str, ...]] = (
-        KELLER,
-        DEUFLHARD,
-    )
+    references: ClassVar[tuple[str, ...]] = (KELLER, DEUFLHARD, KELLEY)
     reuse: float = field(default=0.1, validator=SHARE)
     max_iterations: int = field(default=8, validator=integer(1))
     max_contraction: float = field(default=0.6, validator=POSITIVE)

@@ -21,7 +21,7 @@ from continuation.chart.study import Size
 from continuation.controllers import AllgowerGeorg, Curvature, Fixed, Geometric, IterationCount, SeriesRange
 from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose, NaturalParameter
 from continuation.metric import Automatic, Euclidean, Relative, RootMeanSquare
-from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent, Taylor
+from continuation.predictors import Hermite, Polynomial, Secant, Tangent, Taylor
 from problems.charts import rivals
 from problems.charts.subjects import bratu, bratu_square, cosine, freudenstein
 
@@ -39,8 +39,6 @@ PREDICTORS: Parts = {
     "tangent": {"predictor": Tangent()},
     "secant": {"predictor": Secant()},
     "polynomial, degree 4": {"predictor": Polynomial(4)},
-    "Adams-Bashforth 3": {"predictor": AdamsBashforth(3)},
-    "Runge-Kutta 4": {"predictor": RungeKutta(4)},
     "Taylor + series range": {"predictor": Taylor(), "controller": SeriesRange()},
     "Pade + series range": {"predictor": Taylor(rational=True), "controller": SeriesRange()},
 }

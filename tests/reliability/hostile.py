@@ -89,8 +89,6 @@ def parts() -> Iterator[Call]:
         (correctors.MoorePenrose, {}),
     ):
         yield Call(corrector, {}, {"max_iterations": "count", "max_contraction": "positive", **more})
-    yield Call(predictors.RungeKutta, {}, {"order": "order 2 or 4"})
-    yield Call(predictors.AdamsBashforth, {}, {"order": "order 2 to 4"})
     yield Call(predictors.Polynomial, {}, {"degree": "degree"})
     series = {"order": "order", "accuracy": "fraction", "safety": "positive, finite", "rational": "truth"}
     yield Call(predictors.Taylor, {}, series)

@@ -8,12 +8,9 @@ from continuation import from_functions
 from continuation.counts import Counts
 from continuation.evaluation.evaluator import Evaluator
 from continuation.point.linearization import linearize
-from continuation.predictors import AdamsBashforth, Hermite, Knot, Polynomial, RungeKutta, Secant, Tangent
+from continuation.predictors import Hermite, Knot, Polynomial, Secant, Tangent
 
-PREDICTORS = [
-    Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(3), Polynomial(4), RungeKutta(2), RungeKutta(4),
-    AdamsBashforth(2), AdamsBashforth(3), AdamsBashforth(4),
-]  # fmt: skip
+PREDICTORS = [Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(3), Polynomial(4)]
 every_predictor = pytest.mark.parametrize("predictor", PREDICTORS, ids=repr)
 
 PARABOLA = from_functions(
@@ -93,17 +90,8 @@ def test_straight_lines_are_predicted_exactly(predictor):
     np.testing.assert_allclose(predictor.prepare(evaluator, point, history)(0.7), 1.2 * v, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize(("order", "factorizations"), [(2, 1), (4, 3)])
-def test_runge_kutta_pays_a_factorisation_a_further_stage(order, factorizations):
-    evaluator = Evaluator(PARABOLA, Counts())
-    ahead = prediction(RungeKutta(order), 0.1, evaluator=evaluator)
-    before = evaluator.counts.factorizations
-    ahead(0.1)
-    assert evaluator.counts.factorizations - before == factorizations
-
-
-@pytest.mark.parametrize("predictor", [p for p in PREDICTORS if not isinstance(p, RungeKutta)], ids=repr)
-def test_the_others_cost_nothing(predictor):
+@every_predictor
+def test_a_prediction_costs_nothing(predictor):
     evaluator = Evaluator(PARABOLA, Counts())
     ahead = prediction(predictor, 0.1, evaluator=evaluator)
     before = evaluator.counts.copy()

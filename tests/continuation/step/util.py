@@ -5,12 +5,9 @@ import numpy as np
 from continuation.controllers import AllgowerGeorg, Bounds, Curvature, Fixed, Geometric, IterationCount
 from continuation.correctors import BorderedNewton, Broyden, Chord, MoorePenrose
 from continuation.metric import Euclidean, Relative, RootMeanSquare, Weighted
-from continuation.predictors import AdamsBashforth, Hermite, Polynomial, RungeKutta, Secant, Tangent
+from continuation.predictors import Hermite, Polynomial, Secant, Tangent
 
-PREDICTORS = [
-    Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(4), RungeKutta(2), RungeKutta(4), AdamsBashforth(2),
-    AdamsBashforth(4),
-]  # fmt: skip
+PREDICTORS = [Tangent(), Secant(), Hermite(), Polynomial(2), Polynomial(4)]
 
 
 CORRECTORS = [BorderedNewton(), BorderedNewton(reuse=0.0), Chord(), Broyden(), MoorePenrose()]
