@@ -1,7 +1,12 @@
 """The path archive: HDF5 files written safely while paths are traced, resumed exactly, and read by anybody.
 
-The schema is `continuation-path-2` (`continuation.archive.schema`): two tables, of points and of paths, which h5py,
-xarray (engines h5netcdf and netCDF4) and every netCDF-4 tool read without this package.
+The idea: an archive is two tables, of points and of paths, that grow by checked blocks. A block is what one commit
+writes: rows, a checksum of each column, a checkpoint; then a record that the block is whole (`store`, `checks`).
+A reader takes whole blocks and compares them (`contents`). All else is "read whole blocks, append them elsewhere"
+(`copies.Share`): recovery, resuming, merging, export, diagrams and the paths that a sweep's workers send back.
+
+The schema is `continuation-path-2` (`continuation.archive.schema`): h5py, xarray (engines h5netcdf and netCDF4) and
+every netCDF-4 tool read it without this package.
 """
 
 from continuation.archive.atomic import ArchiveError, ArchiveExistsError
