@@ -130,8 +130,8 @@ MIX: dict[str, Callable[[int], Iterator[Problem]]] = {
 
 SETS = {
     "active sets, pivots": ("active sets", "pivots"),
-    "without active sets": ("all faces", "pivots", "root", "few groups of faces", "reflections", "groups of faces",
-                            "paths", "reflections, further", "restarts"),
+    "without reflections": ("active sets", "all faces", "pivots", "root", "few groups of faces", "groups of faces",
+                            "paths", "restarts"),
     "without exclusion": ("active sets", "pivots", "reflections", "paths", "reflections, further", "restarts"),
     "without paths": ("active sets", "all faces", "pivots", "root", "few groups of faces", "reflections",
                       "groups of faces", "reflections, further"),

@@ -67,12 +67,6 @@ class Scaled:
         """The point of the scaled problem."""
         return _times(x, -self.columns)
 
-    def after(self, first: Scaled | None) -> Scaled:
-        """Both scalings as one, of the problem that was scaled first."""
-        if first is None:
-            return self
-        return Scaled(self.problem, first.rows + self.rows, first.columns + self.columns, first.exact and self.exact)
-
     @property
     def common(self) -> bool:
         """Whether all rows have one factor, and the columns none."""

@@ -19,7 +19,6 @@ from problems.lcp.active_set.multigrid_guess import guess, suitable
 from problems.lcp.active_set.projected import projected_state
 from problems.lcp.data.problem import MixedLCP, State, active_state
 from problems.lcp.proof.verdict import to_precision
-from problems.lcp.search.exclusion import few_faces
 from problems.lcp.search.pivots import LARGEST_TABLE, by_guess, pivotable
 from problems.lcp.search.search import Search
 
@@ -55,9 +54,8 @@ class ActiveSets:
         if not (search.finish is None or not problem.standard or problem.sparse or guessed(search)):
             if search.settle(active_state(problem.q < 0.0), Policy(steps=0, regular=True)):
                 return FIRST
-            # Where faces are few all are next; where their equations are singular, as in contact, pivots are quicker.
-            irregular = search.finish.ended is Ended.IRREGULAR
-            if few_faces(search) or (irregular and pivotable(search) and not search.facts.symmetric):
+            # Where the equations of a face are singular, as those of contact are, pivots are quicker.
+            if search.finish.ended is Ended.IRREGULAR and pivotable(search) and not search.facts.symmetric:
                 return ""
         return next((said for said, found in self._attempts(int(work)) if found), "")
 

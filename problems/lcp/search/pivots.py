@@ -103,12 +103,13 @@ class Pivots:
         """
         n, m = played.problem.n, played.actions
         most, batch = int(work * n), int(SHORT_PATHS * work)
-        paths = [played.path(label) for label in (0, n - 1)]
-        while True:
-            yield from ((path, most) for path in paths if path.ended is None)
+        paths: list[AlmostComplementary] = []
+        for label in (0, n - 1):
+            paths.append(played.path(label))
+            yield paths[-1], most
+        while 2 * most <= GAME_WORK // (m * (n - m)) and any(path.ended is None for path in paths):
             most *= 2
-            if most > GAME_WORK // (m * (n - m)) or all(path.ended is not None for path in paths):
-                break
+            yield from ((path, most) for path in paths if path.ended is None)
         labels = np.random.default_rng(self.search.asked.seed).permutation(n)
         yield from ((played.path(int(label)), n // SHORT_PATHS) for label in labels[:batch])
         yield from ((played.path(int(label)), 2 * n // SHORT_PATHS) for label in labels[batch : 3 * batch])
