@@ -24,7 +24,7 @@ from continuation.events.roots import zero_between
 from continuation.point.arc import Arc
 from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
-from continuation.point.segment import CUBIC, HermiteSegment, Segment, hermite
+from continuation.point.segment import CUBIC, HermiteSegment, QuinticSegment, Segment, hermite
 
 JUMP = 1e-3
 """A bracket that has closed round more than this, relative to where it began, holds a jump and no zero."""
@@ -64,8 +64,8 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
     """
     if gb == 0.0 or ga * gb < 0.0:
         return True
-    sign, inside = math.copysign(1.0, ga), arc.segment.inside
-    along = _of_coordinate(event, arc.segment, arc.length)
+    sign, inside = math.copysign(1.0, ga), arc.guide.inside
+    along = _of_coordinate(event, arc.guide, arc.length)
     found = [event.monitor(u, v) for u, v in arc.samples] if along is None else map(along, inside)
     values = [sign * ga, *[sign * g for g in found], sign * gb]
     return _least((0.0, *inside, 1.0), values) < 0.5 * min(abs(ga), abs(gb))
@@ -73,7 +73,7 @@ def may_vanish(event: Event, arc: Arc, ga: float, gb: float) -> bool:
 
 def _of_coordinate(event: Event, segment: Segment, length: float) -> Callable[[float], float] | None:
     """The monitor along a cubic of that length, as a function of t, where it looks at one coordinate; else None."""
-    if not (isinstance(segment, HermiteSegment) and isinstance(event, TurningPoint | TargetValue)):
+    if not (isinstance(segment, HermiteSegment | QuinticSegment) and isinstance(event, TurningPoint | TargetValue)):
         return None
     at, slope = segment.coordinate(event.component)
     if isinstance(event, TurningPoint):
@@ -169,7 +169,7 @@ def zeros(
     noise : float
         Values inside of the arc up to this are round-off, and change no sign.
     """
-    parts = [_Part(arc.a, arc.b, ga, gb, arc.segment)]
+    parts = [_Part(arc.a, arc.b, ga, gb, arc.guide)]
     while parts:
         part = parts.pop()
         if part.ga == 0.0:

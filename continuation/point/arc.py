@@ -10,7 +10,7 @@ from attrs import Factory, field, frozen
 from continuation.arrays import Array, dot
 from continuation.metric import inner, norm
 from continuation.point.linearization import Linearization
-from continuation.point.segment import Segment, hermite
+from continuation.point.segment import HermiteSegment, QuinticSegment, Segment, hermite
 from continuation.predictors import Prediction
 
 
@@ -18,7 +18,7 @@ from continuation.predictors import Prediction
 class Arc:
     """The path from a to b, both linearized, in the pseudo-arclength parameter border . (u - a.u).
 
-    `length`: That parameter at b.
+    `length`: That parameter at b. `guide`: The segment, or what looks at the path made of it: where events are sought.
     """
 
     a: Linearization
@@ -26,20 +26,28 @@ class Arc:
     border: Array
     segment: Segment
     length: float = field(default=Factory(lambda arc: position(arc, arc.b.u), takes_self=True), kw_only=True)
+    guide: Segment = field(default=Factory(lambda arc: arc.segment, takes_self=True), kw_only=True)
     _samples: list[tuple[Array, Array]] = field(factory=list, init=False)
 
     @property
     def samples(self) -> list[tuple[Array, Array]]:
         """Points of the segment inside the arc, with tangents of about unit length: they cost no evaluation of H."""
         if not self._samples:
-            points, slopes = self.segment.sampled()
+            points, slopes = self.guide.sampled()
             self._samples.extend(zip(points, np.asarray(slopes) / self.length))
         return self._samples
 
     @property
     def just_after_start(self) -> tuple[Array, Array]:
         """The same just behind the beginning."""
-        return self.segment.at(0.02), self.segment.derivative(0.02) / self.length
+        return self.guide.at(0.02), self.guide.derivative(0.02) / self.length
+
+
+def guided(arc: Arc, c: Array, d: Array) -> Arc:
+    """The same arc, of which the cubic is known to be off by about s^2 (c + d t), s = t (1 - t)."""
+    cubic = arc.segment
+    assert isinstance(cubic, HermiteSegment)
+    return Arc(arc.a, arc.b, arc.border, cubic, length=arc.length, guide=QuinticSegment(cubic, c, d))
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:

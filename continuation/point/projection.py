@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -13,9 +13,11 @@ from continuation.contraction import Contraction, Iteration
 from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import POINT_ULPS, CountedSystem, Evaluator
 from continuation.metric import norm
-from continuation.point.arc import Arc
+from continuation.point.arc import Arc, guided
 from continuation.point.linearization import Anchor, Linearization, relinearize
 from continuation.point.segment import CUBIC
+from continuation.predictors import Knot
+from continuation.predictors.base import history_in_pseudo_arclength
 from continuation.tolerance import Tolerance
 
 MaxStep = Callable[[Array, Array], float]
@@ -36,8 +38,10 @@ extrapolated by its own length. An S inside the step puts both off alike. What i
 arc, is not looked at: S-bends of a thousandth of the path are seen with it, of steps of a third (measured on 900)."""
 
 ALIKE = 0.5
-"""What a cubic misses of a smooth path has one factor at both places, about. Where these differ by more than this, as
-behind every jump, the middle of the arc must be as they say."""
+"""What a cubic misses of a smooth path has one factor at both places, about, and the quintic through the point before
+says which. Where these differ by more than this, as behind every jump, or no point lies before, the middle of the arc
+must be as they say: a third look at 15 % of the arcs, 1 % of all solves (record of behaviour). Without the point before
+one S-bend in 7,500 was overlooked, at which all that two looks and the prediction say is what a smooth curve does."""
 
 ARC_NOISE = 1e2
 """The same in tolerances: on a step as short as the noise of the residual an arc cannot do better than that."""
@@ -179,12 +183,11 @@ def _approximate(system: CountedSystem, r: Array) -> Array:
     return system.approximate(r, 0.0)
 
 
-def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
+def arc_on_path(solver: PathSolver, arc: Arc, distance: float, history: Sequence[Knot]) -> Arc | None:
     """The arc if it lies near the path: two points of different branches, or of an S, are joined by none.
 
-    One residual and one solve with the factorisation at hand estimate how far the segment is off at a place; where a
-    cubic is off by unlike amounts at two places, the middle must be as they say. The distance is how far the prediction
-    of the end was off, in the metric.
+    One residual and one solve with the factorisation at hand estimate how far the segment is off at a place. What that
+    tells of a cubic is its arc's guide. The distance is how far the prediction of the end was off, in the metric.
     """
     weights = arc.a.weights
     length = norm(weights, arc.b.u - arc.a.u)
@@ -201,14 +204,39 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
     if not cubic:
         return arc
     even = max(EVEN * length, noise)
-    if most <= even:
-        return arc
-    # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t).
+    # A cubic misses a smooth path by t^2 (1 - t)^2 (c + d t), with a small d, as it does at the point before.
     p, q = ARC_PLACES
     first, second = off[0] / (p * (1.0 - p)) ** 2, off[1] / (q * (1.0 - q)) ** 2
-    if norm(weights, first - second) <= ALIKE * max(norm(weights, first), norm(weights, second)):
+    d = (second - first) / (q - p)
+    c = first - p * d
+    arc = guided(arc, c, d)
+    if most <= even:
         return arc
-    expected = first + (0.5 - p) / (q - p) * (second - first)
+    sizes = norm(weights, first), norm(weights, second)
+    if norm(weights, first - second) <= ALIKE * max(sizes):
+        before = _missed_before(arc, history)
+        if before and all(
+            norm(weights, one - missed) <= ALIKE * max(size, norm(weights, missed))
+            for one, missed, size in zip((first, second), before, sizes)
+        ):
+            return arc
     # From the cubic, as the others: what a factorisation of another place makes of them has one error.
     middle = arc.a.approximate(-solver.evaluator.residual(arc.segment.at(0.5)))
-    return arc if norm(weights, middle - expected / 16.0) <= even else None
+    return arc if norm(weights, middle - (c + 0.5 * d) / 16.0) <= even else None
+
+
+def _missed_before(arc: Arc, history: Sequence[Knot]) -> list[Array]:
+    """What c + d t is at the places if the arc's cubic and s^2 (c + d t) meet the point before, with its tangent.
+
+    Empty where no point lies before.
+    """
+    knots = history_in_pseudo_arclength(arc.a, history)
+    if len(knots) < 2:
+        return []
+    sigma, u, slope = knots[1]
+    length = arc.length
+    t = sigma / length
+    s = t * (1.0 - t)
+    missed = (u - arc.segment.at(t)) / s**2
+    d = (length * slope - arc.segment.derivative(t)) / s**2 - 2.0 * (1.0 - 2.0 * t) / s * missed
+    return [missed + (place - t) * d for place in ARC_PLACES]

@@ -105,6 +105,63 @@ class HermiteSegment:
         return hermite(self.u0, self.d0, end, v, border)
 
 
+_HIGHER = np.array(
+    [
+        [(_T * (1.0 - _T)) ** 2, (_T * (1.0 - _T)) ** 2 * _T],
+        [2.0 * _T * (1.0 - _T) * (1.0 - 2.0 * _T), _T**2 * (1.0 - _T) * (3.0 - 5.0 * _T)],
+    ]
+).transpose(0, 2, 1)
+"""The same of what a quintic adds: s^2 and s^2 t, with s = t (1 - t), and their derivatives: (2, 3, 2)."""
+
+
+@frozen(eq=False)
+class QuinticSegment:
+    """A cubic and s^2 (c + d t), s = t (1 - t), which leaves the ends and the tangents there as they are."""
+
+    cubic: HermiteSegment
+    c: Array
+    d: Array
+
+    @property
+    def inside(self) -> tuple[float, ...]:
+        """Where the cubic is sampled."""
+        return self.cubic.inside
+
+    def at(self, t: float) -> Array:
+        """The point at t."""
+        s = t * (1.0 - t)
+        return add_multiple(self.cubic.at(t), s * s, self.c + t * self.d)
+
+    def derivative(self, t: float) -> Array:
+        """Its derivative at t."""
+        s = t * (1.0 - t)
+        slope = add_multiple(self.cubic.derivative(t), 2.0 * s * (1.0 - 2.0 * t), self.c + t * self.d)
+        return add_multiple(slope, s * s, self.d)
+
+    def coordinate(self, i: int) -> tuple[Callable[[float], float], Callable[[float], float]]:
+        """One coordinate as a function of t, and its derivative."""
+        (at, slope), c, d = self.cubic.coordinate(i), self.c.item(i), self.d.item(i)
+
+        def higher(t: float) -> float:
+            s = t * (1.0 - t)
+            return at(t) + s * s * (c + t * d)
+
+        def steeper(t: float) -> float:
+            s = t * (1.0 - t)
+            return slope(t) + s * (2.0 * (1.0 - 2.0 * t) * (c + t * d) + s * d)
+
+        return higher, steeper
+
+    def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
+        """All at once."""
+        (points, slopes), (more, steeper) = self.cubic.sampled(), _HIGHER @ np.array([self.c, self.d])
+        return points + more, slopes + steeper
+
+    def until(self, sigma: float, end: Array, v: Array, border: Array) -> Segment:
+        """The cubic to the new end."""
+        return self.cubic.until(sigma, end, v, border)
+
+
 _SIXTEENTHS = tuple(k / 16 for k in range(1, 16))
 
 
