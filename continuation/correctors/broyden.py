@@ -8,32 +8,33 @@ from typing import ClassVar
 from attrs import field, frozen
 
 from continuation.arguments.checks import POSITIVE, integer
-from continuation.arrays import Array, dot
+from continuation.arrays import Array
 from continuation.citation.bibliography import KELLEY
 from continuation.contraction import MONOTONE
 from continuation.correctors.base import Correction, iterate
 from continuation.evaluation.evaluator import Evaluator
+from continuation.metric import inner
 from continuation.point.linearization import Linearization
 from continuation.tolerance import Tolerance
 
 
-def updated(increments: list[Array], z: Array) -> Array:
-    """An increment z of the chord method as Broyden's good update makes it, which is added to the `increments`.
+def updated(increments: list[Array], z: Array, weights: Array) -> Array:
+    """An increment z of the chord method as Broyden's good update in the metric makes it, added to the `increments`.
 
     These are all since the factorisation was made: no more of the update is kept (Kelley, Iterative Methods for Linear
     and Nonlinear Equations, Section 7.3).
     """
     for before, after in itertools.pairwise(increments):
-        z = z + (dot(before, z) / dot(before, before)) * after
+        z = z + (inner(weights, before, z) / inner(weights, before, before)) * after
     if increments:
         last = increments[-1]
-        left = 1.0 - dot(last, z) / dot(last, last)
+        left = 1.0 - inner(weights, last, z) / inner(weights, last, last)
         if left < 1.0 - MONOTONE:
             # What hardly falls along itself is round-off, and tells nothing of the matrix.
             increments.clear()
         else:
             z = z / left
-    if dot(z, z) > 0.0:
+    if inner(weights, z, z) > 0.0:
         increments.append(z)
     return z
 
@@ -58,6 +59,6 @@ class Broyden:
         increments: list[Array] = []
 
         def direction(k: int, u: Array, r: Array, contraction: float) -> Array:
-            return updated(increments, point.solve(-r, 0.0, border))
+            return updated(increments, point.solve(-r, 0.0, border), point.weights)
 
         return iterate(evaluator, point, predicted, tolerance, direction, self.max_iterations, self.max_contraction)

@@ -58,7 +58,7 @@ class BorderedNewton:
                 anchors[:] = [Anchor(u.copy(), border, evaluator.factor(u, border))]
                 fresh_at = k
                 increments.clear()
-            return updated(increments, anchors[0].system.approximate(-r, 0.0))
+            return updated(increments, anchors[0].system.approximate(-r, 0.0), point.weights)
 
         # Newton's own factors are those of the iterate before the last: not offered where none is to serve twice.
         offered = anchors if self.reuse > 0.0 else ()
