@@ -60,13 +60,15 @@ class Landing:
         """Whether landing is tried from many steps away, now and then: near a boundary steps become short."""
         return self.stepper.solver.max_step is not None
 
-    def attempt(self, point: Linearization, prediction: Prediction, h: float, last_failed: float) -> Attempt | None:
+    def attempt(
+        self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
+    ) -> Attempt | None:
         """A step to the target, if the prediction reaches it.
 
-        `h`: The step length that the controller wants. `last_failed`: The parameter value at which landing was last
-        tried in vain.
+        `h`: The step length that the controller wants, `longest`: the longest that it allows. `last_failed`: The
+        parameter value at which landing was last tried in vain.
         """
-        guess = self._guess(point, prediction, h, last_failed)
+        guess = self._guess(point, prediction, h, longest, last_failed)
         if guess is None:
             return None
         attempt = self._correct(point, *guess)
@@ -78,7 +80,7 @@ class Landing:
         return attempt
 
     def _guess(
-        self, point: Linearization, prediction: Prediction, h: float, last_failed: float
+        self, point: Linearization, prediction: Prediction, h: float, longest: float, last_failed: float
     ) -> tuple[Array, float] | None:
         """The predicted point with the target's parameter value, and its step, if that is within reach."""
         gap = self.target - point.lam
@@ -88,7 +90,7 @@ class Landing:
         if self.lands_from_afar:
             if abs(gap) > RETRY * abs(last_failed - target):
                 return None
-            h *= LEAP
+            h = min(LEAP * h, longest)
         high = min(prediction.reach, STRETCH * h)
         try:
             if not (prediction(high)[-1] - target) * gap >= 0.0:

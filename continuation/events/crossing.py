@@ -31,6 +31,10 @@ the next one too. Without that a tenth of the crossings just behind an arc is ov
 EXHAUSTED = 1e-10
 """A vector that loses all but this to the ones before it has no direction of its own."""
 
+ROUNDING = float(np.finfo(float).eps) ** 0.5
+"""An eigenvalue smaller than so much of its matrix may be round-off, where it is one of a pair that is nearly defective
+(Wilkinson, The Algebraic Eigenvalue Problem, Section 2.22): on the way to a pole all are."""
+
 RANKS, SAME, INDEPENDENT = 4, 1e-3, 1e-4
 """At most so many vectors of one eigenvalue are sought; that near is the same one, and less than the last, of unit
 length, depends on the others: eigenvectors are known to about the root of what eigenvalues are."""
@@ -111,7 +115,7 @@ def _eigenvalues(
     n = min(PRODUCTS, a.u.size)
     Q, H = np.empty((n + 1, a.u.size)), np.zeros((n + 1, n))
     Q[0] = start / math.sqrt(dot(start, start))
-    converged = False
+    converged, now = False, list[complex]()
     for k in range(n):
         q = Q[k] / scale
         x = Q[k] - scale * a.approximate(apply(q), dot(border, q))
@@ -135,13 +139,18 @@ def _eigenvalues(
             values, errors, vectors = _eig(H[: k + 1, : k + 1], 0.0 if whole else left_over)
             told = [(z, e) for z, e in zip(values, errors) if z.real + e > right or z.real - e < left]
             before, converged = converged, all(e <= accuracy * abs(z) for z, e in told)
-            if whole or (converged and (before or left_over <= OUTSIDE_SPACE * right)):
+            # Where H' is far from normal, as on the way to a pole, a small residual says little: the next dimension
+            # has to show the same.
+            last, now = now, sorted((z for z, _ in told), key=lambda z: (z.real, z.imag))
+            same = len(last) == len(now) and all(abs(p - q) <= accuracy * abs(q) for p, q in zip(last, now))
+            if whole or (converged and (same if told else before or left_over <= OUTSIDE_SPACE * right)):
                 break
         Q[k + 1] = x / left_over
+    rounding = ROUNDING * float(np.linalg.norm(H[: k + 1, : k + 1]))
     wanted = [
         j
         for j, (z, e) in enumerate(zip(values, errors))
-        if (z.real > right or z.real < left) and abs(z.imag) <= e + EXHAUSTED * abs(z)
+        if (z.real > right or z.real < left) and abs(z.imag) <= e + EXHAUSTED * abs(z) and abs(z) > rounding
     ]
     return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted]
 

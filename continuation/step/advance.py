@@ -138,7 +138,9 @@ class Advance:
         if math.isinf(h):
             # A controller made for series with a predictor that has no range: begin with the size of the point.
             h = 1.0 + norm(point.weights, point.u)
-        landing = self.landing and self.landing.attempt(point, prediction, h, state.last_failed_landing)
+        landing = self.landing and self.landing.attempt(
+            point, prediction, h, controller.bounds.maximum, state.last_failed_landing
+        )
         if landing is not None:
             # The controller judges this one too: a long correction says that the path is not what was predicted.
             if (

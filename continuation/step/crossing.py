@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.arrays import Array, largest
+from continuation.arrays import Array, generic_vector, largest
 from continuation.correctors.base import far_from_round_off
 from continuation.evaluation.errors import EvaluationError
 from continuation.events.crossing import EIGENVALUE_ACCURACY, changes, multiplicity
@@ -133,6 +133,12 @@ class Crossings:
             Of the step: each looks at H' with another first vector.
         """
         seen = self._seen(arc, attempt, prediction, flipped, ends, index)
+        if isinstance(seen, Rejected) and not flipped and self._blurred(arc, index):
+            return None
+        if seen is None and flipped and self._derivative(arc.b.u) is None:
+            # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
+            found = self._found(arc, arc.segment.at(0.5))
+            seen = None if found is None else _Seen(found, {})
         if isinstance(seen, _Seen):
             return self._over(arc, attempt, seen, flipped, ends)
         return _rejected(attempt, Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
@@ -206,6 +212,14 @@ class Crossings:
             return None
         rays = seen.point.rays(arc.segment.derivative(s), arc.a.weights)
         return Crossed(evolve(arc.a, u=seen.point.u, tangent=rays[1]), rays)
+
+    def _blurred(self, arc: Arc, index: int) -> bool:
+        """Whether no z can be told: they differ from one within the tolerance of the arc's beginning, where all are one.
+
+        So it is on the way to a pole, where components vanish beside the others.
+        """
+        blur = self.solver.tolerance.relative / np.sqrt(arc.a.weights)
+        return bool(self._told(arc, arc.a.u + blur * generic_vector(arc.a.u.size), 0.0, index))
 
     def between(self, point: Linearization, u: Array) -> bool:
         """Whether H' has an eigenvalue of another sign at u than at a point."""

@@ -164,7 +164,9 @@ class Subject:
         """The default one, with steps short enough that there are points between the start and the end."""
         usual = DEFAULT.controller
         tracer = Tracer(self.homotopy, budget=self.limits)
-        steps = [step for step in tracer if step.kind != Kind.TARGET]
+        steps = list(tracer)
+        if len(steps) > 2 and steps[-1].kind == Kind.TARGET:
+            steps.pop()
         if not isinstance(usual, AllgowerGeorg) or not 2 <= len(steps) < FEWEST:
             return usual
         # Half a step more, so that no step ends in the middle, where a symmetric path may have its branch point.
