@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
 from attrs import evolve, field, frozen
 
 from continuation.arrays import Array
@@ -30,7 +29,6 @@ from continuation.step.acceptance import Accepted, Examiner
 from continuation.step.capabilities import interior_fraction
 from continuation.step.record import StepRecorder
 from continuation.step.settings import Settings
-from continuation.step.start import noisier
 from continuation.step.state import State
 from continuation.step.stepper import Arrival, Attempt, Stepper
 from continuation.step.verdict import (
@@ -50,10 +48,6 @@ values: without it 648 attempts are rejected and 9 traces stick; with 1.1 .. 1.5
 
 TINY = 1e-300
 """A monitor that is next to nothing, and has a sign."""
-
-DOUBTED = 4
-"""So many attempts at a step that failed, and it is asked whether noise is why: that takes 15 residuals, as two of them
-do. On recorded paths without noise CONSERVATIVE asks once or twice, the others next to never."""
 
 
 @frozen(eq=False)
@@ -174,11 +168,6 @@ class Advance:
                 h *= SINGULAR_STRETCH
             verdict = budget_spent(self.spent(), state, rejected)
             verdict = verdict or no_step_left(h, controller.bounds.minimum, rejected)
-            if len(rejected) % DOUBTED == 0 and noisier(self.solver, point):
-                # What failed was asked for more digits than H has here.
-                noise, tolerance = self.solver.evaluator.noise, self.solver.tolerance.relative
-                state = evolve(state, noise=np.zeros(0) if noise is None else noise, tolerance=tolerance)
-                h = state.h
             if verdict is not None:
                 return Stopped(verdict)
 

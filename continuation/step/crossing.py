@@ -159,7 +159,8 @@ class Crossings:
                     return self._together(arc, prediction, t / there[-1])
                 # What comes near to singular at the end, and goes straight, may do so behind it.
                 if found is None and (t < 1.0 or there[-1] >= 1.0):
-                    return _rejected(attempt, Rejection.ORIENTATION, max(before, 0.8 * t * MOST / there[-1]))
+                    shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
+                    return _rejected(attempt, Rejection.ORIENTATION, max(before, shorter))
             if there:
                 changed = True
             before = t
@@ -214,7 +215,7 @@ class Crossings:
         return Crossed(evolve(arc.a, u=seen.point.u, tangent=rays[1]), rays)
 
     def _blurred(self, arc: Arc, index: int) -> bool:
-        """Whether no z can be told: they differ from one within the tolerance of the arc's beginning, where all are one.
+        """Whether no z can be told: within the tolerance of the arc's beginning, where all are one, some are not.
 
         So it is on the way to a pole, where components vanish beside the others.
         """

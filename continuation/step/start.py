@@ -127,22 +127,6 @@ def measured(
     return point.with_weights(metric.weights(point.u, point.tangent, None)), extent
 
 
-def noisier(solver: PathSolver, point: Linearization) -> bool:
-    """Whether H has more noise at a point of the path than was seen before: the tolerance is raised to allow it."""
-    evaluator, before = solver.evaluator, solver.tolerance.relative
-    known, evaluator.noise = evaluator.noise, None
-    noise = evaluator.measure_noise(point.u, point.tangent, evaluator.residual(point.u))
-    if evaluator.noise is None:
-        evaluator.noise = known
-        return False
-    if known is not None:
-        evaluator.noise = np.maximum(evaluator.noise, known)
-    samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    blur = np.abs(samples).max(axis=0) * np.sqrt(point.weights)
-    solver.noisy(min(CLEAR_OF_NOISE * median(blur), COARSEST))
-    return solver.tolerance.relative > before
-
-
 def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Array) -> Array:
     """Correct the start, at its parameter value if that works, else along the shortest way."""
     for border in (unit, point.border):

@@ -190,23 +190,3 @@ def test_a_residual_in_single_precision(preset, tolerance):
     np.testing.assert_allclose([fold.lam for fold in path.turning_points], [2.0, -2.0], atol=1e-4)
     assert path.endpoint.y[0] == pytest.approx(2.5, abs=1e-4)
     assert ("noisy" in path.message) == (tolerance < 1e-5)
-
-
-@pytest.mark.parametrize("preset", [FAST, DEFAULT], ids=["FAST", "DEFAULT"])
-@pytest.mark.parametrize("noise", [1e-5, 1e-4])
-def test_noise_that_grows_on_the_way(preset, noise):
-    """Next to none at the start, and a million times as much at the end: the tolerance follows."""
-
-    def residual(y, lam):
-        chance = np.modf(np.sin(y * 12.9898e6 + lam * 78.233e6) * 43758.5453e6)[0]
-        return y**3 - 3.0 * y - lam + noise * chance * 10.0 ** (1.2 * (y - 2.5))
-
-    path = trace(
-        from_functions(
-            residual, lambda y, lam: (np.array([[3.0 * y[0] ** 2 - 3.0]]), np.array([-1.0])),
-            start=([-2.5], -8.125), target=8.125,
-        ),
-        preset=preset,
-    )  # fmt: skip
-    assert path.status is Status.REACHED_TARGET
-    np.testing.assert_allclose([fold.lam for fold in path.turning_points], [2.0, -2.0], atol=1e-3)
