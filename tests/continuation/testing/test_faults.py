@@ -105,7 +105,8 @@ class OneWay(Interior):
     def residual(self, y, lam):
         value = super().residual(y, lam)
         if np.abs(value).max() < 1e-10:
-            self.rises += lam > self.last + 1e-3
+            # By more than from a look within a short step back to its end.
+            self.rises += lam > self.last + 0.05
             self.last = lam
         return value + (1e-2 if self.rises >= 4 else 0.0)
 
