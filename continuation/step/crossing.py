@@ -148,12 +148,14 @@ class Crossings:
     ) -> _Seen | Crossed | Rejected | None:
         """The first branch point that the eigenvalues along an arc lead to; None on a regular arc."""
         told: dict[float, list[float]] = {}
-        found, before, changed, left = None, 0.0, False, [1.0]
+        found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
         for k, t in enumerate(HALF if cubic else EIGHTHS):
             told[t] = there = self._told(arc, prediction(t * arc.length) if t < 1.0 else arc.b.u, t, index + k)
             left.append(1.0 - max([0.0, *there]))
-            if left[-1] * SPAN < left[-2] * (1.0 if t < 1.0 or not ends else 0.0) and found is None:
+            # Where the path ends with the arc, only what lies on it counts.
+            least = 0.0 if ends and t == 1.0 else left[-2] / SPAN
+            if left[-1] < least and found is None:
                 found = self._found(arc, prediction(t / there[-1] * arc.length))
                 if found is None and there[-1] > t and self._several(arc, flipped, index):
                     return self._together(arc, prediction, t / there[-1])
@@ -161,10 +163,8 @@ class Crossings:
                 if found is None and (t < 1.0 or there[-1] >= 1.0):
                     shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
                     return _rejected(attempt, Rejection.ORIENTATION, max(before, shorter))
-            if there:
-                changed = True
             before = t
-        if found is None and changed:
+        if found is None and any(told.values()):
             if (near := self._passed(arc, prediction, told, index)) is not None:
                 return _rejected(attempt, Rejection.CROSSINGS, near)
             if cubic and left[-1] < 1.0 - TOLD:

@@ -162,7 +162,7 @@ def test_samples_of_one_field_have_one_scale():
 
 
 @every_preset
-@pytest.mark.parametrize("y", [6.1e-17, -6.1e-17, 1e-12, 1e-9])
+@pytest.mark.parametrize("y", [np.cos(np.pi / 2.0), -np.cos(np.pi / 2.0), 1e-12, 1e-9])
 def test_a_start_at_a_fold_to_round_off(preset, y):
     """The circle from its top: where y = cos(pi / 2) the parameter's tangent is what the path has next to its fold."""
     for size, unit in ((1.0, 1.0), (5.0, 1e-6), (0.3, 1e4)):
