@@ -16,6 +16,7 @@ from continuation.evaluation.products import (
     BY_COMPLEX_STEP,
     BY_JETS,
     DIFFERENCE_STEPS,
+    ByDifferences,
     Products,
     Residual,
     by_differences,
@@ -77,6 +78,11 @@ class Derivative:
     @agreement.default
     def _first(self) -> float:
         return self.products.agreement
+
+    def know(self, noise: Array) -> None:
+        """Take the residual for uncertain by so much in each equation, shape (N,)."""
+        if isinstance(self.products, ByDifferences):
+            self.products = self.products.over(noise)
 
     def __call__(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam) at a point, dense or sparse."""

@@ -15,7 +15,7 @@ from scipy.linalg.blas import dasum, dscal
 from continuation.arguments.checks import instance_with, real_vector
 from continuation.arrays import Array, Matrix, finite, largest
 from continuation.counts import Counts
-from continuation.evaluation.derivatives import check_derivative, from_residual, given_pattern
+from continuation.evaluation.derivatives import Derivative, check_derivative, from_residual, given_pattern
 from continuation.evaluation.errors import EvaluationError, NotFiniteError, SingularPointError, unevaluated
 from continuation.evaluation.noise import noise_along
 from continuation.evaluation.pattern import Pattern, generic
@@ -222,15 +222,23 @@ class Evaluator:
 
         `w`, of shape (N + 1,): A way ahead on which H may change. `residual` is H(u).
         """
+        self.noise = None
         terms = self.round_off(u, residual)
         try:
             noise = noise_along(self.residual, u, w, residual)
         except EvaluationError:
             return terms
-        self.noise = np.where(noise > NOT_OF_POINT * terms, noise, 0.0)
-        if not self.noise.any():
-            self.noise = None
+        self.noisy(np.where(noise > NOT_OF_POINT * terms, noise, 0.0))
         return np.maximum(terms / POINT_ULPS, noise)
+
+    def noisy(self, noise: Array) -> None:
+        """Take the equations for uncertain by so much, shape (N,); by round-off alone where that is nothing.
+
+        Differences, where derivatives are made of these, are taken over steps that are the longer for it.
+        """
+        self.noise = noise if noise.any() else None
+        if self.noise is not None and isinstance(self._derivative, Derivative):
+            self._derivative.know(self.noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
@@ -241,6 +249,8 @@ class Evaluator:
             products = None if self._differential is None else given(self._differential)
             derivative = from_residual(self.called, start, self._sparsity(u.size - 1), self.counts.notes, products)
             self.methods.update(derivative.products.references)
+            if self.noise is not None:
+                derivative.know(self.noise)
             self._derivative = derivative
         return self._derivative
 

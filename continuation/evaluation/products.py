@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
-from attrs import frozen
+from attrs import evolve, frozen
 
 from continuation.arrays import Array
 from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
@@ -189,13 +189,21 @@ class ByDifferences:
     """Central differences, about eight to ten digits.
 
     `u0`, of shape (N + 1,): Where the steps were found. `steps`, of shape (N + 1,): Of each component, beside its size.
+    `usual`, of shape (N,): How much each equation changes there, for a move of all components by their sizes.
     """
 
     u0: Array
     steps: Array
+    usual: Array
     name: str = "differences"
     agreement: float = 1e-3
     references: tuple[str, ...] = ()
+
+    def over(self, noise: Array) -> ByDifferences:
+        """The same over steps in which noise of the equations, shape (N,), and curvature count about alike."""
+        known = self.usual > 0.0
+        least = float(np.cbrt((noise[known] / self.usual[known]).max(initial=0.0)))
+        return evolve(self, steps=np.maximum(self.steps, min(least, float(DIFFERENCE_STEPS[0]))))
 
     @property
     def even(self) -> Array:
@@ -241,4 +249,4 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None, rows: Any 
         changes = _trials(residual, u0, np.where(own, size, 0.0), usual)[1].T
         seen = changes.sum(axis=0)[None] if rows is None else rows[own] @ changes
         steps[own] = DIFFERENCE_STEPS[_best(seen)]
-    return ByDifferences(u0, steps)
+    return ByDifferences(u0, steps, usual)

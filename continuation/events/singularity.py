@@ -273,12 +273,13 @@ def branch_point_near(
                 # Several ranks are lost: no border of one column and two rows makes that regular.
                 return None
             if halted:
-                # A regular zero, from so near that the first increments did not halve: the next one is round-off.
-                before = newton.size
+                # From near a regular zero the first increments may not halve; the next one is round-off. Where it is
+                # not, the zero is a multiple one: branches touch there, or more than two cross.
                 newton.run(increment, measure, lambda size: True)
-                if newton.size < before:
-                    u = newton.x[:-1]
-                    here = at(u)
+                if newton.size > HALTED[0]:
+                    return None
+                u = newton.x[:-1]
+                here = at(u)
             found = directions(scaled, here, u, heading / extent)
     except (ArithmeticError, np.linalg.LinAlgError, RuntimeError):
         return None

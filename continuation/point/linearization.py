@@ -99,6 +99,11 @@ class Linearization:
         """The same for estimates, and for iterations that measure their own residual: see `CountedSystem`."""
         return self._completed(self.anchor.system.approximate(r, 0.0), rho, border)
 
+    def blur(self, noise: Array) -> float:
+        """The length of what noise of the equations, shape (N,), makes of a correction, in two samples of its signs."""
+        samples = (self.approximate(signs * noise) for signs in (1.0, np.sign(generic_vector(noise.size))))
+        return max(norm(self.weights, sample) for sample in samples)
+
     def _completed(self, z: Array, rho: float, border: Array | None) -> Array:
         row = self.border if border is None else border
         along = dot(row, self.tangent)

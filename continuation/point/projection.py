@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from attrs import define, evolve, field
+from attrs import Factory, define, evolve, field
 
 from continuation.arrays import Array, dot, generic_vector
 from continuation.contraction import Contraction, Iteration
@@ -84,14 +84,17 @@ class PathSolver:
     max_step: MaxStep | None = None
     straight: MaxStep | None = None
     room: MaxStep | None = None
-    noted: str = field(default="", init=False)
-    """What is said of noise at the end of a path."""
+    asked: float = field(default=Factory(lambda solver: solver.tolerance.relative, takes_self=True), init=False)
 
     def noisy(self, least: float) -> None:
-        """Raise the tolerance to the `least` that noise in H allows."""
-        if least > self.tolerance.relative:
-            self.noted = f" The residual is noisy: the tolerance was raised to {least:.0e}."
-            self.tolerance = evolve(self.tolerance, relative=least)
+        """Raise the tolerance that was asked for to the `least` that noise in H allows."""
+        self.tolerance = evolve(self.tolerance, relative=max(self.asked, least))
+
+    @property
+    def noted(self) -> str:
+        """What is said of noise at the end of a path."""
+        least = self.tolerance.relative
+        return f" The residual is noisy: the tolerance was raised to {least:.0e}." if least > self.asked else ""
 
     def project(self, near: Linearization, guess: Array, border: Array) -> tuple[Array, Anchor]:
         """Bring a guess onto the path, to round-off, along the hyperplane orthogonal to `border`.
@@ -111,7 +114,7 @@ class PathSolver:
             If nothing helps.
         """
         evaluator = self.evaluator
-        settled = self._chord_steps(guess, lambda r: near.approximate(r, 0.0, border), near, SMALL_INCREMENT)
+        settled = self.settled(near, guess, border)
         if settled is not None:
             return settled, near.anchor
         u = guess
@@ -122,6 +125,10 @@ class PathSolver:
                 return settled, Anchor(u, border, system)
             u = u + system.solve(-evaluator.residual(u), 0.0)
         raise EvaluationError("a point of the path could not be settled")
+
+    def settled(self, near: Linearization, guess: Array, border: Array) -> Array | None:
+        """The same with the factorisation from nearby alone; None where its chord steps do not settle."""
+        return self._chord_steps(guess, lambda r: near.approximate(r, 0.0, border), near, SMALL_INCREMENT)
 
     def _chord_steps(
         self, guess: Array, solve: Callable[[Array], Array], near: Linearization, enough: float

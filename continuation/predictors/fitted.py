@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -22,12 +23,20 @@ CHORD = Contraction(iterations=30, ratio=HALVING)
 FOUND_BESIDE = 1e-8
 """The last increment of a point beside its distance: next to round-off, whatever the factorisation."""
 
+SEEN = 8.0
+"""What noise makes of the largest of many increments, in what it makes of one point: each is a difference of two."""
+
 ROUNDS = 40
 """Changes of the range, by four or to half of what the fit says: 4^-40 of a range is none."""
 
 
 def fitted(
-    evaluator: Evaluator, point: Linearization, order: int, first: float, reach: Callable[[Array], float]
+    evaluator: Evaluator,
+    point: Linearization,
+    order: int,
+    first: float,
+    reach: Callable[[Array], float],
+    accuracy: float,
 ) -> Array:
     """Coefficients of the path at a point, shape (k + 1, N + 1), k at most `order` and `FITTED_ORDER`.
 
@@ -44,23 +53,31 @@ def fitted(
         The range that is tried first.
     reach : callable
         How far a series is of use.
+    accuracy : float
+        In the metric, for that use. Noise in H leaves points of the path uncertain, and the highest of k powers doubles
+        that k times: with noise the order is lower.
 
     Raises
     ------
     EvaluationError
         If there is no range in which the path is found.
     """
-    r, barrier, last = first, np.inf, None
+    r, barrier, last, blur = first, np.inf, None, 0.0
+    order = min(order, FITTED_ORDER)
+    if evaluator.noise is not None:
+        blur = point.blur(evaluator.noise)
+        order = max(min(order, int(math.log2(accuracy / blur))), 2) if 0.0 < blur < accuracy else 2
     for _ in range(ROUNDS):
-        found = _through(evaluator, point, min(order, FITTED_ORDER), r)
+        found = _through(evaluator, point, order, r, blur)
         if found is None:
             if last is not None:
                 break
             barrier, r = r, 0.25 * r
             continue
         last, far = found, reach(found)
-        following = min(0.5 * far, 0.5 * barrier)
-        if 0.25 * far <= r <= far or 0.5 * following <= r <= following:
+        # With noise the longest range will do: in shorter ones it is noise that says how far the series is of use.
+        following = 0.5 * r if blur else min(0.5 * far, 0.5 * barrier)
+        if (r <= 4.0 * far) if blur else (0.25 * far <= r <= far or 0.5 * following <= r <= following):
             break
         r = following
     if last is None:
@@ -68,8 +85,8 @@ def fitted(
     return last
 
 
-def _through(evaluator: Evaluator, point: Linearization, order: int, r: float) -> Array | None:
-    """The polynomial through points at Chebyshev's nodes within r; None where one of them is not found."""
+def _through(evaluator: Evaluator, point: Linearization, order: int, r: float, blur: float) -> Array | None:
+    """The polynomial through points at Chebyshev's nodes within r, known to a blur; None where one is not found."""
     count = order - order % 2  # an even number: none of them is the point itself
     nodes = np.cos((np.arange(count) + 0.5) * (np.pi / count))
     bends = np.empty((count, point.u.size))
@@ -91,7 +108,7 @@ def _through(evaluator: Evaluator, point: Linearization, order: int, r: float) -
             converged = chord.run(increment, size, done)
         except EvaluationError:
             return None
-        if not (converged or chord.size <= FOUND_BESIDE * abs(s)):
+        if not (converged or chord.size <= max(FOUND_BESIDE * abs(s), SEEN * blur)):
             return None
         bend = bends[k] = (chord.x - point.u - s * point.tangent) / s**2
     coefficients = np.empty((count + 2, point.u.size))

@@ -147,13 +147,12 @@ class Taylor:
             lately = [knot.arclength for knot in history[-2:]]
             # One is the metric's unit: about how far a path goes.
             first = 0.5 * (max(lately) - min(lately)) or 1.0
-            coefficients = fitted(evaluator, point, order, first, partial(self._reach, point))
+            coefficients = fitted(evaluator, point, order, first, partial(self._reach, point), self.accuracy)
         series = Series(coefficients, self.safety * self._reach(point, coefficients))
         if not self.rational:
             return series
         rational = best(coefficients, point.weights, self.accuracy, series.reach, self.safety)
         return series if rational is None else rational
-
 
     def _reach(self, point: Linearization, coefficients: Array) -> float:
         return series_reach(coefficients, self.accuracy, point.weights)

@@ -27,6 +27,7 @@ from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
+from continuation.step.degenerate import ROUND_OFF, degenerate_point
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
@@ -74,10 +75,6 @@ SMALLEST = 2.0**-6
 AT_END = 1e-6
 """Of an arc: so near to its end a crossing is at the end, which is known there to half of the digits only."""
 
-PASSES, PLACE_ON_ARC = 60, 1e-12
-"""A point where H' loses several ranks is no regular zero of a system of ours: its place on the arc is iterated, to the
-second of an arc, each time by a part of what was off."""
-
 SHORTEST = 0.1
 """The least factor of a step: a place next to the arc's beginning may be round-off, and would end the path at once."""
 
@@ -101,10 +98,15 @@ class Crossed:
 
 @frozen(eq=False)
 class _Seen:
-    """A branch point on an arc or ahead of it, and the changes of eigenvalues that are told along the arc."""
+    """A branch point on an arc or ahead of it, and the changes of eigenvalues that are told along the arc.
 
-    point: SimpleBranchPoint
+    `simple`: None for a degenerate one. `odd`: Whether the determinant's sign changes there.
+    """
+
+    u: Array
     told: dict[float, list[float]]
+    simple: SimpleBranchPoint | None = None
+    odd: bool = True
 
 
 @frozen(eq=False)
@@ -138,14 +140,14 @@ class Crossings:
         if seen is None and flipped and self._derivative(arc.b.u) is None:
             # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
             found = self._found(arc, arc.segment.at(0.5))
-            seen = None if found is None else _Seen(found, {})
+            seen = None if found is None else _Seen(found.u, {}, found)
         if isinstance(seen, _Seen):
             return self._over(arc, attempt, seen, flipped, ends)
         return _rejected(attempt, Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
 
     def _seen(
         self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
-    ) -> _Seen | Crossed | Rejected | None:
+    ) -> _Seen | Rejected | None:
         """The first branch point that the eigenvalues along an arc lead to; None on a regular arc."""
         told: dict[float, list[float]] = {}
         found, before, left = None, 0.0, [1.0]
@@ -156,9 +158,7 @@ class Crossings:
             # Where the path ends with the arc, only what lies on it counts.
             least = 0.0 if ends and t == 1.0 else left[-2] / SPAN
             if left[-1] < least and found is None:
-                found = self._found(arc, prediction(t / there[-1] * arc.length))
-                if found is None and there[-1] > t and self._several(arc, flipped, index):
-                    return self._together(arc, prediction, t / there[-1])
+                found = self._branch_point(arc, prediction, told, t, t / there[-1], index)
                 # What comes near to singular at the end, and goes straight, may do so behind it.
                 if found is None and (t < 1.0 or there[-1] >= 1.0):
                     shorter = min(0.8 * t * MOST / there[-1], STEP_BACK)
@@ -174,8 +174,8 @@ class Crossings:
                     return _rejected(attempt, Rejection.ORIENTATION, 0.5)
             threes = zip(told, left, left[1:], left[2:])
             for t in [t for t, first, between, last in threes if first + last > SPAN * between][:1]:
-                found = self._found(arc, prediction(t * arc.length))
-        return None if found is None else _Seen(found, told)
+                found = self._branch_point(arc, prediction, told, t, t, index)
+        return found
 
     def _passed(self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], index: int) -> float | None:
         """Where near its beginning H' is nearly singular on an arc along which it becomes more regular, if anywhere.
@@ -195,24 +195,26 @@ class Crossings:
 
     def _over(self, arc: Arc, attempt: Arrival, seen: _Seen, flipped: bool, ends: bool) -> Crossed | Rejected | None:
         """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
-        s = position(arc, seen.point.u) / arc.length
+        s = position(arc, seen.u) / arc.length
         if ends and 1.0 < s <= 1.0 + AT_END:
             return None
         if not ends and abs(s - 1.0) < NEAR_CROSSING:
             return _rejected(attempt, Rejection.AT_CROSSING, STEP_BACK)
-        if flipped != (s < 1.0):
+        if flipped != (s < 1.0 and seen.odd):
             # Over a crossing the arc's end is on the other branch, or before it beyond another one.
             over = BEST * s
             return _rejected(attempt, Rejection.OTHER_BRANCH, over if over < STEP_BACK else 0.5 * min(s, 1.0))
-        if not all(_as_expected(t, there, s) for t, there in seen.told.items()):
+        if seen.simple is not None and not all(_as_expected(t, there, s) for t, there in seen.told.items()):
             others = [t / mu for t, there in seen.told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
             # Where another eigenvalue has grown too much the arc is only too long.
             nearest = min(others, default=1.0 if any(told and told[0] < LOWEST for told in seen.told.values()) else 0.0)
             return _rejected(attempt, Rejection.CROSSINGS, min(0.5 * (s + nearest), STEP_BACK))
         if s > 1.0:
             return None
-        rays = seen.point.rays(arc.segment.derivative(s), arc.a.weights)
-        return Crossed(evolve(arc.a, u=seen.point.u, tangent=rays[1]), rays)
+        tangent = arc.segment.derivative(s)
+        rays = None if seen.simple is None else seen.simple.rays(tangent, arc.a.weights)
+        onward = tangent / norm(arc.a.weights, tangent) if rays is None else rays[1]
+        return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
 
     def _blurred(self, arc: Arc, index: int) -> bool:
         """Whether no z can be told: within the tolerance of the arc's beginning, where all are one, some are not.
@@ -234,52 +236,50 @@ class Crossings:
         except EvaluationError:
             return None
 
-    def _told(self, arc: Arc, u: Array, t: float, index: int) -> list[float]:
+    def _told(self, arc: Arc, u: Array, t: float, index: int, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
         """The real 1 - z at a point that are not as on a regular arc, in order; none where H' is not to be had."""
-        apply, tangent = self._derivative(u), arc.segment.derivative(t)
-        border = arc.a.weights * tangent / norm(arc.a.weights, tangent)
-        return [] if apply is None else changes(arc.a, apply, border, TOLD, LOWEST, turned=index)
+        apply = self._derivative(u)
+        return [] if apply is None else changes(arc.a, apply, self._border(arc, t), TOLD, LOWEST, accuracy, index)
 
-    def _several(self, arc: Arc, flipped: bool, index: int) -> bool:
-        """Whether H' loses several ranks where it does so first on the arc, as the determinant's sign says, too.
+    def _border(self, arc: Arc, t: float) -> Array:
+        """The arc's tangent at t, in the dual metric."""
+        tangent, weights = arc.segment.derivative(t), arc.a.weights
+        border: Array = weights * tangent / norm(weights, tangent)
+        return border
 
-        A Krylov space shows one eigenvalue for all of them.
-        """
-        told, apply = self._told(arc, arc.b.u, 1.0, index), self._derivative(arc.b.u)
-        lost = multiplicity(arc.a, apply, arc.b.border, 1.0 / told[-1]) if apply is not None and told else 1
-        return lost > 1 and flipped == bool(lost % 2)
+    def _branch_point(
+        self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], t: float, place: float, index: int
+    ) -> _Seen | None:
+        """The branch point to which a look at t leads: a simple one about at a place, or a degenerate one."""
+        u, lost = prediction(t * arc.length), 1
+        if (apply := self._derivative(u)) is not None and (exactly := self._told(arc, u, t, index, ROUND_OFF)):
+            lost = max(multiplicity(arc.a, apply, self._border(arc, t), 1.0 / exactly[-1]), 1)
+        if lost == 1 and (found := self._found(arc, prediction(place * arc.length))) is not None:
+            return _Seen(found.u, told, found)
 
-    def _together(self, arc: Arc, prediction: Prediction, t: float) -> Crossed | Rejected:
-        """Several crossings in one place: a point where H' loses several ranks.
+        def z_at(there: float, v: Array) -> float:
+            seen = self._told(arc, v, min(there, 1.0), index, ROUND_OFF)
+            return 1.0 - min(seen, key=lambda mu: abs(mu - 1.0), default=np.nan)
 
-        Which branch goes on is not asked there: the path passes if the determinant's sign agrees with their number, and
-        the prediction was good, as it is along a branch that symmetry keeps.
-        """
-        moved, u = np.inf, arc.a.u
-        for _ in range(PASSES):
-            u, _ = self.solver.project(arc.a, prediction(t * arc.length), arc.a.border)
-            if (apply := self._derivative(u)) is None:
-                break
-            found = changes(arc.a, apply, arc.a.border, 0.5, -np.inf, accuracy=PLACE_ON_ARC)
-            if not found:
-                break
-            before, t = t, t / min(found, key=lambda mu: abs(mu - 1.0))
-            last, moved = moved, abs(t - before)
-            # What no longer falls is round-off, which is more than that where zero is far away.
-            if moved <= PLACE_ON_ARC or moved >= last:
-                break
-        tangent = arc.segment.derivative(t)
-        return Crossed(evolve(arc.a, u=u, tangent=tangent / norm(arc.a.weights, tangent)), None)
+        at = degenerate_point(self.solver, arc, prediction, t, z_at, lost)
+        return _Seen(at[0], told, odd=at[1]) if at is not None and self._vanishes(at[0], self._rows(arc)) else None
+
+    def _rows(self, arc: Arc) -> Array:
+        """What the rows of H' are made of over the arc."""
+        return row_sizes(self.solver.evaluator, 1.0 / np.sqrt(arc.a.weights), (arc.a.u, arc.b.u))
+
+    def _vanishes(self, u: Array, rows: Array) -> bool:
+        """Whether H at a point is no more than round-off."""
+        evaluator = self.solver.evaluator
+        return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
     def _found(self, arc: Arc, guess: Array) -> SimpleBranchPoint | None:
         """The simple branch point on or ahead of the arc that Newton's method finds from a guess."""
-        a, evaluator = arc.a, self.solver.evaluator
+        a = arc.a
         try:
-            rows = row_sizes(evaluator, 1.0 / np.sqrt(a.weights), (a.u, arc.b.u))
-            found = branch_point_near(evaluator, guess, arc.b.u - a.u, a.weights, rows)
-            if found is None or (
-                largest(evaluator.residual(found.u) / rows) > ON_PATH and far_from_round_off(evaluator, found.u)
-            ):
+            rows = self._rows(arc)
+            found = branch_point_near(self.solver.evaluator, guess, arc.b.u - a.u, a.weights, rows)
+            if found is None or not self._vanishes(found.u, rows):
                 return None
         except EvaluationError:
             return None

@@ -119,8 +119,9 @@ def measured(
     homotopy = solver.evaluator.homotopy
     sizes = homotopy.extents if offers(homotopy, SupportsExtents) else None
     extent, blur = initial_extent(solver.evaluator, point, target, residual, farthest, room, sizes)
-    if solver.evaluator.noise is not None:
-        solver.noisy(min(CLEAR_OF_NOISE * median(blur / extent), COARSEST))
+    noisy = solver.evaluator.noise is not None
+    least = max(CLEAR_OF_NOISE * median(blur / extent), solver.tolerance.relative)
+    solver.noisy(min(least, COARSEST) if noisy else 0.0)
     extent = np.maximum(extent, CLEAR_OF_NOISE * blur / solver.tolerance.relative)
     if isinstance(metric, SupportsExtent):
         return point.with_weights(metric.of_extent(extent)), extent

@@ -289,7 +289,7 @@ class Tracer:
     def _restored(self, state: State) -> Linearization:
         """The point of a stored state: its factorisation is made anew from the same numbers, its tangent is kept."""
         at, border = state.anchor
-        self._evaluator.noise = state.noise if state.noise.size else None
+        self._evaluator.noisy(state.noise)
         self._solver.noisy(state.tolerance)
         if self._pieces is not None:
             if len(state.signs) != self._pieces.values(at).size:

@@ -79,16 +79,18 @@ def test_ctrl_c_gives_what_was_found_and_the_diagram_goes_on(tmp_path, whole, sh
     assert not part.complete
     assert "interrupted" in part.message
     assert pickle.loads(pickle.dumps(stopped.value)).diagram.message == part.message
-    kept = 0
+    kept = points = 0
     if file.exists():
         with open_archive(file) as archive:
             kept = len(archive)
+            points = sum(path.u.shape[0] for path in archive)
             for stored, path in zip(archive, part.paths):
                 np.testing.assert_array_equal(stored.u, path.u)
     assert len(part) - 1 <= kept <= len(part)
     again = Stopping()
     same(diagram(again, box=BOX, archive=file, resume=True, keep=keep), found)
-    assert again.calls < (1.05 - 0.8 * share * (kept > 0)) * calls
+    # What is kept is not traced again; what was under way is, and kernels of BLAS differ in its share.
+    assert again.calls < (1.1 - 0.8 * points / sum(len(path.steps) for path in found.paths)) * calls
     with open_archive(file) as archive:
         assert len(archive) == len(found)
 

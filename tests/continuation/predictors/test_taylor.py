@@ -260,7 +260,7 @@ def test_coefficients_through_points_are_those_of_jets():
     exact = coefficients_at(evaluator, point, 9)
     reach = float(series_reach(exact, 1e-5, point.weights))
     for first in (1e-6, 1.0, 1e6):
-        found = fitted(evaluator, point, 9, first, lambda c: series_reach(c, 1e-5, point.weights))
+        found = fitted(evaluator, point, 9, first, lambda c: series_reach(c, 1e-5, point.weights), 1e-5)
         # Beside the path, as far as the series is used.
         for s in (0.3 * reach, -0.3 * reach):
             np.testing.assert_allclose(Series(found, reach)(s), Series(exact, reach)(s), rtol=0, atol=1e-6)

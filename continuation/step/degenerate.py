@@ -1,0 +1,127 @@
+"""Degenerate branch points: where branches touch, more than two cross, or H' loses several ranks at once.
+
+There z, the real eigenvalue of M_a^-1 M along an arc, goes like (1 - t / s)^m with m > 1, or several eigenvalues vanish
+together, of which a Krylov space shows one. z over its slope has a simple zero at s whatever m is, and the slope 1 / m
+there: the secant method finds both. The path goes straight on, as it does along a branch that symmetry keeps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from continuation.arrays import Array
+from continuation.contraction import MONOTONE
+from continuation.evaluation.errors import EvaluationError
+from continuation.evaluation.noise import allowed_along
+from continuation.metric import norm
+from continuation.point.arc import Arc
+from continuation.point.projection import PathSolver
+from continuation.predictors import Prediction
+
+PASSES = 20
+"""Of the secant method; four or five are usual."""
+
+BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
+"""The step of the slope of z, of the way that is left; the order that is assumed first, so that a double zero is not
+met at once; and the order of a zero beyond which it is no simple one."""
+
+BLURRED, ROUND_OFF = 0.05, 1e-12
+"""What round-off in H may make of z where it is said to vanish: more, and nothing is known of it; and what round-off in
+the products that tell z does."""
+
+FARTHEST = 3.0
+"""So far ahead, in arcs, it is looked for."""
+
+
+def degenerate_point(
+    solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
+) -> tuple[Array, bool] | None:
+    """The degenerate branch point to which a look at t leads; None where there is none, as at a simple branch point.
+
+    Parameters
+    ----------
+    solver : PathSolver
+    arc : Arc
+    prediction : Prediction
+        Of the arc.
+    t : float
+        Where on the arc z has fallen.
+    z_at : callable
+        From a place on the arc and a point there to z; NaN where it is not told.
+    lost : int
+        How many eigenvalues are like z at t.
+
+    Returns
+    -------
+    u : ndarray, shape (N + 1,)
+        The point, as near as round-off in H allows.
+    odd : bool
+        Whether the determinant's sign changes there.
+    """
+
+    def beside(place: float) -> float:
+        return z_at(place, prediction(place * arc.length))
+
+    def on_path(place: float) -> Array:
+        u = prediction(place * arc.length)
+        if lost > 1:
+            # The symmetry that makes eigenvalues vanish together keeps the prediction from what they would magnify.
+            settled = solver.settled(arc.a, u, arc.a.border)
+            return u if settled is None else settled
+        return solver.project(arc.a, u, arc.a.border)[0]
+
+    try:
+        _, left = _left(beside, t, FIRST_ORDER)
+        ahead = t - FIRST_ORDER * left
+        if not 0.0 < ahead < FARTHEST:
+            return None
+        _, beyond = _left(beside, ahead, FIRST_ORDER)
+        order = (ahead - t) / (beyond - left)
+        if not (order > SIMPLE_ORDER or lost > 1):
+            return None
+        # From here on the path: beside a degenerate point a place on it may cost factorisations.
+        t, before, last = ahead - order * beyond, 0.0, np.inf
+        for _ in range(PASSES):
+            z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
+            u = on_path(t)
+            if abs(z) <= max(ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
+                return u, bool(round(order) * lost % 2)
+            if not abs(left) < MONOTONE * abs(last):
+                return None
+            if before:
+                order = (t - before) / (left - last)
+            if before and not (order > SIMPLE_ORDER or lost > 1):
+                return None
+            before, last, t = t, left, t - order * left
+            if not 0.0 < t < FARTHEST:
+                return None
+    except EvaluationError:
+        pass
+    return None
+
+
+def _left(look: Callable[[float], float], t: float, order: float) -> tuple[float, float]:
+    """The pair of z at a place and z over its slope there, by a difference towards the beginning."""
+    z = look(t)
+    step = -BESIDE * t * abs(z) ** (1.0 / order)
+    change = look(t + step) - z
+    return z, z * step / change if change else np.inf
+
+
+def _blur(solver: PathSolver, arc: Arc, u: Array, z: float, look: Callable[[Array], float]) -> float:
+    """What round-off in H makes of z: its change as far beside the path as H stays round-off; 0 if that is too much.
+
+    Near a degenerate point that is far, since H' has nearly lost its rank.
+    """
+    residual = solver.evaluator.residual
+    r = residual(u)
+    allowed = np.abs(r) + solver.evaluator.round_off(u, r)
+    way = arc.a.approximate(allowed)
+    size = norm(arc.a.weights, way)
+    if not size > 0.0:
+        return 0.0
+    blur = abs(look(u + allowed_along(residual, u, way / size, 2.0 * allowed, size) * way / size) - z)
+    return blur if blur <= BLURRED else 0.0

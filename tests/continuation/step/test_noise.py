@@ -1,0 +1,52 @@
+"""Residuals with noise: its level is measured at the start and where steps fail; the folds of the path are found."""
+
+import numpy as np
+import pytest
+
+from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status, from_functions, trace
+from continuation.archive import resume
+from continuation.budget import Budget
+
+
+def cubic(level, seed=0):
+    """The path lam = t^3 - 3 t, with folds at lam = 2 and -2, in three unknowns; t decides how much noise there is."""
+    generator = np.random.default_rng(seed)
+
+    def residual(y, lam):
+        t, lam = float(y[0]), float(lam)
+        exact = np.array([t**3 - 3.0 * t - lam, float(y[1]) - t * t, float(y[2]) - np.sin(t) * float(y[1])])
+        return exact + level(t) * generator.uniform(-1.0, 1.0, 3)
+
+    t = -2.5
+    return from_functions(residual, start=([t, t * t, np.sin(t) * t * t], t**3 - 3.0 * t), target=8.125)
+
+
+def growing(t):
+    return 10.0 ** (-14.0 + 8.0 * min(max((t + 2.5) / 4.0, 0.0), 1.0))
+
+
+@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE, SERIES], ids=lambda preset: preset.name)
+@pytest.mark.parametrize("level", [1e-10, 1e-8, 1e-6])
+def test_both_folds_are_found_in_at_most_twice_the_steps(preset, level):
+    clean, path = trace(cubic(lambda t: 0.0), preset=preset), trace(cubic(lambda t: level), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert [point.lam for point in path.turning_points] == pytest.approx([2.0, -2.0], abs=level**0.5)
+    assert len(path) <= 2 * len(clean) + 10
+
+
+@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+def test_noise_that_grows_along_the_path_is_noticed_and_said(preset):
+    path = trace(cubic(growing), preset=preset)
+    assert path.status is Status.REACHED_TARGET
+    assert [point.lam for point in path.turning_points] == pytest.approx([2.0, -2.0], abs=1e-3)
+    assert "The residual is noisy: the tolerance was raised to" in path.message
+    assert len(path) < 150  # it took 1,300 steps, and found one fold
+
+
+def test_a_trace_that_is_resumed_knows_the_noise(tmp_path):
+    file = tmp_path / "noisy.h5"
+    cut = trace(cubic(growing), archive=file, budget=Budget(steps=20))
+    assert "noisy" in cut.message
+    path = resume(file, cubic(growing), budget=Budget())
+    assert path.status is Status.REACHED_TARGET
+    assert "noisy" in path.message
