@@ -23,7 +23,7 @@ CHORD = Contraction(iterations=30, ratio=HALVING)
 FOUND_BESIDE = 1e-8
 """The last increment of a point beside its distance: next to round-off, whatever the factorisation."""
 
-SEEN = 8.0
+NOISE_SEEN = 8.0
 """What noise makes of the largest of many increments, in what it makes of one point: each is a difference of two."""
 
 ROUNDS = 40
@@ -108,7 +108,7 @@ def _through(evaluator: Evaluator, point: Linearization, order: int, r: float, b
             converged = chord.run(increment, size, done)
         except EvaluationError:
             return None
-        if not (converged or chord.size <= max(FOUND_BESIDE * abs(s), SEEN * blur)):
+        if not (converged or chord.size <= max(FOUND_BESIDE * abs(s), NOISE_SEEN * blur)):
             return None
         bend = bends[k] = (chord.x - point.u - s * point.tangent) / s**2
     coefficients = np.empty((count + 2, point.u.size))

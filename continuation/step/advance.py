@@ -176,7 +176,8 @@ class Advance:
             asked = state.index > 0 and len(rejected) in NOISE_ASKED
             noisy = self._noisier(point, state, prediction(failed.h)) if asked else None
             if noisy is not None:
-                state, h = noisy, min(state.h, prediction.reach)
+                h = min(state.h, prediction.reach) if noisy.tolerance > state.tolerance else h
+                state = noisy
             verdict = budget_spent(self.spent(), state, rejected)
             verdict = verdict or no_step_left(h, controller.bounds.minimum, rejected)
             if verdict is not None:

@@ -10,6 +10,7 @@ point s about as 1 - t / s does, and no other comes to zero. Any other arc is to
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -27,7 +28,7 @@ from continuation.point.projection import PathSolver
 from continuation.point.segment import CUBIC
 from continuation.predictors import Prediction
 from continuation.rejection import Rejected, Rejection
-from continuation.step.degenerate import ROUND_OFF, degenerate_point
+from continuation.step.degenerate import Z_ROUND_OFF, degenerate_point
 from continuation.step.stepper import Arrival
 
 SPAN = 3.0
@@ -97,16 +98,21 @@ class Crossed:
 
 
 @frozen(eq=False)
-class _Seen:
-    """A branch point on an arc or ahead of it, and the changes of eigenvalues that are told along the arc.
+class _BranchPoint:
+    """A branch point on an arc or ahead of it.
 
-    `simple`: None for a degenerate one. `odd`: Whether the determinant's sign changes there.
+    `simple`: None for a degenerate one. `order`: Of the zero of z. `odd`: Whether the determinant's sign changes there.
     """
 
     u: Array
-    told: dict[float, list[float]]
     simple: SimpleBranchPoint | None = None
+    order: float = 1.0
     odd: bool = True
+
+    def expected(self, t: float, s: float) -> float:
+        """What is told at t of an eigenvalue that vanishes at s."""
+        left = 1.0 - t / s
+        return 1.0 - math.copysign(abs(left) ** self.order, left if round(self.order) % 2 else 1.0)
 
 
 @frozen(eq=False)
@@ -134,22 +140,28 @@ class Crossings:
         index : int
             Of the step: each looks at H' with another first vector.
         """
-        seen = self._seen(arc, attempt, prediction, flipped, ends, index)
+        told: dict[float, list[float]] = {}
+        seen = self._seen(arc, attempt, prediction, told, flipped, ends, index)
         if isinstance(seen, Rejected) and not flipped and self._blurred(arc, index):
             return None
         if seen is None and flipped and self._derivative(arc.b.u) is None:
             # Of factorisations alone the sign is all that is known: it changes at a branch point, or the arc is none.
-            found = self._found(arc, arc.segment.at(0.5))
-            seen = None if found is None else _Seen(found.u, {}, found)
-        if isinstance(seen, _Seen):
-            return self._over(arc, attempt, seen, flipped, ends)
+            seen = self._found(arc, arc.segment.at(0.5))
+        if isinstance(seen, _BranchPoint):
+            return self._over(arc, attempt, seen, told, flipped, ends)
         return _rejected(attempt, Rejection.ORIENTATION, 0.5) if seen is None and flipped else seen
 
     def _seen(
-        self, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
-    ) -> _Seen | Rejected | None:
+        self,
+        arc: Arc,
+        attempt: Arrival,
+        prediction: Prediction,
+        told: dict[float, list[float]],
+        flipped: bool,
+        ends: bool,
+        index: int,
+    ) -> _BranchPoint | Rejected | None:
         """The first branch point that the eigenvalues along an arc lead to; None on a regular arc."""
-        told: dict[float, list[float]] = {}
         found, before, left = None, 0.0, [1.0]
         cubic = len(arc.segment.inside) <= CUBIC
         for k, t in enumerate(HALF if cubic else EIGHTHS):
@@ -193,7 +205,15 @@ class Crossings:
                     return place
         return None
 
-    def _over(self, arc: Arc, attempt: Arrival, seen: _Seen, flipped: bool, ends: bool) -> Crossed | Rejected | None:
+    def _over(
+        self,
+        arc: Arc,
+        attempt: Arrival,
+        seen: _BranchPoint,
+        told: dict[float, list[float]],
+        flipped: bool,
+        ends: bool,
+    ) -> Crossed | Rejected | None:
         """The branch point that was found, if the arc goes over it on its own branch; None if it ends before it."""
         s = position(arc, seen.u) / arc.length
         if ends and 1.0 < s <= 1.0 + AT_END:
@@ -204,10 +224,10 @@ class Crossings:
             # Over a crossing the arc's end is on the other branch, or before it beyond another one.
             over = BEST * s
             return _rejected(attempt, Rejection.OTHER_BRANCH, over if over < STEP_BACK else 0.5 * min(s, 1.0))
-        if seen.simple is not None and not all(_as_expected(t, there, s) for t, there in seen.told.items()):
-            others = [t / mu for t, there in seen.told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
+        if not all(_as_expected(there, seen.expected(t, s)) for t, there in told.items()):
+            others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
             # Where another eigenvalue has grown too much the arc is only too long.
-            nearest = min(others, default=1.0 if any(told and told[0] < LOWEST for told in seen.told.values()) else 0.0)
+            nearest = min(others, default=1.0 if any(there and there[0] < LOWEST for there in told.values()) else 0.0)
             return _rejected(attempt, Rejection.CROSSINGS, min(0.5 * (s + nearest), STEP_BACK))
         if s > 1.0:
             return None
@@ -249,20 +269,23 @@ class Crossings:
 
     def _branch_point(
         self, arc: Arc, prediction: Prediction, told: dict[float, list[float]], t: float, place: float, index: int
-    ) -> _Seen | None:
+    ) -> _BranchPoint | None:
         """The branch point to which a look at t leads: a simple one about at a place, or a degenerate one."""
         u, lost = prediction(t * arc.length), 1
-        if (apply := self._derivative(u)) is not None and (exactly := self._told(arc, u, t, index, ROUND_OFF)):
+        if (apply := self._derivative(u)) is not None and (exactly := self._told(arc, u, t, index, Z_ROUND_OFF)):
             lost = max(multiplicity(arc.a, apply, self._border(arc, t), 1.0 / exactly[-1]), 1)
-        if lost == 1 and (found := self._found(arc, prediction(place * arc.length))) is not None:
-            return _Seen(found.u, told, found)
+        found = self._found(arc, prediction(place * arc.length)) if lost == 1 else None
+        if found is None:
 
-        def z_at(there: float, v: Array) -> float:
-            seen = self._told(arc, v, min(there, 1.0), index, ROUND_OFF)
-            return 1.0 - min(seen, key=lambda mu: abs(mu - 1.0), default=np.nan)
+            def z_at(there: float, v: Array) -> float:
+                seen = self._told(arc, v, min(there, 1.0), index, Z_ROUND_OFF)
+                return 1.0 - min(seen, key=lambda mu: abs(mu - 1.0), default=np.nan)
 
-        at = degenerate_point(self.solver, arc, prediction, t, z_at, lost)
-        return _Seen(at[0], told, odd=at[1]) if at is not None and self._vanishes(at[0], self._rows(arc)) else None
+            at = degenerate_point(self.solver, arc, prediction, t, z_at, lost)
+            if at is None or not self._vanishes(at[0], self._rows(arc)):
+                return None
+            found = _BranchPoint(at[0], order=at[1], odd=bool(round(at[1]) * lost % 2))
+        return found
 
     def _rows(self, arc: Arc) -> Array:
         """What the rows of H' are made of over the arc."""
@@ -273,7 +296,7 @@ class Crossings:
         evaluator = self.solver.evaluator
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
-    def _found(self, arc: Arc, guess: Array) -> SimpleBranchPoint | None:
+    def _found(self, arc: Arc, guess: Array) -> _BranchPoint | None:
         """The simple branch point on or ahead of the arc that Newton's method finds from a guess."""
         a = arc.a
         try:
@@ -286,12 +309,11 @@ class Crossings:
         length = norm(a.weights, arc.b.u - a.u)
         at = position(arc, found.u) / arc.length
         off = norm(a.weights, found.u - arc.segment.at(at))
-        return found if 0.0 < at < AHEAD and off <= NEAR_ARC * max(at**4, 1.0) * length else None
+        return _BranchPoint(found.u, found) if 0.0 < at < AHEAD and off <= NEAR_ARC * max(at**4, 1.0) * length else None
 
 
-def _as_expected(t: float, told: list[float], s: float) -> bool:
-    """Whether the changes told at t are that of one eigenvalue which vanishes at s, and no other."""
-    expected = t / s
+def _as_expected(told: list[float], expected: float) -> bool:
+    """Whether the changes told at a place are that of one eigenvalue, as it is expected, and no other."""
     nearest = min(told, key=lambda mu: abs(mu - expected), default=min(expected, TOLD))
     others = [mu for mu in told if mu != nearest and not LOWEST < mu < 1.0 - NEAR_CROSSING]
     return not others and abs(nearest - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

@@ -21,14 +21,14 @@ from continuation.point.arc import Arc
 from continuation.point.projection import PathSolver
 from continuation.predictors import Prediction
 
-PASSES = 20
+SECANTS_OF_Z = 20
 """Of the secant method; four or five are usual."""
 
 BESIDE, FIRST_ORDER, SIMPLE_ORDER = 0.05, 1.8, 1.5
 """The step of the slope of z, of the way that is left; the order that is assumed first, so that a double zero is not
 met at once; and the order of a zero beyond which it is no simple one."""
 
-BLURRED, ROUND_OFF = 0.05, 1e-12
+BLURRED, Z_ROUND_OFF = 0.05, 1e-12
 """What round-off in H may make of z where it is said to vanish: more, and nothing is known of it; and what round-off in
 the products that tell z does."""
 
@@ -38,7 +38,7 @@ FARTHEST = 3.0
 
 def degenerate_point(
     solver: PathSolver, arc: Arc, prediction: Prediction, t: float, z_at: Callable[[float, Array], float], lost: int
-) -> tuple[Array, bool] | None:
+) -> tuple[Array, float] | None:
     """The degenerate branch point to which a look at t leads; None where there is none, as at a simple branch point.
 
     Parameters
@@ -58,8 +58,8 @@ def degenerate_point(
     -------
     u : ndarray, shape (N + 1,)
         The point, as near as round-off in H allows.
-    odd : bool
-        Whether the determinant's sign changes there.
+    order : float
+        Of the zero of z, about.
     """
 
     def beside(place: float) -> float:
@@ -84,11 +84,11 @@ def degenerate_point(
             return None
         # From here on the path: beside a degenerate point a place on it may cost factorisations.
         t, before, last = ahead - order * beyond, 0.0, np.inf
-        for _ in range(PASSES):
+        for _ in range(SECANTS_OF_Z):
             z, left = _left(lambda place: z_at(place, on_path(place)), t, order)
             u = on_path(t)
-            if abs(z) <= max(ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
-                return u, bool(round(order) * lost % 2)
+            if abs(z) <= max(Z_ROUND_OFF, _blur(solver, arc, u, z, partial(z_at, t))):
+                return u, order
             if not abs(left) < MONOTONE * abs(last):
                 return None
             if before:
