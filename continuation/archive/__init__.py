@@ -12,17 +12,14 @@ every netCDF-4 tool read it without this package.
 from continuation.archive.atomic import ArchiveError, ArchiveExistsError
 from continuation.archive.certificates import add_proof, recheck
 from continuation.archive.codec import SupportsArchive
-from continuation.archive.copies import merge
-from continuation.archive.export import export
 from continuation.archive.page import describe
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.recover import recover
 from continuation.archive.resume import resume
-from continuation.archive.rows import Limits
 from continuation.archive.schema import SCHEMA
 from continuation.archive.sweep import trace_many
 from continuation.archive.tables import Table
-from continuation.archive.writer import PathLog
+from continuation.archive.transfer import export, merge, recover
+from continuation.archive.writer import Limits, PathLog
 
 __all__ = [
     "SCHEMA",

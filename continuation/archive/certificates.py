@@ -17,12 +17,11 @@ from typing import Any
 import h5py
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError, as_file, beside, like, publish, short
+from continuation.archive.atomic import ArchiveError, as_file, beside, like, own, publish, short
 from continuation.archive.checks import DamageError, digest
 from continuation.archive.contents import FAULTS
-from continuation.archive.hdf5 import Allowance, StructureError, dataset, names, subgroup
+from continuation.archive.hdf5 import Allowance, StructureError, dataset, subgroup
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.recover import own
 from continuation.archive.resume import stored_homotopy
 from continuation.archive.trust import registry
 from continuation.certificate.cells import NAMES, Cells
@@ -52,7 +51,10 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
         If the file cannot be read or replaced, or has no such path.
     """
     name = File(os.path.realpath(as_file("file", file)))
-    with open_archive(name) as source, closing(own(source.contents, name)):
+    with (
+        open_archive(name) as source,
+        closing(own(name, source.contents.descriptor, source.attributes.get("process"))),
+    ):
         number = range(len(source))[path]
         with beside(name) as part:
             shutil.copyfile(name, part)
@@ -84,12 +86,9 @@ def read_cells(archive: Archive, path: int) -> Cells | None:
 
 
 def _read(root: Any, path: int, allowance: Allowance) -> Cells | None:
-    if GROUP not in names(root):
+    if GROUP not in set(root) or str(path) not in set(subgroup(root, GROUP)):
         return None
-    group = subgroup(root, GROUP)
-    if str(path) not in names(group):
-        return None
-    group, count = subgroup(group, str(path)), None
+    group, count = subgroup(subgroup(root, GROUP), str(path)), None
     columns: dict[str, Any] = {}
     for column in NAMES:
         # As wide as the first is, which may be wider than the path (`continuation.certificate.lifting`).

@@ -14,6 +14,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.archive.codec import UnstorableError, encode, order
+from continuation.archive.schema import SLOTS
 from continuation.archive.trust import UnknownError, decode
 from continuation.step.settings import Settings
 from continuation.step.state import State
@@ -147,6 +148,11 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
     parts = [json.dumps(tree).encode(), run, b"".join(np.ascontiguousarray(a).tobytes() for a in arrays.values())]
     body = b"\n".join(parts)
     return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
+
+
+def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
+    """The checkpoint in its slot of a new file, which is not the one that the next is written to."""
+    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
 
 
 def unpack(raw: bytes) -> Checkpoint | Foreign | None:

@@ -17,7 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from continuation.archive.checks import DamageError, digest
-from continuation.archive.hdf5 import Allowance, dataset, names
+from continuation.archive.hdf5 import Allowance, dataset
 
 GROUP = "problem"
 
@@ -63,7 +63,7 @@ def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, 
     if checked and zlib.crc32(description.encode(errors="replace")) != group.attrs["checksum"]:
         raise DamageError("the description of its problem is not what was written")
     arrays = {}
-    for name in names(group):
+    for name in group:
         found = dataset(group, name, None, None, allowance)
         lying: Literal["C", "F"] = "F" if found.attrs["order"] == "F" else "C"
         arrays[name] = np.asarray(found[()], order=lying)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from numbers import Integral
 from os import PathLike
 from types import TracebackType
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from continuation.archive.contents import Contents
 from continuation.archive.rows import Record, from_columns, record_of, row_columns
 from continuation.archive.schema import COUNT_NAMES
 from continuation.archive.tables import Table, dataframe, dataset, kept_whole, stored_path
-from continuation.archive.tables import events as events_of
 from continuation.arguments.checks import complain
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
@@ -25,6 +24,8 @@ from continuation.counts import Counts
 from continuation.path import Path
 from continuation.plot.html import archive_page
 from continuation.status import Status
+
+_T = TypeVar("_T")
 
 _AT_ONCE = 1 << 22
 """Numbers (of 8 bytes) that are read in one go when all paths are asked for: many short reads cost much more."""
@@ -126,43 +127,39 @@ class Archive(Sequence[Path]):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         index %= len(self)
         rows, row = self.rows(index), self.paths.block(slice(index, index + 1))
-        if not whole:
-            return self._path(index, row, None)
-        self._take(rows)
-        return self._path(index, row, self.points.block(rows))
-
-    def _take(self, rows: slice) -> None:
-        """Count the steps that are made of rows; `ArchiveError` if they are too many."""
-        try:
+        if whole:
             size = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
-            self.contents.allowance.take("the steps of the path", size)
-        except ValueError as error:
+            self._sensible(lambda: self.contents.allowance.take("the steps of the path", size))
+        return self._sensible(lambda: self._path(index, row, self.points.block(rows) if whole else None))
+
+    def _sensible(self, read: Callable[[], _T]) -> _T:
+        """What `read` makes of the file; `ArchiveError` if it cannot."""
+        try:
+            return read()
+        except (ValueError, LookupError) as error:
             raise self.contents.damaged(error) from error
 
     def _path(self, index: int, rows: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
         """A path of its row of the one table, and of its rows of the other if they are to be in memory."""
         steps: Any
         row = {name: column[0] for name, column in rows.items()}
-        try:
-            if points is not None:
-                steps, events = from_columns(points, self.event_names, self.layout.observed)
-            else:
-                steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
-            end_error, winding = float(row["end_error"]), int(row["winding_number"])
-            return Path(
-                steps,
-                events,
-                Status(int(row["status"])),
-                row["message"].decode(errors="replace"),
-                Counts(*(int(row[column]) for column in COUNT_NAMES.values())),
-                float(row["wall_time"]),
-                references=entries(str(self.attributes.get("references", ""))),
-                end_error=None if math.isnan(end_error) else end_error,
-                winding_number=winding or None,
-                labels=Labels.from_attributes(self.attributes),
-            )
-        except (ValueError, LookupError) as error:
-            raise self.contents.damaged(error) from error
+        if points is not None:
+            steps, events = from_columns(points, self.event_names, self.layout.observed)
+        else:
+            steps, events = stored_path(self, open_archive, self.file, index)
+        end_error = float(row["end_error"])
+        return Path(
+            steps,
+            events,
+            Status(int(row["status"])),
+            row["message"].decode(errors="replace"),
+            Counts(*(int(row[column]) for column in COUNT_NAMES.values())),
+            float(row["wall_time"]),
+            references=entries(str(self.attributes.get("references", ""))),
+            end_error=None if math.isnan(end_error) else end_error,
+            winding_number=int(row["winding_number"]) or None,
+            labels=Labels.from_attributes(self.attributes),
+        )
 
     def __iter__(self) -> Iterator[Path]:
         # In runs of paths: many short reads cost much more.
@@ -170,14 +167,13 @@ class Archive(Sequence[Path]):
         while stop < len(self):
             start, begin = stop, int(self._first_rows[stop])
             stop = max(start + 1, int(np.searchsorted(self._first_rows, begin + at_once, "right")) - 1)
-            paths, points = (
-                self.paths.block(slice(start, stop)),
-                self.points.block(slice(begin, self.rows(stop - 1).stop)),
-            )
+            paths = self.paths.block(slice(start, stop))
+            points = self.points.block(slice(begin, self.rows(stop - 1).stop))
             for k in range(start, stop):
                 rows = slice(self.rows(k).start - begin, self.rows(k).stop - begin)
                 row = {name: column[k - start : k - start + 1] for name, column in paths.items()}
-                yield self._path(k, row, {name: column[rows] for name, column in points.items()})
+                own = {name: column[rows] for name, column in points.items()}
+                yield self._sensible(partial(self._path, k, row, own))
 
     def __repr__(self) -> str:
         state = "" if self.closed_by_writer else ", not closed by its writer"
@@ -210,11 +206,7 @@ class Archive(Sequence[Path]):
         ArchiveError
             If the file says something that is no status.
         """
-        value = int(self.paths["status"][index])
-        try:
-            return Status(value)
-        except ValueError as error:
-            raise self.contents.damaged(error) from error
+        return self._sensible(lambda: Status(int(self.paths["status"][index])))
 
     # -- views ------------------------------------------------------------------------------------------------
 

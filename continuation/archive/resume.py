@@ -6,20 +6,20 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
+from functools import partial
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack, cast
 
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, is_held, short
-from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
+from continuation.archive.atomic import ArchiveError, as_file, check_new, is_held, own, short
+from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
 from continuation.archive.copies import share_of, write_copy
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.recover import kept, own
 from continuation.archive.schema import ACCEPTED
-from continuation.archive.store import Store
+from continuation.archive.store import Store, put
 from continuation.archive.tables import kept_whole, stored_path
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
@@ -106,7 +106,7 @@ def resume(
     with ExitStack() as stack:
         source = stack.enter_context(open_archive(name))
         if archive is None:
-            stack.enter_context(closing(own(source.contents, target)))
+            stack.enter_context(closing(own(target, source.contents.descriptor, source.attributes.get("process"))))
         elif not source.closed_by_writer and is_held(name):
             raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
@@ -127,8 +127,8 @@ def resume(
         tracer.path.steps[:] = before.steps[:written]
     else:
         with open_archive(store.file) as held:
-            tracer.path.steps = cast("Any", stored_path(held, open_archive, store.file, checkpoint.path))
-    log = PathLog.continued(store, rows, checkpoint, tracer, whole_path, source.attributes.get("identifier", ""))
+            tracer.path.steps = cast("Any", stored_path(held, open_archive, store.file, checkpoint.path)[0])
+    log = PathLog.continued(store, checkpoint, tracer, whole_path, source.attributes.get("identifier", ""))
     tracer.observers = (log, *observers)
     try:
         steps = iter(tracer)
@@ -251,7 +251,6 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
     share = share_of(source, last=checkpoint.path, points=rows)
-    with beside(target) as part:
-        store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
-        store.publish(target, replace=replace)
-        return store
+    slots = slot_of(checkpoint)
+    copy = partial(write_copy, [share], attributes=attributes, checkpoints=slots)
+    return put(target, copy, replace=replace, grows=True)

@@ -27,27 +27,20 @@ from continuation.archive.hdf5 import HEAD_BYTES, stated_length
 from continuation.archive.schema import EVENT_NAME, NAME, RESUME, SLOTS, Layout, build, text
 
 
-def create(target: File, *arguments: Any, **options: Any) -> Store:
-    """A new file, under its name from the moment on at which it can be read; arguments as for `Store`.
+def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
+    """Write a new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
 
-    Raises `ArchiveError` if the file exists or cannot be made.
+    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file. `grows`: Leave it
+    open, else it is whole, and on the disk before it has its name. Raises `ArchiveError` if it cannot be written.
     """
-    check_new(target)
-    with beside(target) as part:
-        store = Store(part, *arguments, **options)
-        store.publish(target)
-        return store
-
-
-def put(target: File, write: Callable[[File], Store], *, replace: bool = False) -> None:
-    """Write a whole new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
-
-    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file.
-    """
+    if not replace:
+        check_new(target)
     with beside(target) as part:
         store = write(part)
-        store.close(sync=True)
+        if not grows:
+            store.close(sync=True)
         store.publish(target, replace=replace)
+        return store
 
 
 LIBVER = ("v110", "v110")
@@ -125,43 +118,39 @@ class Store:
     # -- writing ----------------------------------------------------------------------------------------------
 
     def commit(
-        self,
-        points: Block | None = None,
-        point: int = 0,
-        paths: Block | None = None,
-        path: int = 0,
-        checkpoints: Mapping[int, bytes] | None = None,
+        self, points: Block | None = None, paths: Block | None = None, checkpoints: Mapping[int, bytes] | None = None
     ) -> None:
-        """Write rows from `point` and from `path` on, and checkpoints by slot; then, and only then, make them valid.
+        """Write rows behind those committed, and checkpoints by slot; then, and only then, make them valid.
 
-        Writing the same again does the same, so a commit that was interrupted is simply repeated, with the rows beyond
-        `committed`.
+        A commit that was interrupted is simply repeated: writing the same again does the same.
         """
         if not self.ours:
             raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
-        before = self.committed
+        before, raw = self.committed, dict(checkpoints or {})
         after = Committed(
             before.sequence + 1,
-            max(point + _rows(points), before.points),
-            max(path + _rows(paths), before.paths),
+            before.points + _rows(points),
+            before.paths + _rows(paths),
             before.point_blocks + bool(points),
             before.path_blocks + bool(paths),
             len(self.events),
-            max([before.checkpoint, *(HEAD.unpack_from(raw)[0] for raw in (checkpoints or {}).values())]),
+            max([before.checkpoint, *(HEAD.unpack_from(slot)[0] for slot in raw.values())]),
         )
         try:
             for block, start, table, number in (
-                (points, point, "point", before.point_blocks), (paths, path, "path", before.path_blocks)
+                (points, before.points, "point", before.point_blocks), (paths, before.paths, "path", before.path_blocks)
             ):  # fmt: skip
-                if not block:
-                    continue
-                for name, values in block.items():
+                for name, values in (block or {}).items():
                     self._put(self._data[name], start, values)
-                self._put(self._checks[table], number, seal(block, start)[None])
+                if block:
+                    self._put(self._checks[table], number, seal(block, start)[None])
             if points:
                 self._data["point"].id.set_extent((after.points,))
-            for slot, raw in (checkpoints or {}).items():
-                self._put_slot(slot, raw)
+            for slot, written in raw.items():
+                values = np.frombuffer(written, dtype="u1")
+                if self._slots.shape[1] < values.size:
+                    self._slots.resize((SLOTS, 2 * values.size))
+                self._slots[slot, : values.size] = values
             self._record(after, 0)
             self._flush()
             # All of it is written: whatever interrupts from here on, the next commit goes on after it.
@@ -201,12 +190,6 @@ class Store:
         space.select_hyperslab((start, *(0,) * (values.ndim - 1)), values.shape)
         kind = identity.get_type() if values.dtype.kind == "S" else None
         identity.write(h5s.create_simple(values.shape), space, values, kind)
-
-    def _put_slot(self, slot: int, raw: bytes) -> None:
-        values = np.frombuffer(raw, dtype="u1")
-        if self._slots.shape[1] < values.size:
-            self._slots.resize((SLOTS, 2 * values.size))
-        self._slots[slot, : values.size] = values
 
     def _flush(self) -> None:
         self._h5.flush()

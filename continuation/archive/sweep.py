@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import ExitStack, suppress
+from functools import partial
 from multiprocessing.process import BaseProcess
 from os import PathLike
 from pathlib import Path as File
@@ -22,12 +23,13 @@ from attrs import define, field, frozen
 
 from continuation.archive.atomic import as_file, check_new
 from continuation.archive.codec import problem_data
-from continuation.archive.copies import Share, append, gather
+from continuation.archive.copies import Share, append
 from continuation.archive.growing import share_of_path
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout
-from continuation.archive.store import Store, create
+from continuation.archive.store import Store, put
+from continuation.archive.transfer import gather
 from continuation.arguments.checks import complain, instance_with, is_number
 from continuation.path import LocatedEvent, Path, Step
 from continuation.path.interrupted import Interrupted
@@ -62,9 +64,8 @@ def trace_many(
     """Trace many homotopies.
 
     A homotopy that raises, exits, ends its worker's process, takes longer than the timeout or cannot be sent to a
-    worker costs its own path only: that one has the status RAISED and the exception's text as its message. The
-    order is that of the homotopies, whatever the order in which workers finish. Ctrl-C keeps the paths that are
-    finished, and ends within about a second.
+    worker costs its own path only: that one is RAISED, with the exception's text as its message. The order is that of
+    the homotopies. Ctrl-C keeps the paths that are finished, and ends within about a second.
 
     Parameters
     ----------
@@ -92,10 +93,8 @@ def trace_many(
 
     Raises
     ------
-    TypeError
-        For an option that `continuation.Tracer` does not have, or for what is no homotopy.
-    ValueError
-        If there are no homotopies, and there is an archive.
+    TypeError, ValueError
+        For an option that `continuation.Tracer` does not have, for what is no homotopy, or for none and an archive.
     ArchiveError
         If a file to be written exists, or the disk is full.
     KeyboardInterrupt
@@ -123,12 +122,7 @@ def trace_many(
 
 
 def _swept(
-    executor: Executor | None,
-    tasks: list[Any],
-    target: File | None,
-    report: Progress,
-    timeout: float | None,
-    options: Options,
+    executor: Executor | None, tasks: list[Any], target: File | None, report: Progress, timeout: Any, options: Options
 ) -> list[Path]:
     token = secrets.token_hex(4)
     # A worker may run in another directory, on another machine.
@@ -136,13 +130,12 @@ def _swept(
     stop = folder / f"{'continuation' if target is None else target.stem}.sweep-{token}.stop"
     work_of = [Task(homotopy, k, stop, target is not None, options) for k, homotopy in enumerate(tasks)]
     with ExitStack() as stack:
-        run = _Run(executor, work_of, report, timeout, None if target is None else target.absolute(), token, stack)
+        run = _Run(executor, work_of, timeout, None if target is None else target.absolute(), token, stack)
         stopped = False
         try:
-            for number, found in run.results():
+            for done, (number, found) in enumerate(run.results(), 1):
                 run.keep(number, found)
-                run.done += 1
-                report(run.done, len(tasks))
+                report(done, len(tasks))
         except KeyboardInterrupt:
             stopped = True
             run.stop()
@@ -166,7 +159,6 @@ class _Run:
 
     executor: Executor | None
     tasks: Sequence[Task]
-    report: Progress
     timeout: float | None
     target: File | None
     token: str
@@ -174,10 +166,9 @@ class _Run:
     paths: dict[int, Path] = field(factory=dict)
     parts: dict[Layout, Store] = field(factory=dict)
     futures: dict[Future[Result], int] = field(factory=dict)
-    done: int = 0
 
-    def results(self) -> Iterator[tuple[int, Path | Share | BaseException]]:
-        """What came of each homotopy, when it comes; `KeyboardInterrupt` where Ctrl-C reached it or its worker."""
+    def results(self) -> Iterator[tuple[int, Result]]:
+        """What came of each homotopy, when it comes."""
         if self.executor is not None:
             yield from self._spread(self.executor)
             return
@@ -185,10 +176,9 @@ class _Run:
             found, stopped = traced(task)
             if stopped:
                 self.keep(task.number, found)
-                raise KeyboardInterrupt
-            yield task.number, found
+            yield task.number, None if stopped else found
 
-    def _spread(self, executor: Executor) -> Iterator[tuple[int, Path | Share | BaseException]]:
+    def _spread(self, executor: Executor) -> Iterator[tuple[int, Result]]:
         """Submit all of it and wait; workers that hang past the timeout are ended with their processes.
 
         What was lost with a worker is done again, each in a process of its own: one that ends its process takes no
@@ -215,14 +205,14 @@ class _Run:
                 if isinstance(found, BrokenExecutor):
                     lost[number] = found
                 else:
-                    yield number, _not_stopped(found)
+                    yield number, found
             del ended
         late = TimeoutError(f"took longer than {self.timeout or 0:g} s")
         lost |= dict.fromkeys(self.futures.values(), late)
         for number in sorted(lost):
             alone = isinstance(lost[number], BrokenExecutor) and isinstance(executor, ProcessPoolExecutor)
             found = self._alone(executor, self.tasks[number], late) if alone else lost[number]
-            yield number, _not_stopped(found)
+            yield number, found
 
     def _alone(self, executor: Executor, task: Task, late: TimeoutError) -> Result:
         """What comes of a homotopy in a process of its own."""
@@ -234,9 +224,11 @@ class _Run:
             _end_processes(alone)
             alone.shutdown()
 
-    def keep(self, number: int, found: Path | Share | BaseException) -> None:
-        """Put a path where it stays."""
+    def keep(self, number: int, found: Result) -> None:
+        """Put a path where it stays; `KeyboardInterrupt` where Ctrl-C reached it or its worker."""
         task = self.tasks[number]
+        if found is None:
+            raise KeyboardInterrupt
         if isinstance(found, BaseException):
             found = sent(Path(status=Status.RAISED, message=sentence(found)), task)
         if isinstance(found, Path):
@@ -251,7 +243,8 @@ class _Run:
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
-        store = create(self.target.with_name(name), share.layout, root_attributes(tracer, "", {}), problem)
+        make = partial(Store, layout=share.layout, attributes=root_attributes(tracer, "", {}), problem=problem)
+        store = put(self.target.with_name(name), make, grows=True)
         self.stack.callback(store.close)
         self.parts[share.layout] = store
         return store
@@ -280,12 +273,6 @@ def _outcome(future: Future[Result]) -> Result:
     if future.cancelled() or isinstance(error, KeyboardInterrupt):
         return None
     return future.result() if error is None else error
-
-
-def _not_stopped(found: Result) -> Path | Share | BaseException:
-    if found is None:
-        raise KeyboardInterrupt
-    return found
 
 
 def _end_processes(executor: Executor) -> bool:
@@ -330,7 +317,7 @@ class _Watch:
         """Steps are enough."""
 
     def end(self, tracer: Tracer) -> None:
-        """The exception that ended a path is known to who called the tracer."""
+        """So it has ended."""
 
 
 def work(task: Task) -> Result:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
@@ -70,11 +69,9 @@ def _add_trust(parser: argparse.ArgumentParser) -> None:
 
 def _inspect(arguments: argparse.Namespace) -> int:
     from continuation.archive import describe, open_archive
-    from continuation.archive.page import WIDTH
 
-    width = shutil.get_terminal_size((WIDTH, 24)).columns
     with complaints("FILE"), open_archive(arguments.file) as archive:
-        print(describe(archive, min(width, WIDTH)), end="")
+        print(describe(archive), end="")
     return SUCCESS
 
 

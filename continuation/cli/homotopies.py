@@ -223,4 +223,3 @@ def _number_or_none(text: str) -> float:
     if text.lower() == "none":
         return math.nan
     return parsed(text, float, math.isfinite, "a finite number or none")
-
