@@ -47,15 +47,6 @@ class Checkpoint:
     run: Mapping[str, Any]
 
 
-@frozen
-class Foreign:
-    """A checkpoint of another major version of the library, whose state this one cannot go on from."""
-
-    sequence: int
-    path: int
-    version: str
-
-
 def major(version: str) -> str:
     """What two versions have in common that can resume each other's paths: "2" of 2.3.1, "0.2" of 0.2.5."""
     first, second, *_ = (*version.split("."), "")
@@ -155,31 +146,28 @@ def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
     return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
 
 
-def unpack(raw: bytes) -> Checkpoint | Foreign | None:
-    """The checkpoint, a `Foreign` one of another version, or None where the bytes are not a whole one.
+def unpack(raw: bytes) -> Checkpoint | None:
+    """The checkpoint; None where the bytes are not a whole one, or one of another major version of the library.
 
     It was never written, or torn by a kill: then the points are as good as ever, only resuming is over. The state is
     read as numbers; nothing that the bytes name is made.
     """
-    if len(raw) < HEAD.size:
-        return None
-    sequence, length, crc = HEAD.unpack_from(raw)
-    body = raw[HEAD.size : HEAD.size + length]
-    if not length or len(body) < length or zlib.crc32(body) != crc:
-        return None
     try:
+        sequence, length, crc = HEAD.unpack_from(raw)
+        body = raw[HEAD.size : HEAD.size + length]
+        if not length or len(body) < length or zlib.crc32(body) != crc:
+            return None
         head, described, arrays = body.split(b"\n", 2)
-        tree, run = json.loads(head), json.loads(described)
+        tree, run = json.loads(head), dict(json.loads(described))
         # Versions were not told apart before the second.
-        version = str(tree.get("version", "0.1.0"))
-        if major(version) != major(__version__):
-            return Foreign(sequence, int(tree["path"]), version)
+        if major(str(tree.get("version", "0.1.0"))) != major(__version__):
+            return None
         state = decode(tree["state"], _fetched(arrays), hint=State)
         counts = {str(name): int(value) for name, value in tree["counts"].items()}
         path, rows, seconds = int(tree["path"]), int(tree["rows"]), float(tree["seconds"])
-    except (UnknownError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+    except (struct.error, UnknownError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
-    sensible = _consistent(state) and path >= 0 and rows > 0 and isinstance(run, dict)
+    sensible = _consistent(state) and path >= 0 and rows > 0
     return Checkpoint(sequence, path, rows, state, counts, seconds, run) if sensible else None
 
 

@@ -12,7 +12,7 @@ from typing import Any, TypeVar, overload
 
 import numpy as np
 
-from continuation.archive.checkpoint import Checkpoint, Foreign, unpack
+from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
 from continuation.archive.rows import Record, from_columns, record_of, row_columns
 from continuation.archive.schema import COUNT_NAMES
@@ -222,22 +222,12 @@ class Archive(Sequence[Path]):
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""
-        valid = [c for c in self._checkpoints() if isinstance(c, Checkpoint) and self._covers(c)]
+        valid = [c for c in map(unpack, self.contents.slots()) if c is not None and self._covers(c)]
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
-
-    def foreign_version(self) -> str:
-        """The version of the library that the state of the last path is of, if it is not this one's; else empty."""
-        last = len(self) - 1
-        return next((c.version for c in self._checkpoints() if isinstance(c, Foreign) and c.path == last), "")
-
-    def _checkpoints(self) -> list[Checkpoint | Foreign | None]:
-        return [unpack(raw) for raw in self.contents.slots()]
 
     def _covers(self, checkpoint: Checkpoint) -> bool:
         """Whether the rows before the checkpoint are all committed: it is written before the counters are."""
-        if checkpoint.path >= len(self):
-            return False
-        rows = self.rows(checkpoint.path)
+        rows = self.rows(checkpoint.path) if checkpoint.path < len(self) else slice(0, 0)
         return bool(rows.start + checkpoint.rows <= rows.stop)
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
@@ -269,18 +259,16 @@ class Archive(Sequence[Path]):
         """A row for the path that has none, as far as its checkpoint tells."""
         number = self._committed_paths
         member = int(self._fetch_path("member", slice(number - 1, number))[0]) + 1 if number else 0
-        row = {**record_of(Path(), None, ()), "path": number, "member": member, "n_points": rows}
         # An older checkpoint than the last is good to resume from, and tells the work of then.
-        row |= {**dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
-        self._unended = row
+        row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
+        self._unended = row = {**row, "path": number, "member": member, "n_points": rows}
         checkpoint = self.checkpoint()
-        if checkpoint is None or checkpoint.path != number:
-            return row
-        told = checkpoint.run.get("member")
-        row["member"] = number if told is None else int(told)
-        if self._last_checkpoint in (None, checkpoint.sequence):
-            row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
-            row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
+        if checkpoint is not None and checkpoint.path == number:
+            told = checkpoint.run.get("member")
+            row["member"] = number if told is None else int(told)
+            if self._last_checkpoint in (None, checkpoint.sequence):
+                row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
+                row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
         return row
 
 

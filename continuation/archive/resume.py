@@ -43,9 +43,6 @@ RESUMABLE = (
     Status.RAISED,
 )
 
-_YOUNGER = ("guards",)
-"""Options that files do not have which are older than these."""
-
 
 @documented
 def resume(
@@ -166,21 +163,20 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     if not len(source):
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
-    status, checkpoint, version = source.status(last), source.checkpoint(), source.foreign_version()
+    status, checkpoint = source.status(last), source.checkpoint()
     if status not in RESUMABLE:
         said = f"path {last} has ended ({status.name}), there is nothing to resume"
     elif status is Status.BUDGET_EXHAUSTED and "budget" not in options:
         said = f"the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
     elif checkpoint is not None and checkpoint.path == last:
         return checkpoint
-    elif version:
-        said = (
-            f"the state of path {last} is that of version {version:.20}, and resumes within its major "
-            f"version, which is not that of {__version__}; go on from its last point by "
-            f"trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
-        )
-    else:
+    elif not source.paths["n_points"][last]:
         said = f"path {last} has no state to resume from; trace it again"
+    else:
+        said = (
+            f"path {last} has no state that version {__version__} resumes (a state resumes within its major version); "
+            f"go on from its last point by trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
+        )
     raise ArchiveError(f"{source.file}: {said}")
 
 
@@ -204,12 +200,10 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
 def _options(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
 ) -> dict[str, Any]:
-    stored, trees = {}, checkpoint.run.get("options")
-    for name in OPTIONS:
-        if name in given or (name in _YOUNGER and trees is not None and name not in trees):
-            continue
+    stored, trees = {}, checkpoint.run.get("options", {})
+    for name in (name for name in OPTIONS if name in trees and name not in given):
         try:
-            stored[name] = decode(_storable(cast("Any", trees)[name]), whole, known)
+            stored[name] = decode(_storable(trees[name]), whole, known)
         except (UnknownError, KeyError, TypeError) as error:
             reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
             raise ArchiveError(f"{source.file}: {reason}") from None
