@@ -14,7 +14,7 @@ import numpy as np
 
 from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.rows import Record, from_columns, record_of, row_columns
+from continuation.archive.rows import from_columns, record_of, row_columns
 from continuation.archive.schema import COUNT_NAMES
 from continuation.archive.tables import Table, dataframe, dataset, kept_whole, stored_path
 from continuation.arguments.checks import complain
@@ -55,34 +55,29 @@ class Archive(Sequence[Path]):
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
-        self.file = contents.file
+        self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
-        self.layout, self.event_names = contents.layout, contents.event_names
-        self._last_checkpoint = contents.committed.checkpoint if contents.checked else None
-        self._committed_paths, self._committed_points = contents.committed.paths, contents.committed.points
+        # As they are now: the file may be read anew while it grows.
+        self._committed, self._unended = contents.committed, dict[str, Any]()
         try:
-            self._read_lengths()
+            lengths = contents.read("path", "n_points", slice(0, self._committed.paths))
+            self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
+            rest = self._committed.points - int(self._first_rows[-1])
+            if rest < 0 or np.any(lengths < 0):
+                raise contents.damaged(ValueError("its paths have other lengths than its points"))
+            if rest:
+                self._first_rows = np.append(self._first_rows, self._committed.points)
+                self._read_unended(rest)
         except BaseException:
             self.close()
             raise
-
-    def _read_lengths(self) -> None:
-        lengths = self.contents.read("path", "n_points", slice(0, self._committed_paths))
-        self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
-        rest = self._committed_points - int(self._first_rows[-1])
-        if rest < 0 or np.any(lengths < 0):
-            raise self.contents.damaged(ValueError("its paths have other lengths than its points"))
-        self._unended: Record | None = None
-        if rest:
-            self._first_rows = np.append(self._first_rows, self._committed_points)
-            self._unended = self._record_of_unended(rest)
-        self.points = Table(self.layout.point_columns, self._committed_points, partial(self.contents.read, "point"))
+        self.points = Table(self.layout.point_columns, self._committed.points, partial(contents.read, "point"))
         self.paths = Table(self.layout.path_columns, len(self), self._fetch_path)
 
     # -- the sequence -----------------------------------------------------------------------------------------
 
     def __len__(self) -> int:
-        return self._committed_paths + (self._unended is not None)
+        return len(self._first_rows) - 1
 
     @overload
     def __getitem__(self, index: int) -> Path: ...
@@ -249,15 +244,14 @@ class Archive(Sequence[Path]):
     # -- within -----------------------------------------------------------------------------------------------
 
     def _fetch_path(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        committed = slice(min(rows.start, self._committed_paths), min(rows.stop, self._committed_paths))
-        values = self.contents.read("path", name, committed)
-        if rows.stop > self._committed_paths and self._unended is not None:
-            values = np.concatenate((values, row_columns(self._unended, self.layout)[name]))
-        return values
+        held = self._committed.paths
+        values = self.contents.read("path", name, slice(min(rows.start, held), min(rows.stop, held)))
+        own = row_columns(self._unended, self.layout)[name] if rows.stop > held else values[:0]
+        return np.concatenate((values, own))
 
-    def _record_of_unended(self, rows: int) -> Record:
+    def _read_unended(self, rows: int) -> None:
         """A row for the path that has none, as far as its checkpoint tells."""
-        number = self._committed_paths
+        number = self._committed.paths
         member = int(self._fetch_path("member", slice(number - 1, number))[0]) + 1 if number else 0
         # An older checkpoint than the last is good to resume from, and tells the work of then.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
@@ -266,10 +260,9 @@ class Archive(Sequence[Path]):
         if checkpoint is not None and checkpoint.path == number:
             told = checkpoint.run.get("member")
             row["member"] = number if told is None else int(told)
-            if self._last_checkpoint in (None, checkpoint.sequence):
+            if not self.contents.checked or self._committed.checkpoint == checkpoint.sequence:
                 row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
                 row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
-        return row
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:

@@ -45,7 +45,6 @@ def put(target: File, write: Callable[[File], Store], *, replace: bool = False, 
 
 LIBVER = ("v110", "v110")
 
-_TABLES = ("point", "path")
 _ONE_RECORD = h5s.create_simple((1, RECORD_BYTES))
 
 Block = Mapping[str, np.ndarray[Any, Any]]
@@ -97,10 +96,10 @@ class Store:
             self._lock.close()
             raise
         _LIVE.add(self)
-        columns = (*layout.point_columns, *layout.path_columns, EVENT_NAME)
-        self._data = {name: self._h5[name] for name in (*(column.name for column in columns), "point", "event")}
-        self._counters = {name: self._h5[f"committed_{name}"] for name in ("points", "paths")}
-        self._checks = {name: self._h5[GROUP][name] for name in (*_TABLES, "event", RECORDS)}
+        columns = [column.name for column in (*layout.point_columns, *layout.path_columns, EVENT_NAME)]
+        names = (*columns, "point", "event", "committed_points", "committed_paths")
+        self._data = {name: self._h5[name] for name in names}
+        self._checks = {name: self._h5[GROUP][name] for name in ("point", "path", "event", RECORDS)}
         self._slots = self._h5[RESUME]["slots"]
         self._h5.swmr_mode = True
 
@@ -156,7 +155,7 @@ class Store:
             # All of it is written: whatever interrupts from here on, the next commit goes on after it.
             self.committed = after
             self._record(after, PLACES)
-            self._counters["points"][()], self._counters["paths"][()] = after.points, after.paths
+            self._data["committed_points"][()], self._data["committed_paths"][()] = after.points, after.paths
             self._flush()
         except (OSError, RuntimeError, ValueError) as error:
             self.abandon()
@@ -175,7 +174,7 @@ class Store:
         name = text(name, NAME).decode()
         if name not in self.events:
             self._data["event"].id.set_extent((len(self.events) + 1,))
-            stored = np.array([name.encode()], dtype=f"S{NAME}")
+            stored = np.array([name.encode()], dtype=EVENT_NAME.storage)
             self._put(self._data["event_name"], len(self.events), stored)
             self._put(self._checks["event"], len(self.events), np.array([digest(stored)], dtype="u4"))
             self.events.append(name)
@@ -214,24 +213,26 @@ class Store:
         """Whether this process has opened it: a child that was forked since has a copy, and never writes."""
         return self._process == os.getpid()
 
-    def disown(self) -> None:
-        """Let HDF5 write nowhere what it still has, in a process that is not to write."""
-        if self._h5:
-            _to_nowhere(self._h5.id.get_vfd_handle())
-            self._abandoned = True
+    def abandon(self, *, ends: bool = True) -> None:
+        """Let HDF5 write what it still has to nowhere: a write that fails while it closes a file ends the process.
 
-    def abandon(self) -> None:
-        """Leave the file as a kill would, and let HDF5 write what it still has to nowhere.
-
-        A write that fails while it closes a file ends the process.
+        `ends`: Leave the file as a kill would; a child that was forked is not to write, and leaves it to its parent.
         """
+        if not self._h5:
+            return
         descriptor = self._h5.id.get_vfd_handle()
         with suppress(OSError), self.file.open("rb") as head:
             # The length that the file says it has may be beyond what could be written; zeros do for what is missing.
             stated = stated_length(head.read(HEAD_BYTES))
-            if stated > os.fstat(descriptor).st_size:
+            if ends and stated > os.fstat(descriptor).st_size:
                 os.truncate(self.file, stated)
-        self.disown()
+        # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
+        limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+        device = limited or not hasattr(os, "memfd_create")
+        nowhere = os.open(os.devnull, os.O_RDWR) if device else os.memfd_create("abandoned")
+        os.dup2(nowhere, descriptor, inheritable=False)
+        os.close(nowhere)
+        self._abandoned = True
 
 
 _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
@@ -243,23 +244,11 @@ def _in_child() -> None:
     It shares its parent's locks too, and would keep them when the parent is gone.
     """
     for store in list(_LIVE):
-        store.disown()
+        store.abandon(ends=False)
         store._lock.close()
 
 
 os.register_at_fork(after_in_child=_in_child)
-
-
-def _to_nowhere(descriptor: int) -> None:
-    """Let the descriptor of a file stand for another file, which is thrown away."""
-    # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
-    limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
-    if limited or not hasattr(os, "memfd_create"):
-        nowhere = os.open(os.devnull, os.O_RDWR)
-    else:
-        nowhere = os.memfd_create("abandoned")
-    os.dup2(nowhere, descriptor, inheritable=False)
-    os.close(nowhere)
 
 
 def _rows(block: Block | None) -> int:
