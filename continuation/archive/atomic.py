@@ -78,7 +78,13 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
         # A file system without links: the name is taken first, so that nobody else can.
         os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
         os.replace(part, target)
-    sync_directory(target.parent)
+    # The names too come to the disk, where the file system can do it.
+    with suppress(OSError):
+        descriptor = os.open(target.parent, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
 
 def like(part: File, original: File) -> None:
@@ -87,16 +93,6 @@ def like(part: File, original: File) -> None:
     with suppress(PermissionError):
         os.chown(part, status.st_uid, status.st_gid)
     part.chmod(status.st_mode & 0o7777)
-
-
-def sync_directory(directory: File) -> None:
-    """Bring the names in a directory to the disk, where the file system can."""
-    with suppress(OSError):
-        descriptor = os.open(directory, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
 
 
 def _tidy(target: File) -> None:
@@ -112,6 +108,13 @@ def as_file(argument: str, value: Any) -> File:
     if not isinstance(value, (str, PathLike)) or isinstance(os.fspath(value), bytes):
         raise complain(TypeError, argument, "the name of a file", value)
     return File(value)
+
+
+def new_file(argument: str, value: Any) -> File:
+    """The path that an argument is, of a file that can be made; see `as_file`, `check_new`."""
+    file = as_file(argument, value)
+    check_new(file)
+    return file
 
 
 def check_new(file: File) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from attrs import define, evolve
 
-from continuation.archive.atomic import as_file, check_new, own
+from continuation.archive.atomic import new_file, own
 from continuation.archive.copies import Share, append, filled, share_of, sourced, write_copy
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import open_archive
@@ -78,9 +78,7 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     `many`: At least one; all of one number of unknowns, with the same scalars observed. Raises `ArchiveError` if it
     exists, or cannot be written.
     """
-    target = as_file("file", file)
-    check_new(target)
-    attributes = attributes_of(many[0], title)
+    target, attributes = new_file("file", file), attributes_of(many[0], title)
     pieces = any(event.switches for path in many for event in path.events)
     shares = [share_of_path(path, member=k, pieces=pieces) for k, path in enumerate(many)]
 

@@ -9,18 +9,17 @@ from contextlib import ExitStack, closing
 from functools import partial
 from os import PathLike
 from pathlib import Path as File
-from typing import Any, Unpack, cast
+from typing import Any, Unpack
 
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError, as_file, check_new, is_held, own, short
+from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
 from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
 from continuation.archive.copies import share_of, write_copy
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.schema import ACCEPTED
 from continuation.archive.store import Store, put
-from continuation.archive.tables import kept_whole, stored_path
+from continuation.archive.tables import kept_whole
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
@@ -91,9 +90,7 @@ def resume(
         If the homotopy given is not the one of the file.
     """
     name = as_file("file", file)
-    target = File(os.path.realpath(name)) if archive is None else as_file("archive", archive)
-    if archive is not None:
-        check_new(target)
+    target = File(os.path.realpath(name)) if archive is None else new_file("archive", archive)
     whole_path = kept_whole(keep)
     each("observers", observers, OBSERVER)
     for option in ("start", "state"):
@@ -108,23 +105,17 @@ def resume(
             raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
         tracer = _tracer(source, checkpoint, known, homotopy, options)
-        begin = source.rows(checkpoint.path).start
-        rows = begin + checkpoint.rows
-        check_homotopy(
-            tracer.homotopy,
-            checkpoint.state.here.u,
-            float(source.points.some("residual_norm", slice(rows - 1, rows))[0]),
-        )
-        # As many as the file has up to there: with `save_every` these are fewer than were taken.
-        written = int(np.count_nonzero(source.points.some("role", slice(begin, rows)) == ACCEPTED))
-        before = source.path(checkpoint.path, keep=keep)
+        rows = source.rows(checkpoint.path).start + checkpoint.rows
+        stored = float(source.points.some("residual_norm", slice(rows - 1, rows))[0])
+        check_homotopy(tracer.homotopy, checkpoint.state.here.u, stored)
         store = _beginning(source, checkpoint, rows, target, archive is None)
-    tracer.path.events[:] = [event for event in before.events if event.step < written]
-    if whole_path:
-        tracer.path.steps[:] = before.steps[:written]
-    else:
+    try:
         with open_archive(store.file) as held:
-            tracer.path.steps = cast("Any", stored_path(held, open_archive, store.file, checkpoint.path)[0])
+            before = held.path(checkpoint.path, keep=keep)
+    except BaseException:
+        store.close()
+        raise
+    tracer.path.steps, tracer.path.events[:] = before.steps, before.events
     log = PathLog.continued(store, checkpoint, tracer, whole_path, source.attributes.get("identifier", ""))
     tracer.observers = (log, *observers)
     try:

@@ -21,7 +21,7 @@ from typing import Any, Unpack
 
 from attrs import define, field, frozen
 
-from continuation.archive.atomic import as_file, check_new
+from continuation.archive.atomic import new_file
 from continuation.archive.codec import problem_data
 from continuation.archive.copies import Share, append
 from continuation.archive.growing import share_of_path
@@ -112,11 +112,9 @@ def trace_many(
     tasks = list(homotopies)
     for homotopy in tasks:
         instance_with("homotopies", homotopy, ("start", "residual"), "homotopies only")
-    target = None if archive is None else as_file("archive", archive)
-    if target is not None:
-        check_new(target)
-        if not tasks:
-            raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
+    target = None if archive is None else new_file("archive", archive)
+    if target is not None and not tasks:
+        raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
     paths = _swept(executor, tasks, target, progress or (lambda done, total: None), timeout, options)
     return paths if target is None else open_archive(target)
 

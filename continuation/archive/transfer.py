@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from attrs import evolve
 
-from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, own, publish
+from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
 from continuation.archive.checkpoint import slot_of
 from continuation.archive.contents import Contents
 from continuation.archive.copies import Share, filled, leading, share_of, sourced, write_copy
@@ -69,8 +69,7 @@ def merge(
     if not files:
         raise ValueError("files: expected at least one archive, found none")
     _check_level(compression)
-    whole = as_file("target", target)
-    check_new(whole)
+    whole = new_file("target", target)
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         shares = [share_of(archive) for archive in archives]

@@ -15,7 +15,7 @@ from typing import Any
 
 from attrs import define, field, frozen
 
-from continuation.archive.atomic import ArchiveError, as_file, check_new
+from continuation.archive.atomic import ArchiveError, new_file
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
 from continuation.archive.provenance import root_attributes
@@ -129,8 +129,7 @@ class PathLog:
             raise complain(TypeError, "limits", "Limits(...)", limits)
         if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
             raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
-        self.file, self._whole = as_file("file", file), kept_whole(keep)
-        check_new(self.file)
+        self._whole, self.file = kept_whole(keep), new_file("file", file)
         self._limits, self._save_every = limits or Limits(), int(save_every)
         self._durable, self._tangents, self._about = durable, tangents, (title, dict(parameters or {}))
         self._rows, self._early = (0, []), []
