@@ -3,7 +3,7 @@
 The idea: an archive is two tables, of points and of paths, that grow by checked blocks. A block is what one commit
 writes: rows, a checksum of each column, a checkpoint; then a record that the block is whole (`store`, `checks`).
 A reader takes whole blocks and compares them (`contents`). All else is "read whole blocks, append them elsewhere"
-(`copies.Share`): recovery, resuming, merging, export, diagrams and the paths that a sweep's workers send back.
+(`copies.Share`): merging, export and recovery (`transfer`), resuming, diagrams and the paths of a sweep.
 
 The schema is `continuation-path-2` (`continuation.archive.schema`): h5py, xarray (engines h5netcdf and netCDF4) and
 every netCDF-4 tool read it without this package.
