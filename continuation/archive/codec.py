@@ -116,16 +116,13 @@ def path_of(thing: Any) -> str:
 
     Raises `UnstorableError` for one that is local to a function, made by lambda, or defined in a script.
     """
-    module, name = getattr(thing, "__module__", None), getattr(thing, "__qualname__", None)
-    if not isinstance(module, str) or not isinstance(name, str):
-        raise UnstorableError(f"{thing!r} has no name to import it by")
-    if module == "__main__":
-        raise UnstorableError(f"{name} is defined in a script, not in a module")
+    module, name = str(getattr(thing, "__module__", None)), str(getattr(thing, "__qualname__", repr(thing)))
     found: Any = sys.modules.get(module)
     for part in name.split("."):
         found = getattr(found, part, None)
-    if found is not thing:
-        raise UnstorableError(f"{module}:{name} is not at the top of a module")
+    if module == "__main__" or found is not thing:
+        where = "is defined in a script" if module == "__main__" else f"is not found in {module}"
+        raise UnstorableError(f"{name} has no name to import it by: it {where}")
     return f"{module}:{name}"
 
 

@@ -85,7 +85,7 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     def write(part: Any) -> Store:
         store = Store(part, shares[0].layout, attributes)
         for number, share in enumerate(shares):
-            append(store, sourced(share, attributes["identifier"], target.name, first=number))
+            append(store, sourced(share, store.identifier, target.name, first=number))
         return store
 
     put(target, write)
@@ -104,7 +104,6 @@ class Growing:
     pieces: bool
     keep: str = "all"
     _store: Store | None = None
-    _identifier: str = ""
 
     def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
         """The paths of the file, if there is one, each whole and as it is kept; the file goes on from then on.
@@ -126,7 +125,6 @@ class Growing:
                 attributes = {**about, **process(), **history(about, "went on")}
                 copy = partial(write_copy, [share_of(source)], attributes=attributes)
                 self._store = put(target, copy, replace=True, grows=True)
-                self._identifier = attributes["identifier"]
 
     def add(self, path: Path) -> Path:
         """One more path, which comes back as it is kept; the first makes the file."""
@@ -135,8 +133,7 @@ class Growing:
         if self._store is None:
             attributes = attributes_of(path, self.title)
             self._store = put(self.file, partial(Store, layout=share.layout, attributes=attributes), grows=True)
-            self._identifier = attributes["identifier"]
-        append(self._store, sourced(share, self._identifier, self.file.name, first=number))
+        append(self._store, sourced(share, self._store.identifier, self.file.name, first=number))
         return self._kept(path, number)
 
     def _kept(self, path: Path, number: int) -> Path:

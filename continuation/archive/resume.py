@@ -116,7 +116,7 @@ def resume(
         store.close()
         raise
     tracer.path.steps, tracer.path.events[:] = before.steps, before.events
-    log = PathLog.continued(store, checkpoint, tracer, whole_path, source.attributes.get("identifier", ""))
+    log = PathLog.continued(store, checkpoint, tracer, whole_path)
     tracer.observers = (log, *observers)
     try:
         steps = iter(tracer)

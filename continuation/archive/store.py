@@ -68,10 +68,8 @@ class Store:
         compression: int = 0,
         durable: bool = False,
     ) -> None:
-        self.file = part
-        self.layout = layout
-        self.durable = durable
-        self.events: list[str] = []
+        self.file, self.layout, self.durable = part, layout, durable
+        self.identifier, self.events = str(attributes.get("identifier", "")), list[str]()
         # What is written, and valid now or with the next commit.
         self.committed = Committed(sequence=1)
         self._abandoned, self._process = False, os.getpid()

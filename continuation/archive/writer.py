@@ -108,7 +108,6 @@ class PathLog:
     _limits, _whole, _save_every, _durable, _tangents = Limits(), True, 1, False, True
     _about: tuple[str, Mapping[str, Any]] = ("", {})
     _paths = _sequence = 0
-    _identifier = ""
     _known: tuple[Any, Any] = (None, None)
     """The file's first homotopy, and what says in a checkpoint how to make it."""
     _commit_at = 0.0
@@ -135,7 +134,7 @@ class PathLog:
         self._rows, self._early = (0, []), []
 
     @classmethod
-    def continued(cls, store: Store, checkpoint: Checkpoint, tracer: Tracer, whole: bool, identifier: str) -> PathLog:
+    def continued(cls, store: Store, checkpoint: Checkpoint, tracer: Tracer, whole: bool) -> PathLog:
         """A log that goes on with a path of which the file holds the beginning; for `resume`.
 
         Parameters
@@ -145,14 +144,11 @@ class PathLog:
         tracer : Tracer
         whole : bool
             Whether all steps stay in memory.
-        identifier : str
-            Of the file in which the path began.
         """
         log = cls.__new__(cls)
         points = store.committed.points
         log.file, log._store, log._rows, log._early = store.file, store, (points, []), []
-        log._whole, log._identifier = whole, str(identifier)
-        log._paths, log._sequence = checkpoint.path, checkpoint.sequence
+        log._whole, log._paths, log._sequence = whole, checkpoint.path, checkpoint.sequence
         log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
         mark = checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows
         first = points - checkpoint.rows
@@ -262,7 +258,6 @@ class PathLog:
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
         attributes = root_attributes(tracer, *self._about)
-        self._identifier = attributes["identifier"]
         make = partial(Store, layout=layout, attributes=attributes, problem=problem, durable=self._durable)
         self._store = store = put(self.file, make, grows=True)
         for event in tracer.settings.events if tracer is not None else ():
@@ -284,7 +279,7 @@ class PathLog:
         if path is not None and path.resume is not None:
             checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
         if row is not None and row["path"] >= store.committed.paths:
-            row["source"] = f"{self._identifier} {row['path']} {self.file.name}"
+            row["source"] = f"{store.identifier} {row['path']} {self.file.name}"
             paths = row_columns(row, store.layout)
         try:
             store.commit(points, paths, checkpoints)
