@@ -186,7 +186,7 @@ class Contents:
 
     def _leading(self, found: Any, count: int) -> Array:
         """The first rows of a dataset; of a file that is cut off those chunks that HDF5 can still find."""
-        step = (found.chunks or (count,))[0] if self._salvage else max(count, 1)
+        step = found.chunks[0] if self._salvage and found.chunks else max(count, 1)
         parts = [np.empty((0, *found.shape[1:]), found.dtype)]
         for start in range(0, count, step):
             rows = slice(start, min(start + step, count))

@@ -19,10 +19,11 @@ from continuation.archive.contents import Contents
 from continuation.archive.reader import Archive
 from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, Column, Layout, text
 from continuation.archive.store import Store
+from continuation.archive.tables import ROWS_AT_ONCE
 
 Block = dict[str, Any]
 
-_BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
+_BLOCK_BYTES = 1 << 23
 """Of what is copied at once, and so of the blocks that a reader checks whole."""
 
 
@@ -145,7 +146,7 @@ def _joint(shares: Sequence[Share]) -> Layout:
 
 def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
     """The points of all of them, in blocks of nearly one size: what is small is joined, what is large cut."""
-    size = min(max(_BLOCK_BYTES // (8 * (store.layout.unknowns + 16)), 1), _BLOCK_ROWS)
+    size = min(max(_BLOCK_BYTES // (8 * (store.layout.unknowns + 16)), 1), ROWS_AT_ONCE)
     waiting: list[Block] = []
     held = path = 0
     for share in shares:

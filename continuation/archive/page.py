@@ -181,7 +181,8 @@ def _hint(archive: Archive) -> str:
     last, checkpoint = len(archive) - 1, archive.checkpoint()
     if checkpoint is None or checkpoint.path != last or archive.status(last) not in RESUMABLE:
         return ""
-    name, about = str(archive.attributes.get("homotopy", "")), archive.attributes
+    about = archive.attributes
+    name = str(about.get("homotopy", "")).replace("__main__:", "MODULE:")
     makeable = name.startswith("continuation.") or about.get("homotopy_entry_point", "")
     command = f"continuation resume {archive.file}" + ("" if makeable else f" --homotopy {name}")
     if archive.status(last) is Status.BUDGET_EXHAUSTED:

@@ -28,13 +28,10 @@ from continuation.archive.reader import Archive, open_archive
 from continuation.archive.rows import record_of, row_columns
 from continuation.archive.schema import TEXT, text
 from continuation.archive.store import put
-from continuation.archive.tables import Table, flat
+from continuation.archive.tables import ROWS_AT_ONCE, Table, flat
 from continuation.arguments.checks import complain
 from continuation.path import Path
 from continuation.status import Kind, Status
-
-_ROWS = 4096
-"""Of a table that are written as text at once."""
 
 
 def merge(
@@ -193,8 +190,8 @@ def _write_text(part: File, table: Table, compressed: bool) -> None:
     opened: Any = gzip.open if compressed else open
     with opened(part, "xt", encoding="utf-8", newline="") as out:
         writer = csv.writer(out)
-        for start in range(0, max(table.size, 1), _ROWS):
-            columns = flat(table.block(slice(start, min(start + _ROWS, table.size))))
+        for start in range(0, max(table.size, 1), ROWS_AT_ONCE):
+            columns = flat(table.block(slice(start, min(start + ROWS_AT_ONCE, table.size))))
             writer.writerows([[*columns]] if not start else [])
             # Python prints floats in full precision.
             writer.writerows(zip(*(values.tolist() for values in columns.values())))
