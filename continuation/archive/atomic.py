@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import errno
 import fcntl
+import glob
 import os
 import re
 import secrets
@@ -67,28 +68,23 @@ def publish(part: File, target: File, *, replace: bool = False) -> None:
 
     Raises `ArchiveExistsError` if there is one and it is not to be replaced, `OSError` for anything else.
     """
-    if replace:
-        os.replace(part, target)
-    else:
-        _named(part, target)
-    sync_directory(target.parent)
-
-
-def _named(part: File, target: File) -> None:
     try:
-        os.link(part, target)
-        return
+        (os.replace if replace else os.link)(part, target)
     except FileExistsError:
         raise exists(target) from None
     except OSError as error:
-        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS):
+        if replace or error.errno not in (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS):
             raise
-    # A file system without links: the name is taken first, so that nobody else can.
-    try:
+        # A file system without links: the name is taken first, so that nobody else can.
         os.close(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
-    except FileExistsError:
-        raise exists(target) from None
-    os.replace(part, target)
+        os.replace(part, target)
+    # The names too come to the disk, where the file system can do it.
+    with suppress(OSError):
+        descriptor = os.open(target.parent, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
 
 def like(part: File, original: File) -> None:
@@ -99,25 +95,9 @@ def like(part: File, original: File) -> None:
     part.chmod(status.st_mode & 0o7777)
 
 
-def sync_directory(directory: File) -> None:
-    """Bring the names in a directory to the disk, where the file system can."""
-    with suppress(OSError):
-        descriptor = os.open(directory, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
-
-
 def _tidy(target: File) -> None:
     """Remove what killed writers of the same name left beside it; a part of theirs was never anything but a copy."""
-    pattern = re.compile(rf"\.{re.escape(target.name)}\.[0-9a-f]{{8}}\.part")
-    try:
-        names = [name for name in os.listdir(target.parent) if pattern.fullmatch(name)]
-    except OSError:
-        return
-    for name in names:
-        part = target.with_name(name)
+    for part in target.parent.glob(f".{glob.escape(target.name)}.{8 * '[0-9a-f]'}.part"):
         with suppress(OSError):
             if time.time() - part.stat().st_mtime > _ABANDONED and not is_held(part):
                 part.unlink()
@@ -130,21 +110,25 @@ def as_file(argument: str, value: Any) -> File:
     return File(value)
 
 
+def new_file(argument: str, value: Any) -> File:
+    """The path that an argument is, of a file that can be made; see `as_file`, `check_new`."""
+    file = as_file(argument, value)
+    check_new(file)
+    return file
+
+
 def check_new(file: File) -> None:
     """Whether a file can be made there, asked before any work is done.
 
     Raises `ArchiveError` if it exists, or its directory does not, or may not be written.
     """
-    try:
-        if "\0" in str(file):
-            raise ValueError("it holds a NUL")
-        if os.path.lexists(file):
-            raise exists(file)
-        if not file.parent.is_dir():
-            raise ArchiveError(f"{file}: there is no directory {file.parent}")
-    except ValueError as error:
-        raise ArchiveError(f"{str(file)!r}: is no name for a file ({error})") from None
-    if len(os.fsencode(file.name)) > _NAME_BYTES:
+    if "\0" in str(file):
+        raise ArchiveError(f"{str(file)!r}: is no name for a file (it holds a NUL)")
+    if os.path.lexists(file):
+        raise exists(file)
+    if not file.parent.is_dir():
+        raise ArchiveError(f"{file}: there is no directory {file.parent}")
+    if len(file.name.encode(errors="surrogatepass")) > _NAME_BYTES:
         raise ArchiveError(f"{file}: the name is too long, expected at most {_NAME_BYTES} bytes")
     if not os.access(file.parent, os.W_OK):
         raise ArchiveError(f"{file}: the directory {file.parent} may not be written")
@@ -212,19 +196,24 @@ def is_held(file: File) -> bool:
     return not lock.taken
 
 
-def locked(file: File, descriptor: int, writer: str, *, force: bool = False) -> Lock:
-    """The lock on a file that is to be replaced; by force also where another has it.
+def own(file: File, descriptor: int, writer: Any, *, force: bool = False) -> Lock:
+    """The right to replace a file (no link to it); by force also if its writer seems to be at work.
 
-    `descriptor` is of the file as it was read, `writer` who wrote it last. Raises `ArchiveError` if its writer is at
-    work, or the file was replaced this very moment.
+    `descriptor` is of the file as it was read, `writer` the number of the process that wrote it last. Raises
+    `ArchiveError` if it may not be written, is being written, or was replaced since it was opened.
     """
-    lock = Lock(file)
+    # The mode too, since root may write everything: who took the right away meant it.
+    if not os.access(file, os.W_OK) or not file.stat().st_mode & 0o222:
+        raise ArchiveError(f"{file}: is read-only; copy it, or write to another file")
+    if not os.access(file.parent, os.W_OK):
+        raise ArchiveError(f"{file}: the directory {file.parent} may not be written; copy the file to another one")
+    lock, said = Lock(file), "was replaced by another process this moment; try again"
     if not force and not lock.taken:
-        lock.close()
-        raise ArchiveError(f"{file}: {writer}, which writes it, seems to be alive; end it first, or say force=True")
-    mine = os.fstat(lock.descriptor)
-    # The name, the file that was read and the file that is locked are one.
-    if not (file.exists() and os.path.samestat(mine, file.stat()) and os.path.samestat(mine, os.fstat(descriptor))):
-        lock.close()
-        raise ArchiveError(f"{file}: was replaced by another process this moment; try again")
-    return lock
+        said = f"process {writer or 'unknown'}, which writes it, seems to be alive; end it first, or say force=True"
+    elif file.exists() and all(
+        os.path.samestat(os.fstat(lock.descriptor), s) for s in (file.stat(), os.fstat(descriptor))
+    ):
+        # The name, the file that was read and the file that is locked are one.
+        return lock
+    lock.close()
+    raise ArchiveError(f"{file}: {said}")

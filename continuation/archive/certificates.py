@@ -17,12 +17,11 @@ from typing import Any
 import h5py
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError, as_file, beside, like, publish, short
-from continuation.archive.checks import DamageError, digest
+from continuation.archive.atomic import ArchiveError, as_file, beside, like, own, publish, short
+from continuation.archive.codec import read_arrays, write_arrays
 from continuation.archive.contents import FAULTS
-from continuation.archive.hdf5 import Allowance, StructureError, dataset, names, subgroup
+from continuation.archive.hdf5 import StructureError, subgroup
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.recover import own
 from continuation.archive.resume import stored_homotopy
 from continuation.archive.trust import registry
 from continuation.certificate.cells import NAMES, Cells
@@ -30,9 +29,6 @@ from continuation.certificate.certifying import recheck as checked_again
 from continuation.certificate.proof import Gap, Proof
 
 GROUP = "certificate"
-
-_COLUMNS = {"slabs": np.dtype("i8"), "place": np.dtype("f8")}
-"""Types of what is not a vector of the path's length; `place` has two numbers a cell."""
 
 
 def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
@@ -52,7 +48,10 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
         If the file cannot be read or replaced, or has no such path.
     """
     name = File(os.path.realpath(as_file("file", file)))
-    with open_archive(name) as source, closing(own(source.contents, name)):
+    with (
+        open_archive(name) as source,
+        closing(own(name, source.contents.descriptor, source.attributes.get("process"))),
+    ):
         number = range(len(source))[path]
         with beside(name) as part:
             shutil.copyfile(name, part)
@@ -67,45 +66,36 @@ def add_proof(file: str | PathLike[str], proof: Proof, path: int = -1) -> None:
 
 def _write(group: Any, proof: Proof) -> None:
     group.attrs["summary"] = str(proof)[:1000]
-    for column in NAMES:
-        values = np.ascontiguousarray(getattr(proof.cells, column))
-        group.create_dataset(column, data=values.astype(_COLUMNS.get(column, "f8")))
-        group[column].attrs["checksum"] = np.uint32(digest(group[column][()]))
+    columns = {name: np.ascontiguousarray(getattr(proof.cells, name)) for name in NAMES}
+    write_arrays(group, {name: values.astype("i8" if name == "slabs" else "f8") for name, values in columns.items()})
 
 
 def read_cells(archive: Archive, path: int) -> Cells | None:
     """The cells of a stored proof; None where the path has none; `ArchiveError` if they are not what was written."""
     try:
-        return _read(archive.contents.root, path, archive.contents.allowance)
+        root = archive.contents.root
+        if GROUP not in set(root) or str(path) not in set(subgroup(root, GROUP)):
+            return None
+        columns = read_arrays(subgroup(subgroup(root, GROUP), str(path)), True, archive.contents.allowance)
+        _check(columns)
+        return Cells(**columns)
     except FAULTS as error:
         raise ArchiveError(
             f"{archive.contents.file}: the certificate of path {path} is damaged ({short(error)})"
         ) from None
 
 
-def _read(root: Any, path: int, allowance: Allowance) -> Cells | None:
-    if GROUP not in names(root):
-        return None
-    group = subgroup(root, GROUP)
-    if str(path) not in names(group):
-        return None
-    group, count = subgroup(group, str(path)), None
-    columns: dict[str, Any] = {}
-    for column in NAMES:
-        # As wide as the first is, which may be wider than the path (`continuation.certificate.lifting`).
-        width = columns["begin"].shape[1] if columns else None
-        shape: Sequence[int | None] = (None,) if column == "slabs" else (None, 2 if column == "place" else width)
-        found = dataset(group, column, _COLUMNS.get(column, np.dtype("f8")), shape, allowance)
-        values = np.asarray(found[()])
-        if digest(values) != found.attrs["checksum"]:
-            raise DamageError(f"{column} is not what was written")
-        count = len(values) if count is None else count
-        if len(values) != count or not np.isfinite(values).all():
-            raise StructureError(f"{column} has {len(values)} rows, or numbers that are not finite")
-        columns[column] = values
-    if count and not (columns["slabs"].min() >= 1 and columns["slabs"].max() <= _MOST_SLABS):
+def _check(columns: dict[str, Any]) -> None:
+    """Whether the columns are those of a proof: numbers that are finite, of shapes that fit."""
+    # As wide as the first is, which may be wider than the path (`continuation.certificate.lifting`).
+    count, width = columns["begin"].shape
+    for name in NAMES:
+        shape = (count,) if name == "slabs" else (count, 2 if name == "place" else width)
+        kind = "i" if name == "slabs" else "f"
+        if columns[name].shape != shape or columns[name].dtype.kind != kind or not np.isfinite(columns[name]).all():
+            raise StructureError(f"{name} is of another shape, or holds numbers that are not finite")
+    if not all(1 <= slabs <= _MOST_SLABS for slabs in columns["slabs"]):
         raise StructureError("slabs are not from 1 to 64")
-    return Cells(**columns)
 
 
 _MOST_SLABS = 64

@@ -14,6 +14,7 @@ import numpy as np
 from attrs import frozen
 
 from continuation.archive.codec import UnstorableError, encode, order
+from continuation.archive.schema import SLOTS
 from continuation.archive.trust import UnknownError, decode
 from continuation.step.settings import Settings
 from continuation.step.state import State
@@ -44,15 +45,6 @@ class Checkpoint:
     counts: Mapping[str, int]
     seconds: float
     run: Mapping[str, Any]
-
-
-@frozen
-class Foreign:
-    """A checkpoint of another major version of the library, whose state this one cannot go on from."""
-
-    sequence: int
-    path: int
-    version: str
 
 
 def major(version: str) -> str:
@@ -149,31 +141,33 @@ def pack(checkpoint: Checkpoint, run: bytes | None = None) -> bytes:
     return HEAD.pack(checkpoint.sequence, len(body), zlib.crc32(body)) + body
 
 
-def unpack(raw: bytes) -> Checkpoint | Foreign | None:
-    """The checkpoint, a `Foreign` one of another version, or None where the bytes are not a whole one.
+def slot_of(checkpoint: Checkpoint | None) -> dict[int, bytes]:
+    """The checkpoint in its slot of a new file, which is not the one that the next is written to."""
+    return {} if checkpoint is None else {checkpoint.sequence % SLOTS: pack(checkpoint)}
+
+
+def unpack(raw: bytes) -> Checkpoint | None:
+    """The checkpoint; None where the bytes are not a whole one, or one of another major version of the library.
 
     It was never written, or torn by a kill: then the points are as good as ever, only resuming is over. The state is
     read as numbers; nothing that the bytes name is made.
     """
-    if len(raw) < HEAD.size:
-        return None
-    sequence, length, crc = HEAD.unpack_from(raw)
-    body = raw[HEAD.size : HEAD.size + length]
-    if not length or len(body) < length or zlib.crc32(body) != crc:
-        return None
     try:
+        sequence, length, crc = HEAD.unpack_from(raw)
+        body = raw[HEAD.size : HEAD.size + length]
+        if not length or len(body) < length or zlib.crc32(body) != crc:
+            return None
         head, described, arrays = body.split(b"\n", 2)
-        tree, run = json.loads(head), json.loads(described)
+        tree, run = json.loads(head), dict(json.loads(described))
         # Versions were not told apart before the second.
-        version = str(tree.get("version", "0.1.0"))
-        if major(version) != major(__version__):
-            return Foreign(sequence, int(tree["path"]), version)
+        if major(str(tree.get("version", "0.1.0"))) != major(__version__):
+            return None
         state = decode(tree["state"], _fetched(arrays), hint=State)
         counts = {str(name): int(value) for name, value in tree["counts"].items()}
         path, rows, seconds = int(tree["path"]), int(tree["rows"]), float(tree["seconds"])
-    except (UnknownError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+    except (struct.error, UnknownError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
-    sensible = _consistent(state) and path >= 0 and rows > 0 and isinstance(run, dict)
+    sensible = _consistent(state) and path >= 0 and rows > 0
     return Checkpoint(sequence, path, rows, state, counts, seconds, run) if sensible else None
 
 

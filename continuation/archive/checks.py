@@ -69,15 +69,12 @@ def blank() -> Array:
 def latest(records: Array) -> Committed:
     """The last commit that was completed; `DamageError` if the records do not tell."""
     found = [_unpack(record.tobytes()) for record in records]
-    commits = [commit for commit in found[PLACES:] if commit is not None]
-    if not commits:
-        raise DamageError("the records of what was committed are damaged")
-    last = max(commits, key=lambda commit: commit.sequence)
-    if len(commits) == PLACES:
+    last = max((one for one in found[PLACES:] if one is not None), key=lambda one: one.sequence, default=None)
+    # If the other place is torn or damaged, the intent tells whether a later commit had come so far as to write there.
+    intent = None if last is None else found[(last.sequence + 1) % PLACES]
+    if last is not None and None not in found[PLACES:]:
         return last
-    # The other place is torn or damaged: the intent tells whether a later commit had come so far as to write there.
-    intent = found[(last.sequence + 1) % PLACES]
-    if intent is None:
+    if last is None or intent is None:
         raise DamageError("the records of what was committed are damaged")
     return intent if intent.sequence > last.sequence else last
 

@@ -17,7 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from continuation.archive.checks import DamageError, digest
-from continuation.archive.hdf5 import Allowance, dataset, names
+from continuation.archive.hdf5 import Allowance, dataset
 
 GROUP = "problem"
 
@@ -47,12 +47,27 @@ def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
 def write_problem(file: Any, description: str, arrays: Mapping[str, Any]) -> None:
     """Put them into a new file."""
     group = file.create_group(GROUP)
-    group.attrs["description"] = description
-    group.attrs["checksum"] = np.uint32(zlib.crc32(description.encode()))
+    group.attrs.update({"description": description, "checksum": np.uint32(zlib.crc32(description.encode()))})
+    write_arrays(group, arrays)
+
+
+def write_arrays(group: Any, arrays: Mapping[str, Any]) -> None:
+    """Arrays in a group, each with a checksum of its own."""
     for name, array in arrays.items():
         stored = group.create_dataset(name, data=array)
-        stored.attrs["order"] = order(array)
-        stored.attrs["checksum"] = np.uint32(digest(array))
+        stored.attrs.update({"order": order(array), "checksum": np.uint32(digest(array))})
+
+
+def read_arrays(group: Any, checked: bool, allowance: Allowance) -> dict[str, Any]:
+    """The arrays of a group again; `DamageError` if they were changed."""
+    arrays = {}
+    for name in group:
+        found = dataset(group, name, None, None, allowance)
+        lying: Literal["C", "F"] = "F" if found.attrs.get("order") == "F" else "C"
+        arrays[name] = np.asarray(found[()], order=lying)
+        if checked and digest(arrays[name]) != found.attrs["checksum"]:
+            raise DamageError(f"the array {name} of its {group.name} is not what was written")
+    return arrays
 
 
 def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, Mapping[str, Any]]:
@@ -62,14 +77,7 @@ def read_problem(group: Any, checked: bool, allowance: Allowance) -> tuple[str, 
     description = str(group.attrs["description"])
     if checked and zlib.crc32(description.encode(errors="replace")) != group.attrs["checksum"]:
         raise DamageError("the description of its problem is not what was written")
-    arrays = {}
-    for name in names(group):
-        found = dataset(group, name, None, None, allowance)
-        lying: Literal["C", "F"] = "F" if found.attrs["order"] == "F" else "C"
-        arrays[name] = np.asarray(found[()], order=lying)
-        if checked and digest(arrays[name]) != found.attrs["checksum"]:
-            raise DamageError(f"the array {name} of its problem is not what was written")
-    return description, arrays
+    return description, read_arrays(group, checked, allowance)
 
 
 Place = Callable[[str, Any], Any]
@@ -108,16 +116,13 @@ def path_of(thing: Any) -> str:
 
     Raises `UnstorableError` for one that is local to a function, made by lambda, or defined in a script.
     """
-    module, name = getattr(thing, "__module__", None), getattr(thing, "__qualname__", None)
-    if not isinstance(module, str) or not isinstance(name, str):
-        raise UnstorableError(f"{thing!r} has no name to import it by")
-    if module == "__main__":
-        raise UnstorableError(f"{name} is defined in a script, not in a module")
+    module, name = str(getattr(thing, "__module__", None)), str(getattr(thing, "__qualname__", repr(thing)))
     found: Any = sys.modules.get(module)
     for part in name.split("."):
         found = getattr(found, part, None)
-    if found is not thing:
-        raise UnstorableError(f"{module}:{name} is not at the top of a module")
+    if module == "__main__" or found is not thing:
+        where = "is defined in a script" if module == "__main__" else f"is not found in {module}"
+        raise UnstorableError(f"{name} has no name to import it by: it {where}")
     return f"{module}:{name}"
 
 
@@ -127,14 +132,9 @@ def encode(value: Any, place: Place, name: str = "value") -> Any:
     Raises `UnstorableError` if some part of it is neither number, text, container, array, attrs class, importable
     function nor `SupportsArchive`.
     """
-    if value is None or isinstance(value, str):
+    value = value.item() if isinstance(value, np.generic) else value
+    if value is None or isinstance(value, (str, bool, int, float)):
         return value
-    if isinstance(value, (bool, np.bool_)):
-        return bool(value)
-    if isinstance(value, (int, np.integer)):
-        return int(value)
-    if isinstance(value, (float, np.floating)):
-        return float(value)
     if isinstance(value, np.ndarray):
         if value.dtype.kind not in "fiubc":
             raise UnstorableError(f"{name} is an array of {value.dtype}")

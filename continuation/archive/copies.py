@@ -6,29 +6,24 @@ several. Recovery, resuming, merging, export, diagrams and the parts of a sweep 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from numbers import Integral
-from os import PathLike
 from pathlib import Path as File
 from typing import Any
 
 import numpy as np
 from attrs import evolve, frozen
 
-from continuation.archive.atomic import ArchiveError, as_file, check_new
+from continuation.archive.atomic import ArchiveError
 from continuation.archive.contents import Contents
-from continuation.archive.provenance import history, process
-from continuation.archive.reader import Archive, open_archive
-from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, TEXT, Column, Layout, text
-from continuation.archive.store import Store, put
-from continuation.arguments.checks import complain
-from continuation.status import Status
+from continuation.archive.reader import Archive
+from continuation.archive.schema import ORIGIN_COLUMNS, SCHEMA, Column, Layout, text
+from continuation.archive.store import Store
+from continuation.archive.tables import ROWS_AT_ONCE
 
 Block = dict[str, Any]
 
-_BLOCK_BYTES, _BLOCK_ROWS = 1 << 23, 4096
+_BLOCK_BYTES = 1 << 23
 """Of what is copied at once, and so of the blocks that a reader checks whole."""
 
 
@@ -62,40 +57,33 @@ class Share:
         return int(self.points.stop - self.points.start)
 
 
-def check_level(compression: Any) -> None:
-    """Raise unless gzip knows the level."""
-    if not isinstance(compression, Integral) or not 0 <= int(compression) <= 9:
-        raise ValueError(f"compression: expected a level from 0 to 9, found {compression!r}")
-
-
 def share_of(archive: Archive, first: int = 0, last: int | None = None, points: int | None = None) -> Share:
     """Paths of an archive from number `first` to before `last`, or all, and their points, or so many from the first on.
 
     Each path has its homotopy and its source: those of the file, where its row does not say.
     """
     stop, contents = len(archive) if last is None else last, archive.contents
-    paths, about, count = archive.paths.block(slice(first, stop)), contents.attributes, stop - first
+    about, begin = contents.attributes, archive.rows(first).start if stop > first else 0
     # Of files without an identifier the time, the process and the name must do.
     unnamed = f"{about.get('created', '')}/{about.get('process', '')}/{contents.file.name}".replace(" ", "_")
-    identifier = about.get("identifier", unnamed)
-    said = {
-        "homotopy": [about.get("homotopy", "")] * count,
-        "source": [f"{identifier} {first + k} {contents.file.name}" for k in range(count)],
-    }
+    end = begin + points if points is not None else archive.rows(stop - 1).stop if stop > first else 0
+    share = Share.of(contents, archive.paths.block(slice(first, stop)), slice(begin, end), first)
+    return sourced(share, about.get("identifier", unnamed), contents.file.name, about.get("homotopy", ""))
+
+
+def sourced(share: Share, identifier: str, file: str, homotopy: str = "", first: int | None = None) -> Share:
+    """The share, of which each path says what it is of, and in which file it was first, where it does not say so yet.
+
+    `first`: The number of the first path there.
+    """
+    count, begin = len(share.paths["path"]), share.first if first is None else first
+    said = {"homotopy": [homotopy] * count, "source": [f"{identifier} {begin + k} {file}" for k in range(count)]}
+    paths = dict(share.paths)
     for column in ORIGIN_COLUMNS:
         own = paths.get(column.name, np.zeros(count, dtype=column.storage))
-        filled = np.array([text(str(value), column.length) for value in said[column.name]], dtype=column.storage)
-        paths[column.name] = np.where(own == b"", filled, own)
-    begin = archive.rows(first).start if count else 0
-    end = begin + points if points is not None else archive.rows(stop - 1).stop if count else 0
-    return Share.of(contents, paths, slice(begin, end), first)
-
-
-def interrupt(paths: Mapping[str, Any]) -> None:
-    """A path that was being traced when its writer died counts as interrupted."""
-    open_ = paths["status"] == int(Status.TRACING)
-    paths["status"][open_] = int(Status.INTERRUPTED)
-    paths["message"][open_] = text(f"{Status.INTERRUPTED} Its writer was killed.", TEXT)
+        here = np.array([text(value.strip(), column.length) for value in said[column.name]], dtype=column.storage)
+        paths[column.name] = np.where(own == b"", here, own)
+    return evolve(share, paths=paths)
 
 
 def leading(shares: Sequence[Share]) -> Contents:
@@ -107,9 +95,9 @@ def leading(shares: Sequence[Share]) -> Contents:
 
 def append(store: Store, share: Share) -> None:
     """Add a share that is in memory to a file, in one commit."""
-    held = store.committed
-    points = _numbered(share, store, share.points, held.paths) if share.size else None
-    store.commit(points, held.points, _rows(share, store.layout, held.paths), held.paths)
+    number = store.committed.paths
+    points = _numbered(share, store, share.points, number) if share.size else None
+    store.commit(points, _rows(share, store.layout, number))
 
 
 def write_copy(
@@ -128,7 +116,7 @@ def write_copy(
     store = Store(part, layout, {**attributes, "schema": SCHEMA}, leading(shares).problem(), compression=compression)
     try:
         for block in _blocks(shares, store):
-            store.commit(block, store.committed.points)
+            store.commit(block)
         counts = np.cumsum([0, *(len(share.paths["path"]) for share in shares)]).tolist()
         rows = [_rows(share, layout, number) for share, number in zip(shares, counts)]
         store.commit(paths=_joined(rows) if counts[-1] else None, checkpoints=checkpoints)
@@ -148,20 +136,17 @@ def _joint(shares: Sequence[Share]) -> Layout:
                 f"{share.origin.file}: holds paths of {share.layout.unknowns} unknowns, {head.file} of "
                 f"{first.unknowns}; one file holds one number"
             )
-    return evolve(
-        first,
-        controller=max(layout.controller for layout in layouts),
-        observed=tuple(sorted({name for layout in layouts for name in layout.observed})),
-        scalars=tuple(sorted({name for layout in layouts for name in layout.scalars})),
-        tangents=any(layout.tangents for layout in layouts),
-        pieces=any(layout.pieces for layout in layouts),
-        origins=any(layout.origins for layout in layouts) or len(layouts) > 1,
-    )
+    joint: dict[str, Any] = {
+        name: max(getattr(layout, name) for layout in layouts) for name in ("controller", "tangents", "pieces")
+    }
+    for name in ("observed", "scalars"):
+        joint[name] = tuple(sorted({own for layout in layouts for own in getattr(layout, name)}))
+    return evolve(first, origins=any(layout.origins for layout in layouts) or len(layouts) > 1, **joint)
 
 
 def _blocks(shares: Sequence[Share], store: Store) -> Iterator[Block]:
     """The points of all of them, in blocks of nearly one size: what is small is joined, what is large cut."""
-    size = min(max(_BLOCK_BYTES // (8 * (store.layout.unknowns + 16)), 1), _BLOCK_ROWS)
+    size = min(max(_BLOCK_BYTES // (8 * (store.layout.unknowns + 16)), 1), ROWS_AT_ONCE)
     waiting: list[Block] = []
     held = path = 0
     for share in shares:
@@ -212,92 +197,3 @@ def filled(block: Mapping[str, Any], layout: Layout, columns: Sequence[Column], 
             values = missing
         whole[column.name] = np.ascontiguousarray(values)
     return whole
-
-
-# -- many files as one -----------------------------------------------------------------------------------------
-
-
-def merge(
-    files: Iterable[str | PathLike[str]], target: str | PathLike[str], *, compression: int = 0, title: str = ""
-) -> File:
-    """Concatenate archives, in the order given: paths are numbered anew, everything else stays as it is.
-
-    Files of killed writers count with what was committed. Each path keeps its homotopy and its source, the columns
-    ``homotopy`` and ``source`` of the path table; the settings and the problem of the first file are those of the new
-    one, which cannot be resumed.
-
-    Parameters
-    ----------
-    files : iterable of path
-    target : path
-        Must not exist.
-    compression : int
-        Level of gzip, 0 to 9.
-    title : str
-
-    Raises
-    ------
-    ValueError
-        If there are no files, or gzip does not know the level.
-    ArchiveError
-        If one is no archive, has another number of unknowns than the first, or a path that another has too, or if
-        `target` exists.
-    """
-    if isinstance(files, (str, bytes, PathLike)) or not isinstance(files, Iterable):
-        raise complain(TypeError, "files", "names of archives, in a list", files)
-    files = list(files)
-    if not files:
-        raise ValueError("files: expected at least one archive, found none")
-    check_level(compression)
-    whole = as_file("target", target)
-    check_new(whole)
-    with ExitStack() as stack:
-        archives = [stack.enter_context(open_archive(file)) for file in files]
-        shares = [share_of(archive) for archive in archives]
-        first = leading(shares).attributes
-        names = ", ".join(archive.file.name for archive in archives[:8]) + (", ..." if len(archives) > 8 else "")
-        attributes = {**first, **process(), **history(first, f"merged from {len(archives)} files: {names}")}
-        if title:
-            attributes["title"] = title
-        _refuse_duplicates(archives, shares)
-        put(whole, lambda part: write_copy(shares, part, attributes=attributes, compression=compression))
-    return whole
-
-
-def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> None:
-    """A path that is in two of the files would count twice in every average."""
-    known: dict[bytes, str] = {}
-    for archive, share in zip(archives, shares):
-        for k, source in enumerate(share.paths["source"]):
-            # The identifier and the number; the name of the file may have been changed since.
-            key = b" ".join(source.split(b" ", 2)[:2])
-            if key in known:
-                raise ArchiveError(f"{archive.file}: its path {k} is {known[key]} as well; expected each path once")
-            known[key] = f"path {k} of {archive.file}"
-
-
-def gather(files: Sequence[File], target: File) -> None:
-    """Merge the parts of a sweep, in the order of its members; those of other sizes than the first keep no points."""
-    with ExitStack() as stack:
-        archives = [stack.enter_context(open_archive(file)) for file in files]
-        places = []
-        for archive in archives:
-            archive.paths.load()
-            places += [(member, archive, k) for k, member in enumerate(archive.paths["member"].tolist())]
-        shares = [share_of(archive, k, k + 1) for _, archive, k in sorted(places, key=lambda place: place[0])]
-        head = leading(shares)
-        shares = [_of_size(share, head.layout.unknowns, target) for share in shares]
-        attributes = {**head.attributes, **process(), **history(head.attributes, f"a sweep of {len(shares)} paths")}
-        put(target, lambda part: write_copy(shares, part, attributes=attributes))
-
-
-def _of_size(share: Share, unknowns: int, target: File) -> Share:
-    """The share; if its paths have another number of unknowns, what they would be in one file: refused."""
-    found = share.layout.unknowns
-    if found == unknowns or not share.size:
-        return share
-    reason = f"ValueError: homotopy: expected {unknowns} unknowns, as in {target} so far, found {found}"
-    paths = dict(share.paths)
-    for name, value in {"status": int(Status.RAISED), "message": text(reason, TEXT), "n_points": 0}.items():
-        paths[name] = np.full_like(paths[name], value)
-    return evolve(share, paths=paths, points=slice(0, 0))

@@ -15,15 +15,13 @@ from typing import Any
 import numpy as np
 from attrs import define, evolve
 
-from continuation.archive.atomic import as_file, beside, check_new
-from continuation.archive.copies import Share, append, filled, share_of, write_copy
+from continuation.archive.atomic import new_file, own
+from continuation.archive.copies import Share, append, filled, share_of, sourced, write_copy
 from continuation.archive.provenance import history, process, root_attributes
 from continuation.archive.reader import open_archive
-from continuation.archive.recover import own
 from continuation.archive.resume import check_homotopy
 from continuation.archive.rows import layout_of, record_of, row_columns, rows_of, to_columns
-from continuation.archive.schema import ORIGIN_COLUMNS, text
-from continuation.archive.store import Store, create, put
+from continuation.archive.store import Store, put
 from continuation.archive.tables import StoredSteps, Table, dataframe, dataset
 from continuation.path import Path
 
@@ -48,13 +46,6 @@ def _part(columns: Mapping[str, Any], name: str, rows: slice) -> Any:
     return columns[name][rows]
 
 
-def _sourced(share: Share, number: int, identifier: str, file: File) -> Share:
-    """The share, of which each path says where it was written first."""
-    (column,) = (column for column in ORIGIN_COLUMNS if column.name == "source")
-    source = np.array([text(f"{identifier} {number} {file.name}".strip(), column.length)], dtype=column.storage)
-    return evolve(share, paths={**share.paths, "member": np.array([number]), "source": source})
-
-
 def attributes_of(path: Path, title: str = "") -> dict[str, Any]:
     """The root attributes of a file that begins with a path."""
     attributes = root_attributes(None, title or "A path", {})
@@ -64,7 +55,7 @@ def attributes_of(path: Path, title: str = "") -> dict[str, Any]:
 def dataset_of(path: Path) -> Any:
     """The path as an `xarray.Dataset`."""
     share, attributes = share_of_path(path), attributes_of(path)
-    share = _sourced(share, 0, attributes["identifier"], File())
+    share = sourced(share, attributes["identifier"], "", first=0)
     points = Table(share.layout.point_columns, share.size, share.fetch)
     paths = Table(share.layout.path_columns, 1, partial(_part, share.paths))
     return dataset(points, paths, share.names, share.layout.unknowns, attributes)
@@ -87,16 +78,14 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
     `many`: At least one; all of one number of unknowns, with the same scalars observed. Raises `ArchiveError` if it
     exists, or cannot be written.
     """
-    target = as_file("file", file)
-    check_new(target)
-    attributes = attributes_of(many[0], title)
+    target, attributes = new_file("file", file), attributes_of(many[0], title)
     pieces = any(event.switches for path in many for event in path.events)
-    shares = [share_of_path(path, pieces=pieces) for path in many]
+    shares = [share_of_path(path, member=k, pieces=pieces) for k, path in enumerate(many)]
 
     def write(part: Any) -> Store:
         store = Store(part, shares[0].layout, attributes)
         for number, share in enumerate(shares):
-            append(store, _sourced(share, number, attributes["identifier"], target))
+            append(store, sourced(share, store.identifier, target.name, first=number))
         return store
 
     put(target, write)
@@ -115,7 +104,6 @@ class Growing:
     pieces: bool
     keep: str = "all"
     _store: Store | None = None
-    _identifier: str = ""
 
     def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
         """The paths of the file, if there is one, each whole and as it is kept; the file goes on from then on.
@@ -125,34 +113,34 @@ class Growing:
         if not self.file.exists():
             return
         target = File(os.path.realpath(self.file))
-        with open_archive(target) as source, closing(own(source.contents, target)), beside(target) as part:
-            if len(source):
-                last = source[-1].endpoint
-                check_homotopy(homotopy, last.u, last.residual_norm)
-            for number, path in enumerate(source):
-                # A point that was read is part of an array, which would stay in memory with it.
-                ends = path if self.keep == "all" else deepcopy(evolve(path, steps=[path.steps[0], path.steps[-1]]))
-                yield path, self._kept(ends, number, source.points["role"][source.rows(number)])
-            attributes = {**source.attributes, **process(), **history(source.attributes, "went on")}
-            store = write_copy([share_of(source)], part, attributes=attributes)
-            store.publish(target, replace=True)
-            self._store, self._identifier = store, attributes["identifier"]
+        with open_archive(target) as source:
+            about = source.attributes
+            with closing(own(target, source.contents.descriptor, about.get("process"))):
+                if len(source):
+                    last = source[-1].endpoint
+                    check_homotopy(homotopy, last.u, last.residual_norm)
+                for number, path in enumerate(source):
+                    # A point that was read is part of an array, which would stay in memory with it.
+                    yield path, path if self.keep == "all" else deepcopy(self._kept(path, number))
+                attributes = {**about, **process(), **history(about, "went on")}
+                copy = partial(write_copy, [share_of(source)], attributes=attributes)
+                self._store = put(target, copy, replace=True, grows=True)
 
     def add(self, path: Path) -> Path:
         """One more path, which comes back as it is kept; the first makes the file."""
-        share = share_of_path(path, pieces=self.pieces)
+        number = 0 if self._store is None else self._store.committed.paths
+        share = share_of_path(path, member=number, pieces=self.pieces)
         if self._store is None:
             attributes = attributes_of(path, self.title)
-            self._store, self._identifier = create(self.file, share.layout, attributes), attributes["identifier"]
-        number = self._store.committed.paths
-        append(self._store, _sourced(share, number, self._identifier, self.file))
-        return self._kept(path, number, share.fetch("role", share.points))
+            self._store = put(self.file, partial(Store, layout=share.layout, attributes=attributes), grows=True)
+        append(self._store, sourced(share, self._store.identifier, self.file.name, first=number))
+        return self._kept(path, number)
 
-    def _kept(self, path: Path, number: int, roles: Any) -> Path:
+    def _kept(self, path: Path, number: int) -> Path:
         if self.keep == "all":
             return path
-        steps: Any = StoredSteps(open_archive, self.file, number)
-        steps.known(roles, (path.steps[0], path.steps[-1]))
+        ends = [path.steps[0], path.steps[-1]]
+        steps: Any = StoredSteps(open_archive, self.file, number, ends, len(path.steps))
         return evolve(path, steps=steps)
 
     def __enter__(self) -> Growing:

@@ -39,32 +39,40 @@ class Image:
     """
 
     def __init__(self, file: File) -> None:
-        self.file, self.at, self.failure = file, 0, ""
-        self.descriptor = _opened(file)
+        self.descriptor, self.at, self.failure, self.closed_by_writer, self.missing = -1, 0, "", True, 0
         try:
-            self._head = self._closed(os.pread(self.descriptor, HEAD_BYTES, 0))
-        except BaseException as error:
-            os.close(self.descriptor)
-            if isinstance(error, ArchiveError) or not isinstance(error, OSError):
+            # Without O_NONBLOCK a FIFO would wait for somebody to write to it.
+            self.descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        except (OSError, ValueError) as error:
+            said = f"cannot be opened ({short(error)})"
+            what = "there is no such file" if isinstance(error, FileNotFoundError) else said
+            raise ArchiveError(f"{file}: {what}") from None
+        try:
+            status = os.fstat(self.descriptor)
+            if not stat.S_ISREG(status.st_mode):
+                what = "a directory" if stat.S_ISDIR(status.st_mode) else "no regular file"
+                raise ArchiveError(f"{file}: is {what}, an archive is a file")
+            self.length = status.st_size
+            self._head = self._closed(file, os.pread(self.descriptor, HEAD_BYTES, 0))
+        except OSError as error:
+            self.close()
+            if isinstance(error, ArchiveError):
                 raise
             raise ArchiveError(f"{file}: could not be read ({short(error)})") from error
 
-    def _closed(self, head: bytes) -> bytes:
+    def _closed(self, file: File, head: bytes) -> bytes:
         """The head that the file would have if its writer had closed it."""
-        if not head:
-            raise ArchiveError(f"{self.file}: is empty; its writer ended before anything was written")
         if not head.startswith(SIGNATURE):
-            raise ArchiveError(f"{self.file}: is not an HDF5 file, so not an archive")
-        if len(head) < HEAD_BYTES:
-            raise ArchiveError(f"{self.file}: truncated, only its first {len(head)} bytes are there")
-        size = os.fstat(self.descriptor).st_size
-        self.closed_by_writer, self.missing, self.length = True, 0, size
-        if head[_VERSION] not in (2, 3):
+            what = "is not an HDF5 file, so not an archive" if head else "is empty; its writer ended before it wrote"
+            raise ArchiveError(f"{file}: {what}")
+        padded = head.ljust(HEAD_BYTES, b"\0")
+        if padded[_VERSION] not in (2, 3):
             return head
-        if struct.unpack_from("<I", head, _CRC)[0] != lookup3(head[:_CRC]):
-            raise ArchiveError(f"{self.file}: truncated or damaged, HDF5 cannot open it (its head is not sound)")
+        if struct.unpack_from("<I", padded, _CRC)[0] != lookup3(padded[:_CRC]):
+            raise ArchiveError(f"{file}: truncated or damaged, HDF5 cannot open it (its head is not sound)")
         self.closed_by_writer = head[_VERSION] < 3 or not head[_IN_USE]
-        self.missing, self.length = max(stated_length(head) - size, 0), max(stated_length(head), size)
+        stated, size = stated_length(head), self.length
+        self.missing, self.length = max(stated - size, 0), max(stated, size)
         length = struct.pack("<Q", self.length)
         closed = head[:_IN_USE] + b"\0" + head[_IN_USE + 1 : _LENGTH] + length + head[_LENGTH + 8 : _CRC]
         return closed + struct.pack("<I", lookup3(closed))
@@ -73,7 +81,7 @@ class Image:
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
         """Move; the end is where it should be."""
-        self.at = offset + {os.SEEK_SET: 0, os.SEEK_CUR: self.at, os.SEEK_END: self.length}[whence]
+        self.at = offset + (0, self.at, self.length)[whence]
         return self.at
 
     def tell(self) -> int:
@@ -108,30 +116,12 @@ class Image:
         """Give the file back."""
         if self.descriptor >= 0:
             os.close(self.descriptor)
-            self.descriptor = -1
+        self.descriptor = -1
 
 
 def stated_length(head: bytes) -> int:
     """The bytes that a file is to have, as its superblock says."""
     return int(struct.unpack_from("<Q", head, _LENGTH)[0])
-
-
-def _opened(file: File) -> int:
-    said: dict[type, str] = {
-        FileNotFoundError: "there is no such file",
-        PermissionError: "may not be read (permissions)",
-    }
-    try:
-        # Without O_NONBLOCK a FIFO would wait for somebody to write to it.
-        descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    except (OSError, ValueError) as error:
-        raise ArchiveError(f"{file}: {said.get(type(error), f'cannot be opened ({short(error)})')}") from None
-    mode = os.fstat(descriptor).st_mode
-    if not stat.S_ISREG(mode):
-        os.close(descriptor)
-        what = "a directory" if stat.S_ISDIR(mode) else "no regular file"
-        raise ArchiveError(f"{file}: is {what}, an archive is a file")
-    return descriptor
 
 
 def _check_heap(heap: memoryview) -> None:
@@ -217,28 +207,22 @@ class Allowance:
 
 
 def member(group: Any, name: str) -> Any:
-    """A group or dataset in a group, by a hard link.
-
-    Raises `StructureError` if there is none of that name, or it is a link to somewhere else.
-    """
+    """A group or dataset in a group, by a hard link; `StructureError` if there is none."""
     raw = name.encode()
-    if raw not in group.id:
-        raise StructureError(f"it has no {name}")
-    if group.id.links.get_info(raw).type != h5l.TYPE_HARD:
-        raise StructureError(f"{name} is a link to somewhere else")
+    if not group.id.links.exists(raw) or group.id.links.get_info(raw).type != h5l.TYPE_HARD:
+        raise StructureError(f"it has no {name}, or a link to somewhere else")
     # As `group[name]`, which makes a new object of the whole file each time.
     found = h5o.open(group.id, raw)
     return h5py.Dataset(found) if isinstance(found, h5d.DatasetID) else h5py.Group(found)
 
 
-def names(group: Any) -> list[str]:
+def names(group: Any) -> set[str]:
     """The names of all that is in a group; `StructureError` if two are names of one thing, which would count twice."""
-    known: dict[Any, str] = {}
-    for raw in group.id:
-        link, name = group.id.links.get_info(raw), raw.decode(errors="surrogateescape")
-        if known.setdefault((link.type, link.u if link.type == h5l.TYPE_HARD else raw), name) != name:
-            raise StructureError(f"{name} is stored once, under two names")
-    return list(known.values())
+    links = [group.id.links.get_info(raw) for raw in group.id]
+    places = [link.u for link in links if link.type == h5l.TYPE_HARD]
+    if len(set(places)) < len(places):
+        raise StructureError("something is stored once, under two names")
+    return set(group)
 
 
 def subgroup(group: Any, name: str) -> Any:
@@ -267,17 +251,13 @@ def dataset(
         raise StructureError(f"{name} is no dataset")
     stored, lengths, properties = found.dtype, found.shape or (), found.id.get_create_plist()
     filters = [properties.get_filter(k)[0] for k in range(properties.get_nfilters())]
-    chunked = properties.get_layout() == h5d.CHUNKED
-    chunk = properties.get_chunk() if chunked else ()
-    shaped = shape is None or (
-        found.shape is not None and len(lengths) == len(shape) and all(n in (None, m) for n, m in zip(shape, lengths))
-    )
-    typed = stored.kind in "fiubc" if kind is None else stored == kind or (
-        kind.kind == stored.kind == "S" and stored.itemsize == kind.itemsize
-    )  # fmt: skip
+    chunk = properties.get_chunk() if properties.get_layout() == h5d.CHUNKED else (0,)
+    shaped = shape is None or (len(lengths) == len(shape) and all(n in (None, m) for n, m in zip(shape, lengths)))
+    texts = kind is not None and kind.kind == stored.kind == "S" and stored.itemsize == kind.itemsize
+    typed = stored.kind in "fiubc" if kind is None else texts or stored == kind
     refused = {
         f"holds {stored}, expected {kind or 'numbers'}": not typed,
-        f"has the shape {found.shape}, expected {shape}": not shaped,
+        f"has the shape {found.shape}, expected {shape}": not shaped or found.shape is None,
         "is stored outside of the file": properties.get_layout() == h5d.VIRTUAL or properties.get_external_count(),
         f"is stored by a filter of {filters}, which h5py does not bring itself": not set(filters) <= _FILTERS,
         "has fewer rows than were committed": rows is not None and (not lengths or lengths[0] < rows),
@@ -286,9 +266,8 @@ def dataset(
         if wrong:
             raise StructureError(f"{name} {what}")
     # A chunk is unfolded whole, and each of two filters makes a copy of it.
-    if chunked and 4 * math.prod(chunk) * stored.itemsize > allowance.limit:
+    if 4 * math.prod(chunk) * stored.itemsize > allowance.limit:
         raise LimitError(f"{name} is stored in chunks of {chunk}, more than the limit of {allowance.limit}")
     read = lengths if rows is None else (rows, *lengths[1:])
-    empty = found.shape is None
-    allowance.take(f"{group.name}/{name}".lstrip("/"), 0 if empty else stored.itemsize * math.prod(read))
+    allowance.take(f"{group.name}/{name}".lstrip("/"), stored.itemsize * math.prod(read))
     return found

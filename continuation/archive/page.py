@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -11,14 +10,12 @@ from typing import Any
 import numpy as np
 
 from continuation.archive.atomic import ArchiveError
-from continuation.archive.checkpoint import Checkpoint
 from continuation.archive.reader import Archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.schema import ACCEPTED, COUNT_NAMES
-from continuation.archive.trust import is_registered, registry
 from continuation.arguments.checks import complain
 from continuation.path import Path
-from continuation.status import Kind, Status
+from continuation.status import Status
 
 UNFINISHED = Status.INTERRUPTED, Status.TRACING, Status.ABANDONED, Status.RAISED
 _DETAILED = 3
@@ -33,14 +30,12 @@ _SOFTWARE = {
 _SETTINGS = ("predictor", "corrector", "controller", "metric", "tolerance", "budget", "target", "events")
 
 
-def describe(archive: Archive, width: int = WIDTH) -> str:
+def describe(archive: Archive) -> str:
     """The page: one section a path where there are few, an overview where there are many.
 
     Parameters
     ----------
     archive : Archive
-    width : int
-        Columns; a narrower page than the usual one has its lines broken.
 
     Raises
     ------
@@ -58,52 +53,37 @@ def describe(archive: Archive, width: int = WIDTH) -> str:
     except (ValueError, TypeError, AttributeError, LookupError, RecursionError, ArithmeticError) as error:
         raise archive.contents.damaged(error) from error
     # A title of somebody else's is no way to the terminal's control codes.
-    plain = "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
-    fitted = (part for line in plain.split("\n") for part in _fitted(line, width))
-    return plain if width >= WIDTH else "\n".join(fitted)
-
-
-def _fitted(line: str, width: int) -> list[str]:
-    """The line, or several if it is wider than the page."""
-    if len(line) <= width:
-        return [line]
-    indent = " " * min(len(line) - len(line.lstrip()) + 2, width // 2)
-    # A command stays in one piece.
-    whole = re.sub(r"`[^`]*`", lambda command: command[0].replace(" ", _UNBROKEN), line)
-    parts = textwrap.wrap(whole, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
-    return [part.replace(_UNBROKEN, " ") for part in parts]
+    return "".join(c if c.isprintable() or c == "\n" else "?" for c in page)
 
 
 def _page(archive: Archive) -> str:
-    few = range(len(archive) if len(archive) <= _DETAILED else 0)
-    parts = [_head(archive), *(_one_path(archive, number) for number in few)]
-    if not few:
-        parts.append(_many_paths(archive) if len(archive) else "No path was begun.")
-    return "\n\n".join(filter(None, (*parts, _hint(archive)))) + "\n"
+    if 0 < len(archive) <= _DETAILED:
+        parts = [_one_path(archive, number) for number in range(len(archive))]
+    else:
+        parts = [_many_paths(archive) if len(archive) else "No path was begun."]
+    return "\n\n".join(filter(None, (_head(archive), *parts, _hint(archive)))) + "\n"
 
 
 # -- what ran -------------------------------------------------------------------------------------------------
 
 
 def _head(archive: Archive) -> str:
-    about = archive.attributes
-    title = str(about.get("title", ""))
+    about: Mapping[str, Any] = {"title": "", "settings": "{}", "parameters": "{}", **archive.attributes}
+    title, settings = str(about["title"]), json.loads(about["settings"])
     homotopy = f"{about.get('homotopy', '')} ({about.get('homotopy_distribution', '')})".removesuffix(" ()")
     held = f"{_plural(len(archive), 'path')}, {_plural(archive.points.size, 'point')}"
-    settings = json.loads(about.get("settings", "{}"))
-    versions = ", ".join(f"{name} {about.get(f'{key}_version', '?')}" for name, key in _SOFTWARE.items())
-    lines = [
-        ("file", f"{archive.file}, {_bytes(archive.contents.size)}, {about.get('schema', '')}"),
-        ("holds", f"{held} of {_plural(archive.layout.unknowns, 'unknown')}"),
-        ("when", f"{about.get('created', '')} on {about.get('host', '')}"),
-        ("homotopy", homotopy),
-        ("parameters", _fields(json.loads(about.get("parameters", "{}") or "{}"))),
-        *((name, _shown(settings[name])) for name in _SETTINGS if name in settings),
-        ("software", versions),
-        ("BLAS", f"{about.get('blas', '')}, threads {about.get('blas_threads', '')}"),
-        ("parent", str(about.get("parent", ""))),
-        *(("history" if i == 0 else "", line) for i, line in enumerate(str(about.get("history", "")).splitlines())),
-    ]
+    said = {
+        "file": f"{archive.file}, {_bytes(archive.contents.size)}, {about.get('schema', '')}",
+        "holds": f"{held} of {_plural(archive.layout.unknowns, 'unknown')}",
+        "when": f"{about.get('created', '')} on {about.get('host', '')}",
+        "homotopy": homotopy,
+        "parameters": _fields(json.loads(about["parameters"] or "{}")),
+        **{name: _shown(settings[name]) for name in _SETTINGS if name in settings},
+        "software": ", ".join(f"{name} {about.get(f'{key}_version', '?')}" for name, key in _SOFTWARE.items()),
+        "BLAS": f"{about.get('blas', '')}, threads {about.get('blas_threads', '')}",
+        "parent": str(about.get("parent", "")),
+    }
+    lines = [*said.items(), *(("history", line) for line in str(about.get("history", "")).splitlines())]
     body = "\n".join(_wrapped(f"  {name:<11}", text) for name, text in lines if text)
     return f"{title}\n{'=' * len(title)}\n{body}"
 
@@ -115,14 +95,12 @@ def _shown(tree: Any) -> str:
     if "class" in tree:
         name = tree["class"].rpartition(":")[2].rpartition(".")[2]
         return f"{name}({_fields(tree.get('fields') or tree.get('data', {}))})"
+    if "dict" in tree:
+        return _fields(tree)
     items = tree.get("tuple", tree.get("list"))
-    if items is not None:
-        return ", ".join(map(_shown, items))
-    if "array" in tree:
-        place = tree["array"]
-        return str(place.get("values", f"array of shape {tuple(place.get('shape', ()))}"))
-    sparse = f"sparse matrix of shape {tuple(tree.get('shape', ()))}"
-    return _fields(tree) if "dict" in tree else str(tree.get("function", sparse))
+    place = tree.get("array", tree)
+    shape = f"array of shape {tuple(place.get('shape', ()))}"
+    return ", ".join(map(_shown, items)) if items is not None else str(tree.get("function", place.get("values", shape)))
 
 
 def _fields(tree: Any) -> str:
@@ -142,44 +120,30 @@ def _one_path(archive: Archive, number: int) -> str:
     lines += [f"  with {own}"] if own and len(archive) > 1 else []
     if path.steps:
         lines += _course(archive, number, path)
-        lines += _events(path)
+        found = [
+            f"  {e.name[:23]:<24}{e.lam:>16.10g}{e.arclength:>14.8g}{e.residual_norm:>10.1e}  {_vector(e.y)}"
+            for e in path.events
+        ]
+        head = f"  {'event':<24}{'lambda':>16}{'arclength':>14}{'residual':>10}  y"
+        lines += ["", head, *_first(found)] if found else ["  no events"]
     work = _work({name: int(row[name]) for name in COUNT_NAMES.values()})
-    lines += ["", _wrapped("  work: ", f"{work}; {row['wall_time']:.3g} s")]
-    return "\n".join(lines)
+    return "\n".join([*lines, "", _wrapped("  work: ", f"{work}; {row['wall_time']:.3g} s")])
 
 
 def _course(archive: Archive, number: int, path: Path) -> list[str]:
-    start, end = path.steps[0], path.steps[-1]
-    accepted = archive.points.some("role", archive.rows(number)) == ACCEPTED
+    rows = archive.rows(number)
+    accepted = archive.points.some("role", rows) == ACCEPTED
     lengths, residuals, angles = (
-        archive.points.some(name, archive.rows(number))[accepted] for name in ("step_length", "residual_norm", "angle")
+        archive.points.some(name, rows)[accepted] for name in ("step_length", "residual_norm", "angle")
     )
-    lengths = lengths[1:]
-    lines = [
-        "",
-        f"  {'':<8}{'lambda':>14}{'arclength':>14}  y",
-        f"  {'start':<8}{start.lam:>14.8g}{start.arclength:>14.8g}  {_vector(start.y)}",
-        f"  {'end':<8}{end.lam:>14.8g}{end.arclength:>14.8g}  {_vector(end.y)}",
-        "",
-    ]
-    if lengths.size:
-        residual, angle = residuals.max(), angles.max()
-        lines.append(
-            f"  {_plural(lengths.size, 'step')} of length {lengths.min():.3g} to {lengths.max():.3g}, median "
-            f"{np.median(lengths):.3g}; largest residual {residual:.1e}; largest angle {angle:.2g} rad"
-        )
-    if path.end_error is not None:
-        lines.append(f"  end point known to {path.end_error:.1e}")
-    return lines
-
-
-def _events(path: Path) -> list[str]:
-    head = f"  {'event':<24}{'lambda':>16}{'arclength':>14}{'residual':>10}  y"
-    lines = [
-        f"  {e.name[:23]:<24}{e.lam:>16.10g}{e.arclength:>14.8g}{e.residual_norm:>10.1e}  {_vector(e.y)}"
-        for e in path.events
-    ]
-    return ["", head, *_first(lines)] if lines else ["  no events"]
+    lines = ["", f"  {'':<8}{'lambda':>14}{'arclength':>14}  y"]
+    for name, at in (("start", path.steps[0]), ("end", path.steps[-1])):
+        lines.append(f"  {name:<8}{at.lam:>14.8g}{at.arclength:>14.8g}  {_vector(at.y)}")
+    if lengths.size > 1:
+        steps, said = _plural(lengths.size - 1, "step"), f"{lengths[1:].min():.3g} to {lengths[1:].max():.3g}"
+        most = f"largest residual {residuals.max():.1e}; largest angle {angles.max():.2g} rad"
+        lines += ["", f"  {steps} of length {said}, median {np.median(lengths[1:]):.3g}; {most}"]
+    return [*lines, *([] if path.end_error is None else [f"  end point known to {path.end_error:.1e}"])]
 
 
 def _first(lines: list[str]) -> list[str]:
@@ -189,34 +153,25 @@ def _first(lines: list[str]) -> list[str]:
 
 
 def _many_paths(archive: Archive) -> str:
-    statuses, kinds = archive.paths["status"], archive.points["kind"]
-    steps, times = archive.paths[COUNT_NAMES["accepted"]], archive.paths["wall_time"]
-    lines = ["How they ended", "--------------"]
-    for value, count in zip(*np.unique(statuses, return_counts=True)):
-        lines.append(f"  {count:>8}  {Status(int(value)).name}")
-    lines += ["", "Events", "------"]
-    for number, name in enumerate(archive.event_names):
-        rows = archive.points["event_index"] == number
-        if rows.any():
-            involved = np.unique(archive.points["path_index"][rows]).size
-            lines.append(f"  {int(rows.sum()):>8}  {name}, on {_plural(involved, 'path')}")
-    if not (kinds > Kind.TARGET).any():
-        lines.append("  none")
+    statuses, paths = archive.paths["status"], archive.points["path_index"]
+    ended = zip(*np.unique(statuses, return_counts=True))
+    lines = ["How they ended", "--------------", *(f"  {n:>8}  {Status(int(value)).name}" for value, n in ended)]
+    indices = archive.points["event_index"]
+    at = {name: paths[indices == number] for number, name in enumerate(archive.event_names)}
+    events = [f"  {p.size:>8}  {name}, on {_plural(np.unique(p).size, 'path')}" for name, p in at.items() if p.size]
     totals = {name: int(archive.paths[name].sum()) for name in COUNT_NAMES.values()}
-    lines += ["", "Work", "----", _wrapped("  ", f"{_work(totals)}; {times.sum():.3g} s")]
+    steps, times = archive.paths[COUNT_NAMES["accepted"]], archive.paths["wall_time"]
+    lines += ["", "Events", "------", *(events or ["  none"]), "", "Work", "----"]
+    lines.append(_wrapped("  ", f"{_work(totals)}; {times.sum():.3g} s"))
     lines.append(f"  steps a path: {_spread(steps)}; seconds a path: {_spread(times)}")
-    return "\n".join([*lines, *_failures(archive)])
-
-
-def _failures(archive: Archive) -> list[str]:
-    """Paths that ended by an error, with its text."""
-    rows = np.flatnonzero(np.isin(archive.paths["status"], [int(status) for status in UNFINISHED]))
+    # Paths that ended by an error, with its text.
     messages, members = archive.paths["message"], archive.paths["member"]
     nothing = "still being traced, or its writer was killed"
     said = [
-        f"  path {row} (member {members[row]}): {messages[row].decode(errors='replace') or nothing}" for row in rows
+        f"  path {row} (member {members[row]}): {messages[row].decode(errors='replace') or nothing}"
+        for row in np.flatnonzero(np.isin(statuses, [int(status) for status in UNFINISHED]))
     ]
-    return ["", "Not finished", "------------", *_first(said)] if said else []
+    return "\n".join([*lines, *(["", "Not finished", "------------", *_first(said)] if said else [])])
 
 
 def _hint(archive: Archive) -> str:
@@ -224,27 +179,15 @@ def _hint(archive: Archive) -> str:
     if not archive.closed_by_writer:
         return "Its writer is still at work, or was killed: then `continuation recover` makes the file whole."
     last, checkpoint = len(archive) - 1, archive.checkpoint()
-    if checkpoint is None or checkpoint.path != last:
+    if checkpoint is None or checkpoint.path != last or archive.status(last) not in RESUMABLE:
         return ""
-    status = Status(int(archive.paths["status"][last]))
-    if status not in RESUMABLE:
-        return ""
-    name = str(archive.attributes.get("homotopy", ""))
-    if name.startswith("__main__:"):
-        name = f"MODULE:{name.partition(':')[2]}"
-    command = f"continuation resume {archive.file}" + ("" if _makeable(archive, checkpoint) else f" --homotopy {name}")
-    if status is Status.BUDGET_EXHAUSTED:
+    about = archive.attributes
+    name = str(about.get("homotopy", "")).replace("__main__:", "MODULE:")
+    makeable = name.startswith("continuation.") or about.get("homotopy_entry_point", "")
+    command = f"continuation resume {archive.file}" + ("" if makeable else f" --homotopy {name}")
+    if archive.status(last) is Status.BUDGET_EXHAUSTED:
         return f"Path {last} can be resumed with more steps: `{command} --steps N`."
     return f"Path {last} can be resumed: `{command}`."
-
-
-def _makeable(archive: Archive, checkpoint: Checkpoint) -> bool:
-    """Whether `resume` makes the homotopy without being told its class; nothing is made here."""
-    described: Any = checkpoint.run.get("homotopy", {})
-    if described.get("problem"):
-        described = json.loads(archive.problem()[0])
-    name = described.get("class") if isinstance(described, dict) else None
-    return name is not None and (name in registry() or is_registered(name))
 
 
 # -- words ----------------------------------------------------------------------------------------------------
@@ -252,7 +195,7 @@ def _makeable(archive: Archive, checkpoint: Checkpoint) -> bool:
 
 def _wrapped(name: str, text: str) -> str:
     """The text after its name, in lines of the page's width; a matrix that would fill the page is cut."""
-    filled = textwrap.fill(
+    lines = textwrap.fill(
         text,
         WIDTH,
         initial_indent=name,
@@ -262,7 +205,7 @@ def _wrapped(name: str, text: str) -> str:
         break_long_words=False,
         break_on_hyphens=False,
     )
-    return filled.replace(_UNBROKEN, " ")
+    return lines.replace(_UNBROKEN, " ")
 
 
 def _work(counts: Mapping[str, int]) -> str:

@@ -65,15 +65,13 @@ def software() -> dict[str, str]:
 @lru_cache
 def _distribution(path: str) -> str:
     """Distribution and version that a class belongs to; empty for a script."""
-    point = _entry_point(path)
+    point, top = _entry_point(path), path.partition(":")[0].partition(".")[0]
     if point is not None and point.dist is not None:
         return f"{point.dist.name} {point.dist.version}"
-    top = path.partition(":")[0].partition(".")[0]
     with suppress(metadata.PackageNotFoundError):
         return f"{top} {metadata.version(top)}"
     # This looks through all that is installed, for an eighth of a second.
-    name = next(iter(metadata.packages_distributions().get(top, ())), "")
-    return f"{name} {metadata.version(name)}" if name else ""
+    return next((f"{name} {metadata.version(name)}" for name in metadata.packages_distributions().get(top, ())), "")
 
 
 @lru_cache
@@ -121,23 +119,14 @@ def scalars(homotopy: Any) -> dict[str, float]:
 
 def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """The parameters that an archive holds as numbers, texts, lists and small arrays; what is larger is left out."""
-    try:
-        tree = json.loads(str(attributes.get("parameters", "{}")))
-    except ValueError:
-        return {}
-    if not isinstance(tree, dict):
-        return {}
     found = {}
-    for name, value in tree.get("dict", tree).items():
-        with suppress(UnknownError):
-            found[str(name)] = decode(value, _values)
+    with suppress(ValueError, AttributeError):
+        tree = json.loads(str(attributes.get("parameters", "{}")))
+        for name, value in tree.get("dict", tree).items():
+            with suppress(UnknownError):
+                # An array of which the file has the shape alone raises as one that makes no sense.
+                found[str(name)] = decode(value, lambda place: np.array(place["values"], dtype=place["dtype"]))
     return found
-
-
-def _values(place: Any) -> Any:
-    if "values" not in place:
-        raise UnknownError("an array of which the file has the shape alone")
-    return np.array(place["values"], dtype=place["dtype"])
 
 
 def readable(value: Any) -> Any:
@@ -166,12 +155,10 @@ def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, A
     if tracer is None:
         return attributes
     homotopy = tracer.homotopy
-    path = class_path(homotopy)
-    point = _entry_point(path)
-    own = {**parameters(homotopy), **made_with}
-    described = readable(homotopy)
+    path, own = class_path(homotopy), {**parameters(homotopy), **made_with}
+    point, described = _entry_point(path), readable(homotopy)
     fields = described.get("fields", described.get("data")) if isinstance(described, dict) and not made_with else None
-    attributes |= {
+    return attributes | {
         "title": title or f"Paths of {type(homotopy).__name__}",
         "homotopy": path,
         "homotopy_entry_point": point.name if point is not None else "",
@@ -181,4 +168,3 @@ def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, A
         "settings": json.dumps({name: readable(getattr(tracer.settings, name)) for name in OPTIONS}),
         "references": "\n\n".join(tracer.references),
     }
-    return attributes

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from numbers import Integral
 from os import PathLike
 from types import TracebackType
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
-from continuation.archive.checkpoint import Checkpoint, Foreign, unpack
+from continuation.archive.checkpoint import Checkpoint, unpack
 from continuation.archive.contents import Contents
-from continuation.archive.rows import Record, from_columns, record_of, row_columns
+from continuation.archive.rows import from_columns, record_of, row_columns
 from continuation.archive.schema import COUNT_NAMES
 from continuation.archive.tables import Table, dataframe, dataset, kept_whole, stored_path
-from continuation.archive.tables import events as events_of
 from continuation.arguments.checks import complain
 from continuation.arguments.labels import Labels
 from continuation.citation import entries
@@ -25,6 +24,8 @@ from continuation.counts import Counts
 from continuation.path import Path
 from continuation.plot.html import archive_page
 from continuation.status import Status
+
+_T = TypeVar("_T")
 
 _AT_ONCE = 1 << 22
 """Numbers (of 8 bytes) that are read in one go when all paths are asked for: many short reads cost much more."""
@@ -54,34 +55,29 @@ class Archive(Sequence[Path]):
 
     def __init__(self, file: str | PathLike[str], *, limit: int | None = None) -> None:
         self.contents = contents = Contents(file, limit=limit)
-        self.file = contents.file
+        self.file, self.layout, self.event_names = contents.file, contents.layout, contents.event_names
         self.closed_by_writer, self.attributes = contents.closed_by_writer, contents.attributes
-        self.layout, self.event_names = contents.layout, contents.event_names
-        self._last_checkpoint = contents.committed.checkpoint if contents.checked else None
-        self._committed_paths, self._committed_points = contents.committed.paths, contents.committed.points
+        # As they are now: the file may be read anew while it grows.
+        self._committed, self._unended = contents.committed, dict[str, Any]()
         try:
-            self._read_lengths()
+            lengths = contents.read("path", "n_points", slice(0, self._committed.paths))
+            self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
+            rest = self._committed.points - int(self._first_rows[-1])
+            if rest < 0 or np.any(lengths < 0):
+                raise contents.damaged(ValueError("its paths have other lengths than its points"))
+            if rest:
+                self._first_rows = np.append(self._first_rows, self._committed.points)
+                self._read_unended(rest)
         except BaseException:
             self.close()
             raise
-
-    def _read_lengths(self) -> None:
-        lengths = self.contents.read("path", "n_points", slice(0, self._committed_paths))
-        self._first_rows = np.concatenate(([0], np.cumsum(lengths))).astype(int)
-        rest = self._committed_points - int(self._first_rows[-1])
-        if rest < 0 or np.any(lengths < 0):
-            raise self.contents.damaged(ValueError("its paths have other lengths than its points"))
-        self._unended: Record | None = None
-        if rest:
-            self._first_rows = np.append(self._first_rows, self._committed_points)
-            self._unended = self._record_of_unended(rest)
-        self.points = Table(self.layout.point_columns, self._committed_points, partial(self.contents.read, "point"))
+        self.points = Table(self.layout.point_columns, self._committed.points, partial(contents.read, "point"))
         self.paths = Table(self.layout.path_columns, len(self), self._fetch_path)
 
     # -- the sequence -----------------------------------------------------------------------------------------
 
     def __len__(self) -> int:
-        return self._committed_paths + (self._unended is not None)
+        return len(self._first_rows) - 1
 
     @overload
     def __getitem__(self, index: int) -> Path: ...
@@ -126,43 +122,39 @@ class Archive(Sequence[Path]):
             raise IndexError(f"index: expected a path number below {len(self)}, found {index}")
         index %= len(self)
         rows, row = self.rows(index), self.paths.block(slice(index, index + 1))
-        if not whole:
-            return self._path(index, row, None)
-        self._take(rows)
-        return self._path(index, row, self.points.block(rows))
-
-    def _take(self, rows: slice) -> None:
-        """Count the steps that are made of rows; `ArchiveError` if they are too many."""
-        try:
+        if whole:
             size = (rows.stop - rows.start) * (_STEP_BYTES + _COPIES * 8 * (self.layout.unknowns + 1))
-            self.contents.allowance.take("the steps of the path", size)
-        except ValueError as error:
+            self._sensible(lambda: self.contents.allowance.take("the steps of the path", size))
+        return self._sensible(lambda: self._path(index, row, self.points.block(rows) if whole else None))
+
+    def _sensible(self, read: Callable[[], _T]) -> _T:
+        """What `read` makes of the file; `ArchiveError` if it cannot."""
+        try:
+            return read()
+        except (ValueError, LookupError) as error:
             raise self.contents.damaged(error) from error
 
     def _path(self, index: int, rows: Mapping[str, Any], points: Mapping[str, Any] | None) -> Path:
         """A path of its row of the one table, and of its rows of the other if they are to be in memory."""
         steps: Any
         row = {name: column[0] for name, column in rows.items()}
-        try:
-            if points is not None:
-                steps, events = from_columns(points, self.event_names, self.layout.observed)
-            else:
-                steps, events = stored_path(self, open_archive, self.file, index), events_of(self, index)
-            end_error, winding = float(row["end_error"]), int(row["winding_number"])
-            return Path(
-                steps,
-                events,
-                Status(int(row["status"])),
-                row["message"].decode(errors="replace"),
-                Counts(*(int(row[column]) for column in COUNT_NAMES.values())),
-                float(row["wall_time"]),
-                references=entries(str(self.attributes.get("references", ""))),
-                end_error=None if math.isnan(end_error) else end_error,
-                winding_number=winding or None,
-                labels=Labels.from_attributes(self.attributes),
-            )
-        except (ValueError, LookupError) as error:
-            raise self.contents.damaged(error) from error
+        if points is not None:
+            steps, events = from_columns(points, self.event_names, self.layout.observed)
+        else:
+            steps, events = stored_path(self, open_archive, self.file, index)
+        end_error = float(row["end_error"])
+        return Path(
+            steps,
+            events,
+            Status(int(row["status"])),
+            row["message"].decode(errors="replace"),
+            Counts(*(int(row[column]) for column in COUNT_NAMES.values())),
+            float(row["wall_time"]),
+            references=entries(str(self.attributes.get("references", ""))),
+            end_error=None if math.isnan(end_error) else end_error,
+            winding_number=int(row["winding_number"]) or None,
+            labels=Labels.from_attributes(self.attributes),
+        )
 
     def __iter__(self) -> Iterator[Path]:
         # In runs of paths: many short reads cost much more.
@@ -170,14 +162,13 @@ class Archive(Sequence[Path]):
         while stop < len(self):
             start, begin = stop, int(self._first_rows[stop])
             stop = max(start + 1, int(np.searchsorted(self._first_rows, begin + at_once, "right")) - 1)
-            paths, points = (
-                self.paths.block(slice(start, stop)),
-                self.points.block(slice(begin, self.rows(stop - 1).stop)),
-            )
+            paths = self.paths.block(slice(start, stop))
+            points = self.points.block(slice(begin, self.rows(stop - 1).stop))
             for k in range(start, stop):
                 rows = slice(self.rows(k).start - begin, self.rows(k).stop - begin)
                 row = {name: column[k - start : k - start + 1] for name, column in paths.items()}
-                yield self._path(k, row, {name: column[rows] for name, column in points.items()})
+                own = {name: column[rows] for name, column in points.items()}
+                yield self._sensible(partial(self._path, k, row, own))
 
     def __repr__(self) -> str:
         state = "" if self.closed_by_writer else ", not closed by its writer"
@@ -210,11 +201,7 @@ class Archive(Sequence[Path]):
         ArchiveError
             If the file says something that is no status.
         """
-        value = int(self.paths["status"][index])
-        try:
-            return Status(value)
-        except ValueError as error:
-            raise self.contents.damaged(error) from error
+        return self._sensible(lambda: Status(int(self.paths["status"][index])))
 
     # -- views ------------------------------------------------------------------------------------------------
 
@@ -230,22 +217,12 @@ class Archive(Sequence[Path]):
 
     def checkpoint(self) -> Checkpoint | None:
         """The latest point from which the last path can be resumed; None where there is none."""
-        valid = [c for c in self._checkpoints() if isinstance(c, Checkpoint) and self._covers(c)]
+        valid = [c for c in map(unpack, self.contents.slots()) if c is not None and self._covers(c)]
         return max(valid, key=lambda checkpoint: checkpoint.sequence, default=None)
-
-    def foreign_version(self) -> str:
-        """The version of the library that the state of the last path is of, if it is not this one's; else empty."""
-        last = len(self) - 1
-        return next((c.version for c in self._checkpoints() if isinstance(c, Foreign) and c.path == last), "")
-
-    def _checkpoints(self) -> list[Checkpoint | Foreign | None]:
-        return [unpack(raw) for raw in self.contents.slots()]
 
     def _covers(self, checkpoint: Checkpoint) -> bool:
         """Whether the rows before the checkpoint are all committed: it is written before the counters are."""
-        if checkpoint.path >= len(self):
-            return False
-        rows = self.rows(checkpoint.path)
+        rows = self.rows(checkpoint.path) if checkpoint.path < len(self) else slice(0, 0)
         return bool(rows.start + checkpoint.rows <= rows.stop)
 
     def problem(self) -> tuple[str, Mapping[str, Any]]:
@@ -267,29 +244,25 @@ class Archive(Sequence[Path]):
     # -- within -----------------------------------------------------------------------------------------------
 
     def _fetch_path(self, name: str, rows: slice) -> np.ndarray[Any, Any]:
-        committed = slice(min(rows.start, self._committed_paths), min(rows.stop, self._committed_paths))
-        values = self.contents.read("path", name, committed)
-        if rows.stop > self._committed_paths and self._unended is not None:
-            values = np.concatenate((values, row_columns(self._unended, self.layout)[name]))
-        return values
+        held = self._committed.paths
+        values = self.contents.read("path", name, slice(min(rows.start, held), min(rows.stop, held)))
+        own = row_columns(self._unended, self.layout)[name] if rows.stop > held else values[:0]
+        return np.concatenate((values, own))
 
-    def _record_of_unended(self, rows: int) -> Record:
+    def _read_unended(self, rows: int) -> None:
         """A row for the path that has none, as far as its checkpoint tells."""
-        number = self._committed_paths
+        number = self._committed.paths
         member = int(self._fetch_path("member", slice(number - 1, number))[0]) + 1 if number else 0
-        row = {**record_of(Path(), None, ()), "path": number, "member": member, "n_points": rows}
         # An older checkpoint than the last is good to resume from, and tells the work of then.
-        row |= {**dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
-        self._unended = row
+        row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
+        self._unended = row = {**row, "path": number, "member": member, "n_points": rows}
         checkpoint = self.checkpoint()
-        if checkpoint is None or checkpoint.path != number:
-            return row
-        told = checkpoint.run.get("member")
-        row["member"] = number if told is None else int(told)
-        if self._last_checkpoint in (None, checkpoint.sequence):
-            row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
-            row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
-        return row
+        if checkpoint is not None and checkpoint.path == number:
+            told = checkpoint.run.get("member")
+            row["member"] = number if told is None else int(told)
+            if not self.contents.checked or self._committed.checkpoint == checkpoint.sequence:
+                row |= {COUNT_NAMES[name]: value for name, value in checkpoint.counts.items() if name in COUNT_NAMES}
+                row |= {"wall_time": checkpoint.seconds, "controller_state": checkpoint.state.controller}
 
 
 def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Archive:

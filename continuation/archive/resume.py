@@ -6,21 +6,20 @@ import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
+from functools import partial
 from os import PathLike
 from pathlib import Path as File
-from typing import Any, Unpack, cast
+from typing import Any, Unpack
 
 import numpy as np
 
-from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, is_held, short
-from continuation.archive.checkpoint import OPTIONS, Checkpoint, whole
+from continuation.archive.atomic import ArchiveError, as_file, is_held, new_file, own, short
+from continuation.archive.checkpoint import OPTIONS, Checkpoint, slot_of, whole
 from continuation.archive.copies import share_of, write_copy
 from continuation.archive.provenance import history, process
 from continuation.archive.reader import Archive, open_archive
-from continuation.archive.recover import kept, own
-from continuation.archive.schema import ACCEPTED
-from continuation.archive.store import Store
-from continuation.archive.tables import kept_whole, stored_path
+from continuation.archive.store import Store, put
+from continuation.archive.tables import kept_whole
 from continuation.archive.trust import UnknownError, decode, registry
 from continuation.archive.writer import PathLog
 from continuation.arrays import Array
@@ -42,9 +41,6 @@ RESUMABLE = (
     Status.ABANDONED,
     Status.RAISED,
 )
-
-_YOUNGER = ("guards",)
-"""Options that files do not have which are older than these."""
 
 
 @documented
@@ -94,9 +90,7 @@ def resume(
         If the homotopy given is not the one of the file.
     """
     name = as_file("file", file)
-    target = File(os.path.realpath(name)) if archive is None else as_file("archive", archive)
-    if archive is not None:
-        check_new(target)
+    target = File(os.path.realpath(name)) if archive is None else new_file("archive", archive)
     whole_path = kept_whole(keep)
     each("observers", observers, OBSERVER)
     for option in ("start", "state"):
@@ -106,29 +100,23 @@ def resume(
     with ExitStack() as stack:
         source = stack.enter_context(open_archive(name))
         if archive is None:
-            stack.enter_context(closing(own(source.contents, target)))
+            stack.enter_context(closing(own(target, source.contents.descriptor, source.attributes.get("process"))))
         elif not source.closed_by_writer and is_held(name):
             raise ArchiveError(f"{name}: is being written; resume it when its writer has ended")
         checkpoint = _checkpoint(source, options)
         tracer = _tracer(source, checkpoint, known, homotopy, options)
-        begin = source.rows(checkpoint.path).start
-        rows = begin + checkpoint.rows
-        check_homotopy(
-            tracer.homotopy,
-            checkpoint.state.here.u,
-            float(source.points.some("residual_norm", slice(rows - 1, rows))[0]),
-        )
-        # As many as the file has up to there: with `save_every` these are fewer than were taken.
-        written = int(np.count_nonzero(source.points.some("role", slice(begin, rows)) == ACCEPTED))
-        before = source.path(checkpoint.path, keep=keep)
+        rows = source.rows(checkpoint.path).start + checkpoint.rows
+        stored = float(source.points.some("residual_norm", slice(rows - 1, rows))[0])
+        check_homotopy(tracer.homotopy, checkpoint.state.here.u, stored)
         store = _beginning(source, checkpoint, rows, target, archive is None)
-    tracer.path.events[:] = [event for event in before.events if event.step < written]
-    if whole_path:
-        tracer.path.steps[:] = before.steps[:written]
-    else:
+    try:
         with open_archive(store.file) as held:
-            tracer.path.steps = cast("Any", stored_path(held, open_archive, store.file, checkpoint.path))
-    log = PathLog.continued(store, rows, checkpoint, tracer, whole_path, source.attributes.get("identifier", ""))
+            before = held.path(checkpoint.path, keep=keep)
+    except BaseException:
+        store.close()
+        raise
+    tracer.path.steps, tracer.path.events[:] = before.steps, before.events
+    log = PathLog.continued(store, checkpoint, tracer, whole_path)
     tracer.observers = (log, *observers)
     try:
         steps = iter(tracer)
@@ -166,21 +154,20 @@ def _checkpoint(source: Archive, options: Mapping[str, Any]) -> Checkpoint:
     if not len(source):
         raise ArchiveError(f"{source.file}: holds no point to resume from; trace it again")
     last = len(source) - 1
-    status, checkpoint, version = source.status(last), source.checkpoint(), source.foreign_version()
+    status, checkpoint = source.status(last), source.checkpoint()
     if status not in RESUMABLE:
         said = f"path {last} has ended ({status.name}), there is nothing to resume"
     elif status is Status.BUDGET_EXHAUSTED and "budget" not in options:
         said = f"the budget of path {last} is used up; pass budget=, a larger one (in a shell --steps)"
     elif checkpoint is not None and checkpoint.path == last:
         return checkpoint
-    elif version:
-        said = (
-            f"the state of path {last} is that of version {version:.20}, and resumes within its major "
-            f"version, which is not that of {__version__}; go on from its last point by "
-            f"trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
-        )
-    else:
+    elif not source.paths["n_points"][last]:
         said = f"path {last} has no state to resume from; trace it again"
+    else:
+        said = (
+            f"path {last} has no state that version {__version__} resumes (a state resumes within its major version); "
+            f"go on from its last point by trace(homotopy, start=open_archive({str(source.file)!r})[{last}])"
+        )
     raise ArchiveError(f"{source.file}: {said}")
 
 
@@ -204,12 +191,10 @@ def stored_homotopy(source: Archive, checkpoint: Checkpoint, known: Mapping[str,
 def _options(
     source: Archive, checkpoint: Checkpoint, known: Mapping[str, Any], given: Mapping[str, Any]
 ) -> dict[str, Any]:
-    stored, trees = {}, checkpoint.run.get("options")
-    for name in OPTIONS:
-        if name in given or (name in _YOUNGER and trees is not None and name not in trees):
-            continue
+    stored, trees = {}, checkpoint.run.get("options", {})
+    for name in (name for name in OPTIONS if name in trees and name not in given):
         try:
-            stored[name] = decode(_storable(cast("Any", trees)[name]), whole, known)
+            stored[name] = decode(_storable(trees[name]), whole, known)
         except (UnknownError, KeyError, TypeError) as error:
             reason = f"{name} cannot be made from the file ({short(error)}); pass {name}="
             raise ArchiveError(f"{source.file}: {reason}") from None
@@ -251,7 +236,6 @@ def _beginning(source: Archive, checkpoint: Checkpoint, rows: int, target: File,
     what = f"resumed from path {checkpoint.path}, point {checkpoint.state.index} of {parent}"
     attributes = {**source.attributes, **process(), **history(source.attributes, what), "parent": parent}
     share = share_of(source, last=checkpoint.path, points=rows)
-    with beside(target) as part:
-        store = write_copy([share], part, attributes=attributes, checkpoints=kept(checkpoint))
-        store.publish(target, replace=replace)
-        return store
+    slots = slot_of(checkpoint)
+    copy = partial(write_copy, [share], attributes=attributes, checkpoints=slots)
+    return put(target, copy, replace=replace, grows=True)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import pairwise, zip_longest
+from itertools import zip_longest
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
-from attrs import define, evolve, field, frozen
+from attrs import evolve, frozen
 
 from continuation.archive.provenance import class_path, scalars
 from continuation.archive.schema import (
@@ -23,13 +23,10 @@ from continuation.archive.schema import (
     Layout,
     text,
 )
-from continuation.arguments.checks import integer, number
 from continuation.arrays import Array
 from continuation.homotopy import SupportsPieces
 from continuation.path import LocatedEvent, Path, Step
 from continuation.point.segment import hermite
-from continuation.step.state import State
-from continuation.step.tracer import Tracer
 
 _FLOATS = (
     "arclength", "step_length", "residual_norm", "event_monitor", "contraction", "distance", "angle", "parameter_share",
@@ -38,7 +35,7 @@ _INTEGERS = {
     "orientation": "i1", "kind": "i1", "role": "i1",
     "event_index": "i2", "corrector_iterations": "i2", "rejections": "i2",
 }  # fmt: skip
-_NAN = math.nan
+_SHARE, _NAN = "parameter_share", math.nan
 
 Record = dict[str, Any]
 """The cells of a row of the path table, by column name."""
@@ -106,26 +103,24 @@ def layout_of(
 
 def to_columns(rows: Sequence[Row], path: int, layout: Layout, number: Callable[[str], int]) -> dict[str, Any]:
     """The block of columns for some rows of one path; `number` numbers an event's name."""
-    m = len(rows)
-    floats, integers = np.empty((len(_FLOATS), m)), np.empty((len(_INTEGERS), m), dtype="i2")
-    values = [_values(row, number) for row in rows]
-    floats[:] = np.array([pair[0] for pair in values]).T
-    integers[:] = np.array([pair[1] for pair in values]).T
-    y, parameter = np.empty((m, layout.unknowns)), np.empty(m)
-    for i, row in enumerate(rows):
-        y[i], parameter[i] = row.point.u[:-1], row.point.u[-1]
-    block: dict[str, Any] = {"path_index": np.full(m, path, dtype="i4"), "parameter": parameter, "y": y}
-    block |= dict(zip(_FLOATS, floats))
-    block |= {name: column.astype(dtype) for (name, dtype), column in zip(_INTEGERS.items(), integers)}
+    floats, integers = zip(*[_values(row, number) for row in rows])
+    block: dict[str, Any] = {"path_index": np.full(len(rows), path, dtype="i4")}
+    block |= _split("parameter", "y", [row.point.u for row in rows])
+    block |= dict(zip(_FLOATS, np.array(floats).T.copy()))
+    block |= {name: column.astype(dtype) for (name, dtype), column in zip(_INTEGERS.items(), np.array(integers).T)}
     if layout.tangents:
-        tangents = np.array([row.tangent for row in rows])
-        block["tangent_y"] = np.ascontiguousarray(tangents[:, :-1])
-        block["tangent_parameter"] = np.ascontiguousarray(tangents[:, -1])
+        block |= _split("tangent_parameter", "tangent_y", [row.tangent for row in rows])
     if layout.pieces:
         block["switch"] = np.array([row.switch for row in rows], dtype="i4")
     for name in layout.observed:
         block[f"observed_{name}"] = np.array([float(row.point.observed.get(name, _NAN)) for row in rows])
     return block
+
+
+def _split(last: str, first: str, vectors: Sequence[Array]) -> dict[str, Any]:
+    """The last components of some vectors as one column, the others as a matrix; both in one piece, as HDF5 wants."""
+    whole = np.array(vectors)
+    return {last: whole[:, -1].copy(), first: whole[:, :-1].copy()}
 
 
 def _values(row: Row, number: Callable[[str], int]) -> tuple[tuple[float, ...], tuple[int, ...]]:
@@ -150,105 +145,48 @@ def from_columns(
     Tangents are NaN where the archive does not hold them.
     """
     points = np.column_stack((block["y"], block["parameter"]))
-    tangents = np.full_like(points, _NAN)
-    if "tangent_y" in block:
-        tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"]))
-    cells = {name: block[name].tolist() for name in (*_FLOATS, *_INTEGERS)}
-    extras = {name: block[f"observed_{name}"].tolist() for name in observed}
+    held = "tangent_y" in block
+    tangents = np.column_stack((block["tangent_y"], block["tangent_parameter"])) if held else np.full_like(points, _NAN)
     steps: list[Step] = []
     events: list[LocatedEvent] = []
     parts: dict[int, list[int]] = {}
-    for i in range(len(points)):
-        seen, index = {name: column[i] for name, column in extras.items()}, first + len(steps)
-        if cells["event_index"][i] != NO_EVENT:
-            events.append(_event(cells, i, points[i], tangents[i], names, seen, index))
-        if cells["role"][i] == ACCEPTED:
-            steps.append(_step(cells, i, points[i], tangents[i], seen, index))
-        if cells["role"][i] == KINK_PART and events and "switch" in block:
+    columns = [block[name].tolist() for name in (*_FLOATS, *_INTEGERS)]
+    extras = [block[f"observed_{name}"].tolist() for name in observed]
+    for i, (u, v) in enumerate(zip(points, tangents)):
+        at = dict(zip((*_FLOATS, *_INTEGERS), [column[i] for column in columns]))
+        seen, index = {name: column[i] for name, column in zip(observed, extras)}, first + len(steps)
+        number, role, monitor, share = (at.pop(name) for name in ("event_index", "role", "event_monitor", _SHARE))
+        if number != NO_EVENT:
+            shared = {name: at[name] for name in ("kind", "arclength", "residual_norm", "orientation")}
+            events.append(
+                LocatedEvent(names[number], u=u, tangent=v, monitor=monitor, step=index, observed=seen, **shared)
+            )
+        if role == ACCEPTED:
+            steps.append(Step(index=index, u=u, tangent=v, share=share, observed=seen, **at))
+        if role == KINK_PART and events and "switch" in block:
             parts.setdefault(len(events) - 1, []).append(i)
-    for k, at in parts.items():
+    for k, rows in parts.items():
         # Of both lists the longer decides how many parts there are; the other ends in -1, or in NaN.
-        switches, rays = block["switch"][at], tangents[at]
+        switches, rays = block["switch"][rows], tangents[rows]
         rays = rays[~np.isnan(rays).any(axis=1)]
         named = tuple(switches[switches >= 0].tolist())
         events[k] = evolve(events[k], switches=named, rays=rays if len(rays) else None)
     accepted = {step.index: step.u for step in steps}
     events = [evolve(e, ends_step=e.step in accepted and np.array_equal(e.u, accepted[e.step])) for e in events]
-    return (_joined(steps, events) if "tangent_y" in block else steps), events
+    return (_joined(steps, events) if held else steps), events
 
 
 def _joined(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> list[Step]:
     """The steps joined by cubics through points and tangents, for dense output."""
-    joined = list(steps[:1])
     onward = {e.step: e.rays[1] for e in events if e.rays is not None and len(e.rays) > 1}
-    for before, after in pairwise(steps):
-        v = onward.get(before.index, before.tangent)
-        joined.append(evolve(after, segment=hermite(before.u, v, after.u, after.tangent, v)))
-    return joined
+    begins = [onward.get(step.index, step.tangent) for step in steps]
+    return list(steps[:1]) + [
+        evolve(after, segment=hermite(before.u, v, after.u, after.tangent, v))
+        for before, v, after in zip(steps, begins, steps[1:])
+    ]
 
 
-def _event(
-    cells: Mapping[str, Any], i: int, u: Any, v: Any, names: Sequence[str], observed: Mapping[str, float], step: int
-) -> LocatedEvent:
-    return LocatedEvent(
-        name=names[cells["event_index"][i]], kind=cells["kind"][i], arclength=cells["arclength"][i], u=u, tangent=v,
-        residual_norm=cells["residual_norm"][i], monitor=cells["event_monitor"][i], orientation=cells["orientation"][i],
-        step=step, observed=observed,
-    )  # fmt: skip
-
-
-def _step(cells: Mapping[str, Any], i: int, u: Any, v: Any, observed: Mapping[str, float], index: int) -> Step:
-    return Step(
-        index=index, u=u, tangent=v, arclength=cells["arclength"][i], step_length=cells["step_length"][i],
-        residual_norm=cells["residual_norm"][i], orientation=cells["orientation"][i], kind=cells["kind"][i],
-        corrector_iterations=cells["corrector_iterations"][i], rejections=cells["rejections"][i],
-        contraction=cells["contraction"][i], distance=cells["distance"][i], angle=cells["angle"][i],
-        share=cells["parameter_share"][i], observed=observed,
-    )  # fmt: skip
-
-
-# -- rows of the path table, and what a log holds of a path ----------------------------------------------------
-
-
-@frozen(eq=False)
-class Mark:
-    """A point to resume from: the state, the counters there, and how many rows of the path come before it."""
-
-    state: State
-    counts: tuple[int, ...]
-    rows: int
-
-
-@define(eq=False)
-class Buffer:
-    """Rows not yet committed, and the number of the first: one object, so that a commit is one assignment."""
-
-    start: int
-    rows: list[Row] = field(factory=list)
-    nbytes: int = 0
-
-
-@define(eq=False)
-class OpenPath:
-    """The path being written."""
-
-    tracer: Tracer
-    number: int
-    rows: int = 0
-    seconds: float = 0.0
-    run: bytes | None = None
-    last: Mark | None = None
-    resume: Mark | None = None
-    skipped: Step | None = None
-
-
-@frozen
-class Limits:
-    """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
-
-    rows: int = field(default=256, validator=integer(1))
-    nbytes: int = field(default=4 << 20, validator=integer(1))
-    seconds: float = field(default=1.0, validator=number("at least 0", lambda x: x >= 0.0))
+# -- rows of the path table -------------------------------------------------------------------------------------
 
 
 counted = attrgetter(*COUNT_NAMES)
@@ -275,11 +213,10 @@ def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Recor
 
 def row_columns(record: Mapping[str, Any], layout: Layout) -> dict[str, Any]:
     """The row of the path table as a block: each column an array of length 1."""
-    block: dict[str, Any] = {}
+    block = {}
     for column in layout.path_columns:
         cell = record.get(column.name, column.missing)
-        if column.length and isinstance(cell, str):
-            cell = text(cell, column.length)
+        cell = text(cell, column.length) if column.length and isinstance(cell, str) else cell
         block[column.name] = np.array([cell], dtype=column.storage)
     state = record["controller_state"][: layout.controller]
     block["controller_state"] = np.array([[*state, *[_NAN] * (layout.controller - len(state))]])

@@ -209,10 +209,10 @@ def check_names(prefix: str, names: Iterable[str]) -> None:
     character.
     """
     for name in names:
-        if not isinstance(name, str) or not name or not name.isprintable() or "/" in name or name != name.strip():
-            raise ValueError(f"{prefix}: expected names of printable characters without a slash, found {name!r:.60}")
-        if len(name.encode()) > _COLUMN_NAME:
-            raise ValueError(f"{prefix}: expected names of at most {_COLUMN_NAME} bytes of UTF-8, found {name!r:.60}")
+        plain = isinstance(name, str) and name.isprintable() and "/" not in name and name == name.strip()
+        if not plain or not 1 <= len(name.encode()) <= _COLUMN_NAME:
+            wanted = f"names of 1 to {_COLUMN_NAME} bytes, of printable characters without a slash"
+            raise ValueError(f"{prefix}: expected {wanted}, found {name!r:.60}")
 
 
 _COLUMN_NAME = 100

@@ -27,32 +27,24 @@ from continuation.archive.hdf5 import HEAD_BYTES, stated_length
 from continuation.archive.schema import EVENT_NAME, NAME, RESUME, SLOTS, Layout, build, text
 
 
-def create(target: File, *arguments: Any, **options: Any) -> Store:
-    """A new file, under its name from the moment on at which it can be read; arguments as for `Store`.
+def put(target: File, write: Callable[[File], Store], *, replace: bool = False, grows: bool = False) -> Store:
+    """Write a new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
 
-    Raises `ArchiveError` if the file exists or cannot be made.
+    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file. `grows`: Leave it
+    open, else it is whole, and on the disk before it has its name. Raises `ArchiveError` if it cannot be written.
     """
-    check_new(target)
-    with beside(target) as part:
-        store = Store(part, *arguments, **options)
-        store.publish(target)
-        return store
-
-
-def put(target: File, write: Callable[[File], Store], *, replace: bool = False) -> None:
-    """Write a whole new file beside `target`, then give it that name: a kill leaves the old file, or none, or the new.
-
-    `write`: From the name to write to, to the open store. `replace`: Take the place of an old file.
-    """
+    if not replace:
+        check_new(target)
     with beside(target) as part:
         store = write(part)
-        store.close(sync=True)
+        if not grows:
+            store.close(sync=True)
         store.publish(target, replace=replace)
+        return store
 
 
 LIBVER = ("v110", "v110")
 
-_TABLES = ("point", "path")
 _ONE_RECORD = h5s.create_simple((1, RECORD_BYTES))
 
 Block = Mapping[str, np.ndarray[Any, Any]]
@@ -76,10 +68,8 @@ class Store:
         compression: int = 0,
         durable: bool = False,
     ) -> None:
-        self.file = part
-        self.layout = layout
-        self.durable = durable
-        self.events: list[str] = []
+        self.file, self.layout, self.durable = part, layout, durable
+        self.identifier, self.events = str(attributes.get("identifier", "")), list[str]()
         # What is written, and valid now or with the next commit.
         self.committed = Committed(sequence=1)
         self._abandoned, self._process = False, os.getpid()
@@ -104,10 +94,10 @@ class Store:
             self._lock.close()
             raise
         _LIVE.add(self)
-        columns = (*layout.point_columns, *layout.path_columns, EVENT_NAME)
-        self._data = {name: self._h5[name] for name in (*(column.name for column in columns), "point", "event")}
-        self._counters = {name: self._h5[f"committed_{name}"] for name in ("points", "paths")}
-        self._checks = {name: self._h5[GROUP][name] for name in (*_TABLES, "event", RECORDS)}
+        columns = [column.name for column in (*layout.point_columns, *layout.path_columns, EVENT_NAME)]
+        names = (*columns, "point", "event", "committed_points", "committed_paths")
+        self._data = {name: self._h5[name] for name in names}
+        self._checks = {name: self._h5[GROUP][name] for name in ("point", "path", "event", RECORDS)}
         self._slots = self._h5[RESUME]["slots"]
         self._h5.swmr_mode = True
 
@@ -125,49 +115,45 @@ class Store:
     # -- writing ----------------------------------------------------------------------------------------------
 
     def commit(
-        self,
-        points: Block | None = None,
-        point: int = 0,
-        paths: Block | None = None,
-        path: int = 0,
-        checkpoints: Mapping[int, bytes] | None = None,
+        self, points: Block | None = None, paths: Block | None = None, checkpoints: Mapping[int, bytes] | None = None
     ) -> None:
-        """Write rows from `point` and from `path` on, and checkpoints by slot; then, and only then, make them valid.
+        """Write rows behind those committed, and checkpoints by slot; then, and only then, make them valid.
 
-        Writing the same again does the same, so a commit that was interrupted is simply repeated, with the rows beyond
-        `committed`.
+        A commit that was interrupted is simply repeated: writing the same again does the same.
         """
         if not self.ours:
             raise ArchiveError(f"{self.file}: is written by process {self._process}, of which this one is a child")
-        before = self.committed
+        before, raw = self.committed, dict(checkpoints or {})
         after = Committed(
             before.sequence + 1,
-            max(point + _rows(points), before.points),
-            max(path + _rows(paths), before.paths),
+            before.points + _rows(points),
+            before.paths + _rows(paths),
             before.point_blocks + bool(points),
             before.path_blocks + bool(paths),
             len(self.events),
-            max([before.checkpoint, *(HEAD.unpack_from(raw)[0] for raw in (checkpoints or {}).values())]),
+            max([before.checkpoint, *(HEAD.unpack_from(slot)[0] for slot in raw.values())]),
         )
         try:
             for block, start, table, number in (
-                (points, point, "point", before.point_blocks), (paths, path, "path", before.path_blocks)
+                (points, before.points, "point", before.point_blocks), (paths, before.paths, "path", before.path_blocks)
             ):  # fmt: skip
-                if not block:
-                    continue
-                for name, values in block.items():
+                for name, values in (block or {}).items():
                     self._put(self._data[name], start, values)
-                self._put(self._checks[table], number, seal(block, start)[None])
+                if block:
+                    self._put(self._checks[table], number, seal(block, start)[None])
             if points:
                 self._data["point"].id.set_extent((after.points,))
-            for slot, raw in (checkpoints or {}).items():
-                self._put_slot(slot, raw)
+            for slot, written in raw.items():
+                values = np.frombuffer(written, dtype="u1")
+                if self._slots.shape[1] < values.size:
+                    self._slots.resize((SLOTS, 2 * values.size))
+                self._slots[slot, : values.size] = values
             self._record(after, 0)
             self._flush()
             # All of it is written: whatever interrupts from here on, the next commit goes on after it.
             self.committed = after
             self._record(after, PLACES)
-            self._counters["points"][()], self._counters["paths"][()] = after.points, after.paths
+            self._data["committed_points"][()], self._data["committed_paths"][()] = after.points, after.paths
             self._flush()
         except (OSError, RuntimeError, ValueError) as error:
             self.abandon()
@@ -186,7 +172,7 @@ class Store:
         name = text(name, NAME).decode()
         if name not in self.events:
             self._data["event"].id.set_extent((len(self.events) + 1,))
-            stored = np.array([name.encode()], dtype=f"S{NAME}")
+            stored = np.array([name.encode()], dtype=EVENT_NAME.storage)
             self._put(self._data["event_name"], len(self.events), stored)
             self._put(self._checks["event"], len(self.events), np.array([digest(stored)], dtype="u4"))
             self.events.append(name)
@@ -201,12 +187,6 @@ class Store:
         space.select_hyperslab((start, *(0,) * (values.ndim - 1)), values.shape)
         kind = identity.get_type() if values.dtype.kind == "S" else None
         identity.write(h5s.create_simple(values.shape), space, values, kind)
-
-    def _put_slot(self, slot: int, raw: bytes) -> None:
-        values = np.frombuffer(raw, dtype="u1")
-        if self._slots.shape[1] < values.size:
-            self._slots.resize((SLOTS, 2 * values.size))
-        self._slots[slot, : values.size] = values
 
     def _flush(self) -> None:
         self._h5.flush()
@@ -231,24 +211,26 @@ class Store:
         """Whether this process has opened it: a child that was forked since has a copy, and never writes."""
         return self._process == os.getpid()
 
-    def disown(self) -> None:
-        """Let HDF5 write nowhere what it still has, in a process that is not to write."""
-        if self._h5:
-            _to_nowhere(self._h5.id.get_vfd_handle())
-            self._abandoned = True
+    def abandon(self, *, ends: bool = True) -> None:
+        """Let HDF5 write what it still has to nowhere: a write that fails while it closes a file ends the process.
 
-    def abandon(self) -> None:
-        """Leave the file as a kill would, and let HDF5 write what it still has to nowhere.
-
-        A write that fails while it closes a file ends the process.
+        `ends`: Leave the file as a kill would; a child that was forked is not to write, and leaves it to its parent.
         """
+        if not self._h5:
+            return
         descriptor = self._h5.id.get_vfd_handle()
         with suppress(OSError), self.file.open("rb") as head:
             # The length that the file says it has may be beyond what could be written; zeros do for what is missing.
             stated = stated_length(head.read(HEAD_BYTES))
-            if stated > os.fstat(descriptor).st_size:
+            if ends and stated > os.fstat(descriptor).st_size:
                 os.truncate(self.file, stated)
-        self.disown()
+        # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
+        limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
+        device = limited or not hasattr(os, "memfd_create")
+        nowhere = os.open(os.devnull, os.O_RDWR) if device else os.memfd_create("abandoned")
+        os.dup2(nowhere, descriptor, inheritable=False)
+        os.close(nowhere)
+        self._abandoned = True
 
 
 _LIVE: weakref.WeakSet[Store] = weakref.WeakSet()
@@ -260,23 +242,11 @@ def _in_child() -> None:
     It shares its parent's locks too, and would keep them when the parent is gone.
     """
     for store in list(_LIVE):
-        store.disown()
+        store.abandon(ends=False)
         store._lock.close()
 
 
 os.register_at_fork(after_in_child=_in_child)
-
-
-def _to_nowhere(descriptor: int) -> None:
-    """Let the descriptor of a file stand for another file, which is thrown away."""
-    # A file in memory has no end to run into; but a limit on files counts for it too, and not for the null device.
-    limited = resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY
-    if limited or not hasattr(os, "memfd_create"):
-        nowhere = os.open(os.devnull, os.O_RDWR)
-    else:
-        nowhere = os.memfd_create("abandoned")
-    os.dup2(nowhere, descriptor, inheritable=False)
-    os.close(nowhere)
 
 
 def _rows(block: Block | None) -> int:

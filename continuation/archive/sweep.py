@@ -1,42 +1,55 @@
 """`trace_many`: many paths, one after another or over any executor, kept whatever happens to some of them.
 
-A worker traces one homotopy and sends back its path, as a share of columns where there is an archive. This process
-alone writes: what is lost with a worker is one path, and a kill of this process leaves those that came.
+A worker, or this process itself, traces one homotopy and gives back its path, as a share of columns where there is an
+archive. This process alone writes: what is lost with a worker is one path, and a kill of this process leaves those that
+came, in files that are put in order at the end.
 """
 
 from __future__ import annotations
 
 import secrets
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import ExitStack, suppress
+from functools import partial
 from multiprocessing.process import BaseProcess
 from os import PathLike
 from pathlib import Path as File
 from typing import Any, Unpack
 
-from attrs import define, field
+from attrs import define, field, frozen
 
-from continuation.archive.atomic import as_file, check_new
+from continuation.archive.atomic import new_file
 from continuation.archive.codec import problem_data
-from continuation.archive.copies import Share, append, gather
+from continuation.archive.copies import Share, append
+from continuation.archive.growing import share_of_path
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
 from continuation.archive.schema import Layout
-from continuation.archive.store import Store, create
-from continuation.archive.workers import Result, Task, Watch, begun, failed, interrupts, kept, work
-from continuation.archive.writer import PathLog
+from continuation.archive.store import Store, put
+from continuation.archive.transfer import gather
 from continuation.arguments.checks import complain, instance_with, is_number
-from continuation.path import Path
+from continuation.path import LocatedEvent, Path, Step
 from continuation.path.interrupted import Interrupted
 from continuation.status import Status
 from continuation.step.options import Options, check_names
 from continuation.step.tracer import Tracer
+from continuation.step.verdict import sentence
 
 Progress = Callable[[int, int], None]
+Result = Path | Share | BaseException | None
+"""What came of a homotopy; None where Ctrl-C ended it."""
+
+_LOOK = 0.2
+"""Seconds between two looks at the stop sign."""
+
 _GRACE = 0.5
 """Seconds that workers get to end their paths after Ctrl-C: they look for it each 0.2 s; the rest is for the answer."""
+
+_ITS_OWN = (Exception, SystemExit, GeneratorExit)
+"""What a homotopy raises costs its own path; Ctrl-C alone ends the sweep."""
 
 
 def trace_many(
@@ -51,9 +64,8 @@ def trace_many(
     """Trace many homotopies.
 
     A homotopy that raises, exits, ends its worker's process, takes longer than the timeout or cannot be sent to a
-    worker costs its own path only: that one has the status RAISED and the exception's text as its message. The
-    order is that of the homotopies, whatever the order in which workers finish. Ctrl-C keeps the paths that are
-    finished, and ends within about a second.
+    worker costs its own path only: that one is RAISED, with the exception's text as its message. The order is that of
+    the homotopies. Ctrl-C keeps the paths that are finished, and ends within about a second.
 
     Parameters
     ----------
@@ -63,9 +75,9 @@ def trace_many(
     executor : concurrent.futures.Executor, optional
         A process pool, dask's ``Client.get_executor()``, ...; without one, the calling process does it all.
     archive : path, optional
-        One file with all paths. Those of an executor are kept in ``name.sweep-xxxxxxxx.1.h5`` as they come (each
-        number of unknowns has a file), and are put in order at the end. If this process is killed they stay there, and
-        the sweep can be run again.
+        One file with all paths. They are kept in ``name.sweep-xxxxxxxx.1.h5`` as they come (each number of unknowns
+        has a file), and are put in order at the end. If this process is killed they stay there, and the sweep can be
+        run again.
     progress : callable, optional
         ``progress(done, total)``, called in this process; `continuation.step.progress.SweepProgress` shows it.
     timeout : float, optional
@@ -81,10 +93,8 @@ def trace_many(
 
     Raises
     ------
-    TypeError
-        For an option that `continuation.Tracer` does not have, or for what is no homotopy.
-    ValueError
-        If there are no homotopies, and there is an archive.
+    TypeError, ValueError
+        For an option that `continuation.Tracer` does not have, for what is no homotopy, or for none and an archive.
     ArchiveError
         If a file to be written exists, or the disk is full.
     KeyboardInterrupt
@@ -102,64 +112,28 @@ def trace_many(
     tasks = list(homotopies)
     for homotopy in tasks:
         instance_with("homotopies", homotopy, ("start", "residual"), "homotopies only")
-    target = None if archive is None else as_file("archive", archive)
-    if target is not None:
-        check_new(target)
-        if not tasks:
-            raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
-    report = progress or (lambda done, total: None)
-    paths = (
-        _serial(tasks, target, report, options)
-        if executor is None
-        else _spread(executor, tasks, target, report, timeout, options)
-    )
+    target = None if archive is None else new_file("archive", archive)
+    if target is not None and not tasks:
+        raise ValueError("homotopies: expected at least one where there is an archive, found none to trace")
+    paths = _swept(executor, tasks, target, progress or (lambda done, total: None), timeout, options)
     return paths if target is None else open_archive(target)
 
 
-def _interrupted(paths: Sequence[Path]) -> Interrupted:
-    """Ctrl-C, with what is not in a file."""
-    return Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
-
-
-# -- one after another, or over an executor --------------------------------------------------------------------
-
-
-def _serial(tasks: list[Any], target: File | None, report: Progress, options: Options) -> list[Path]:
-    """One after another, into a log of them all."""
-    paths: list[Path] = []
-    with ExitStack() as stack:
-        log = None if target is None else stack.enter_context(PathLog(target))
-        for number, homotopy in enumerate(tasks):
-            if log is not None:
-                log.member = number
-            tracer, stopped = begun(homotopy, Watch(log=log), options), False
-            if isinstance(tracer, Tracer):
-                stopped = interrupts(tracer)
-            if log is None:
-                paths.append(tracer.path if isinstance(tracer, Tracer) else failed(tracer))
-            elif isinstance(tracer, Tracer):
-                log.end(tracer)
-            else:
-                log.failure(homotopy, tracer)
-            if stopped:
-                raise _interrupted(paths)
-            report(number + 1, len(tasks))
-    return paths
-
-
-def _spread(
-    executor: Executor, tasks: list[Any], target: File | None, report: Progress, timeout: float | None, options: Options
+def _swept(
+    executor: Executor | None, tasks: list[Any], target: File | None, report: Progress, timeout: Any, options: Options
 ) -> list[Path]:
     token = secrets.token_hex(4)
-    sign = f"continuation-{token}.stop" if target is None else f"{target.stem}.sweep-{token}.stop"
     # A worker may run in another directory, on another machine.
-    stop = (File(tempfile.gettempdir()) if target is None else target.absolute().parent) / sign
+    folder = File(tempfile.gettempdir()) if target is None else target.absolute().parent
+    stop = folder / f"{'continuation' if target is None else target.stem}.sweep-{token}.stop"
     work_of = [Task(homotopy, k, stop, target is not None, options) for k, homotopy in enumerate(tasks)]
     with ExitStack() as stack:
-        run = _Run(executor, work_of, report, timeout, None if target is None else target.absolute(), token, stack)
+        run = _Run(executor, work_of, timeout, None if target is None else target.absolute(), token, stack)
         stopped = False
         try:
-            run.begin()
+            for done, (number, found) in enumerate(run.results(), 1):
+                run.keep(number, found)
+                report(done, len(tasks))
         except KeyboardInterrupt:
             stopped = True
             run.stop()
@@ -173,7 +147,7 @@ def _spread(
             file.unlink()
     paths = [run.paths[number] for number in sorted(run.paths)]
     if stopped:
-        raise _interrupted(paths)
+        raise Interrupted(paths[-1] if paths else Path(status=Status.INTERRUPTED), paths)
     return paths
 
 
@@ -181,9 +155,8 @@ def _spread(
 class _Run:
     """A sweep on its way: what is awaited, and the paths that came, in memory or in a file for each layout."""
 
-    executor: Executor
+    executor: Executor | None
     tasks: Sequence[Task]
-    report: Progress
     timeout: float | None
     target: File | None
     token: str
@@ -191,9 +164,19 @@ class _Run:
     paths: dict[int, Path] = field(factory=dict)
     parts: dict[Layout, Store] = field(factory=dict)
     futures: dict[Future[Result], int] = field(factory=dict)
-    done: int = 0
 
-    def begin(self) -> None:
+    def results(self) -> Iterator[tuple[int, Result]]:
+        """What came of each homotopy, when it comes."""
+        if self.executor is not None:
+            yield from self._spread(self.executor)
+            return
+        for task in self.tasks:
+            found, stopped = traced(task)
+            if stopped:
+                self.keep(task.number, found)
+            yield task.number, None if stopped else found
+
+    def _spread(self, executor: Executor) -> Iterator[tuple[int, Result]]:
         """Submit all of it and wait; workers that hang past the timeout are ended with their processes.
 
         What was lost with a worker is done again, each in a process of its own: one that ends its process takes no
@@ -202,7 +185,7 @@ class _Run:
         lost: dict[int, BaseException] = {}
         for task in self.tasks:
             try:
-                self.futures[self.executor.submit(work, task)] = task.number
+                self.futures[executor.submit(work, task)] = task.number
             except BrokenExecutor as error:
                 lost[task.number] = error
         waiting = set(self.futures)
@@ -210,7 +193,7 @@ class _Run:
             ended, waiting = wait(waiting, timeout=self.timeout, return_when=FIRST_COMPLETED)
             if not ended:
                 # All that run have run for that long, since a worker that ends one begins the next.
-                if not _end_processes(self.executor):
+                if not _end_processes(executor):
                     waiting = {future for future in waiting if not future.cancel() and not future.running()}
                     continue
                 ended, waiting = wait(waiting)
@@ -220,28 +203,36 @@ class _Run:
                 if isinstance(found, BrokenExecutor):
                     lost[number] = found
                 else:
-                    self.add(number, found)
+                    yield number, found
             del ended
-        lost |= {number: self._late() for number in self.futures.values()}
+        late = TimeoutError(f"took longer than {self.timeout or 0:g} s")
+        lost |= dict.fromkeys(self.futures.values(), late)
         for number in sorted(lost):
-            self.add(number, self._alone(self.tasks[number], lost[number]))
+            alone = isinstance(lost[number], BrokenExecutor) and isinstance(executor, ProcessPoolExecutor)
+            found = self._alone(executor, self.tasks[number], late) if alone else lost[number]
+            yield number, found
 
-    def add(self, number: int, found: Result) -> None:
-        """What came of a homotopy; `KeyboardInterrupt` where Ctrl-C reached its worker."""
+    def _alone(self, executor: Executor, task: Task, late: TimeoutError) -> Result:
+        """What comes of a homotopy in a process of its own."""
+        alone = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None))
+        try:
+            future = alone.submit(work, task)
+            return _outcome(future) if wait([future], timeout=self.timeout).done else late
+        finally:
+            _end_processes(alone)
+            alone.shutdown()
+
+    def keep(self, number: int, found: Result) -> None:
+        """Put a path where it stays; `KeyboardInterrupt` where Ctrl-C reached it or its worker."""
+        task = self.tasks[number]
         if found is None:
             raise KeyboardInterrupt
-        self.keep(number, found)
-        self.done += 1
-        self.report(self.done, len(self.tasks))
-
-    def keep(self, number: int, found: Path | Share | BaseException) -> None:
-        """Put a path where it stays."""
         if isinstance(found, BaseException):
-            found = kept(failed(found), self.tasks[number])
+            found = sent(Path(status=Status.RAISED, message=sentence(found)), task)
         if isinstance(found, Path):
             self.paths[number] = found
         else:
-            append(self.parts.get(found.layout) or self._part(found, self.tasks[number]), found)
+            append(self.parts.get(found.layout) or self._part(found, task), found)
 
     def _part(self, share: Share, task: Task) -> Store:
         """The file for all paths of a layout."""
@@ -250,30 +241,19 @@ class _Run:
         tracer = Tracer(task.homotopy, **task.options) if share.size else None
         name = f"{self.target.stem}.sweep-{self.token}.{len(self.parts) + 1}{self.target.suffix}"
         problem = problem_data(task.homotopy) if share.size else None
-        store = create(self.target.with_name(name), share.layout, root_attributes(tracer, "", {}), problem)
+        make = partial(Store, layout=share.layout, attributes=root_attributes(tracer, "", {}), problem=problem)
+        store = put(self.target.with_name(name), make, grows=True)
         self.stack.callback(store.close)
         self.parts[share.layout] = store
         return store
-
-    def _late(self) -> TimeoutError:
-        return TimeoutError(f"took longer than {self.timeout:g} s")
-
-    def _alone(self, task: Task, error: BaseException) -> Result:
-        if not (isinstance(error, BrokenExecutor) and isinstance(self.executor, ProcessPoolExecutor)):
-            return error
-        alone = ProcessPoolExecutor(1, mp_context=getattr(self.executor, "_mp_context", None))
-        try:
-            future = alone.submit(work, task)
-            return _outcome(future) if wait([future], timeout=self.timeout).done else self._late()
-        finally:
-            _end_processes(alone)
-            alone.shutdown()
 
     def stop(self) -> None:
         """Let the workers end their paths, and those that do not do so soon, with their processes; keep what is done.
 
         Threads, which cannot be ended, end by themselves.
         """
+        if self.executor is None:
+            return
         with suppress(OSError):
             self.tasks[0].stop.touch()
         for future in self.futures:
@@ -295,10 +275,74 @@ def _outcome(future: Future[Result]) -> Result:
 
 def _end_processes(executor: Executor) -> bool:
     """End the processes of a pool, whose homotopies do not come back; False where it has none of its own."""
-    processes: list[BaseProcess] = []
-    if isinstance(executor, ProcessPoolExecutor):
-        processes = list((getattr(executor, "_processes", None) or {}).values())
+    pool = isinstance(executor, ProcessPoolExecutor)
+    processes: list[BaseProcess] = list((getattr(executor, "_processes", None) or {}).values()) if pool else []
     for process in processes:
         process.kill()
         process.join()
     return bool(processes)
+
+
+# -- what a worker does ----------------------------------------------------------------------------------------
+
+
+@frozen(eq=False)
+class Task:
+    """A homotopy for a worker, and its number in the sweep. A file `stop` ends the worker by its existence."""
+
+    homotopy: Any
+    number: int
+    stop: File
+    archived: bool
+    options: Options
+
+
+@define(eq=False)
+class _Watch:
+    """Ends a path as Ctrl-C does once the stop sign, a file, is there."""
+
+    stop: File
+    next_look: float = 0.0
+
+    def step(self, tracer: Tracer, step: Step) -> None:
+        """See `continuation.Observer`."""
+        if time.monotonic() >= self.next_look:
+            self.next_look = time.monotonic() + _LOOK
+            if self.stop.exists():
+                raise KeyboardInterrupt
+
+    def event(self, tracer: Tracer, event: LocatedEvent) -> None:
+        """Steps are enough."""
+
+    def end(self, tracer: Tracer) -> None:
+        """So it has ended."""
+
+
+def work(task: Task) -> Result:
+    """Trace a homotopy; None where Ctrl-C ended it."""
+    found, stopped = (None, True) if task.stop.exists() else traced(task)
+    return None if stopped else found
+
+
+def traced(task: Task) -> tuple[Path | Share, bool]:
+    """The path of a homotopy, whatever that raises, and whether Ctrl-C ended it."""
+    path, controller, stopped = Path(), tuple[float, ...](), False
+    try:
+        tracer = Tracer(task.homotopy, observers=(_Watch(task.stop),), **task.options)
+        path = tracer.path
+        try:
+            tracer.run()
+        finally:
+            controller = () if tracer.state is None else tracer.state.controller
+    except Interrupted:
+        stopped = True
+    except _ITS_OWN as error:
+        if path.status in (Status.TRACING, Status.ABANDONED):
+            path.status = Status.RAISED
+        path.message = sentence(error)
+    return sent(path, task, controller), stopped
+
+
+def sent(path: Path, task: Task, controller: Sequence[float] = ()) -> Path | Share:
+    """A path as it is sent back."""
+    return share_of_path(path, task.homotopy, controller, task.number) if task.archived else path

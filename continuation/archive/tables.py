@@ -4,12 +4,10 @@ the steps of a path that stay in the file, so that a long path needs no memory.
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from itertools import pairwise
 from pathlib import Path as File
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
@@ -79,9 +77,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         -------
         ndarray
         """
-        if name in self._read:
-            return self._read[name][rows]
-        return self._fetch(name, rows)
+        return self._read[name][rows] if name in self._read else self._fetch(name, rows)
 
     def load(self) -> None:
         """Read everything."""
@@ -93,28 +89,31 @@ def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, a
     """An `xarray.Dataset` with the names, dimensions, coordinates and attributes of the file."""
     import xarray
 
-    variables: dict[str, Any] = {}
-    for table in (points, paths):
-        for name, column in table.columns.items():
-            variables[name] = (column.dimensions, _text(table[name]), column.attributes)
+    variables: dict[str, Any] = {
+        name: (column.dimensions, _text(table[name]), column.attributes)
+        for table in (points, paths)
+        for name, column in table.columns.items()
+    }
     variables["event_name"] = (EVENT_NAME.dimensions, np.array(events), EVENT_NAME.attributes)
     component = np.arange(unknowns, dtype=COMPONENT.dtype)
     coordinates = {"path": variables.pop("path"), "component": (COMPONENT.dimensions, component, COMPONENT.attributes)}
     return xarray.Dataset(variables, coordinates, attributes)
 
 
+def flat(block: Mapping[str, Any]) -> dict[str, Any]:
+    """The columns of some rows; of a matrix one a component, and texts as texts."""
+    columns = {}
+    for name, values in block.items():
+        parts = {name: _text(values)} if values.ndim == 1 else {f"{name}_{i}": v for i, v in enumerate(values.T)}
+        columns.update(parts)
+    return columns
+
+
 def dataframe(points: Table) -> Any:
     """A `pandas.DataFrame`, one row a point; matrices have one column a component."""
     import pandas
 
-    columns: dict[str, Any] = {}
-    for name in points:
-        values = points[name]
-        if values.ndim == 1:
-            columns[name] = values
-        else:
-            columns |= {f"{name}_{i}": values[:, i] for i in range(values.shape[1])}
-    return pandas.DataFrame(columns)
+    return pandas.DataFrame(flat(points))
 
 
 def _text(values: Any) -> Any:
@@ -124,8 +123,8 @@ def _text(values: Any) -> Any:
 # -- steps that stay in the file -------------------------------------------------------------------------------
 
 
-_WINDOW = 4096
-"""Steps that are read at once."""
+ROWS_AT_ONCE = 4096
+"""Rows that are read, copied or written as text at once: of 100 unknowns they take 7 MB."""
 
 _COLUMNS = {"u": ("y", "parameter"), "arclength": ("arclength",)}
 """What of a step is a column of the file. A tangent may be in memory alone."""
@@ -144,18 +143,15 @@ def kept_whole(keep: str) -> bool:
 class StoredSteps(Sequence[Step]):
     """The steps of a path as a sequence: the first and the last ones in memory, the others read from the file.
 
-    While the path is traced, `append` adds to it, and what is not yet committed is in memory. A step that is read has
-    the segment to the step before only if the archive holds tangents.
+    While the path is traced, `append` adds to it, and what is not yet committed is in memory: all of `steps` at first.
+    A step that is read has the segment to the step before only if the archive holds tangents.
     """
 
-    def __init__(self, opener: Opener, file: File, path: int) -> None:
+    def __init__(self, opener: Opener, file: File, path: int, steps: Iterable[Step], count: int | None = None) -> None:
         self._opener, self._file, self._path = opener, file, path
-        self._first: Step | None = None
-        self._last: list[Step] = []
-        self._located: list[int] = []
-        self._count = 0
-
-    # -- while it grows ---------------------------------------------------------------------------------------
+        self._last = list(steps)
+        self._first, self._count = next(iter(self._last), None), len(self._last) if count is None else count
+        self._last = self._last if count is None else self._last[-1:]
 
     def append(self, step: Step) -> None:
         """The next step."""
@@ -163,33 +159,14 @@ class StoredSteps(Sequence[Step]):
         self._last.append(step)
         self._count += 1
 
-    def locate(self, after: bool = False) -> None:
-        """An event has got a row of its own, before the last step; or, `after` it, a part of a kink has."""
-        self._located.append(self._count - (not after))
-
     def committed(self) -> None:
         """The file holds all of it: only the last step is still held, and the first."""
         self._last = self._last[-1:]
 
-    def known(self, roles: Any, ends: Sequence[Step]) -> None:
-        """Begin with what a file holds already: the roles of the path's rows, and its first and last step."""
-        places = np.flatnonzero(roles != ACCEPTED)
-        self._located = (places - np.arange(len(places))).tolist()
-        self._count = len(roles) - len(places)
-        self._first, self._last = next(iter(ends), None), list(ends[-1:])
-
-    # -- the sequence -----------------------------------------------------------------------------------------
-
     def __len__(self) -> int:
         return self._count
 
-    @overload
-    def __getitem__(self, index: int) -> Step: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> list[Step]: ...
-
-    def __getitem__(self, index: int | slice) -> Step | list[Step]:
+    def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             wanted = range(*index.indices(self._count))
             first = min(wanted, default=0)
@@ -214,9 +191,8 @@ class StoredSteps(Sequence[Step]):
             return np.array([getattr(step, name) for step in self])
         with self._opener(self._file) as archive:
             # To make steps of them takes 14 times as long.
-            first = archive.rows(self._path).start
-            rows = slice(first, first + self._row(begin - 1) + 1)
-            steps = archive.points.some("role", rows) == ACCEPTED
+            rows = archive.rows(self._path)
+            steps = np.flatnonzero(archive.points.some("role", rows) == ACCEPTED)[:begin]
             found = [archive.points.some(field, rows)[steps] for field in fields]
         stored = found[0] if len(found) == 1 else np.column_stack(found)
         return np.concatenate((stored, [getattr(step, name) for step in self._last]))
@@ -225,48 +201,31 @@ class StoredSteps(Sequence[Step]):
         begin = self._count - len(self._last)
         while start < min(stop, begin):
             # One row more, for the segment from the step before.
-            before, end = max(start - 1, 0), min(start + _WINDOW, stop, begin)
+            before, end = max(start - 1, 0), min(start + ROWS_AT_ONCE, stop, begin)
             with self._opener(self._file) as archive:
-                steps, _ = window(archive, self._path, self._row(before), self._row(end - 1) + 1, before)
+                steps, _ = window(archive, self._path, before, end)
             yield from steps[start - before :]
             start = end
         yield from self._last[start - begin : max(stop - begin, 0)]
 
-    def _row(self, index: int) -> int:
-        """Of a step among the path's rows: each event before it has one too."""
-        return index + bisect_left(self._located, index + 1)
 
-
-def window(archive: Any, path: int, start: int, stop: int, index: int) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps and events of some rows of a path of an `Archive`; `index` is that of the first step among them."""
-    first = archive.rows(path).start
-    block = archive.points.block(slice(first + start, first + stop))
-    return from_columns(block, archive.event_names, archive.layout.observed, index)
-
-
-def events(archive: Any, path: int) -> list[LocatedEvent]:
-    """The events of a path of an `Archive`, without its steps."""
+def window(archive: Any, path: int, start: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
+    """Some steps of a path of an `Archive`, and the events from the first of them on to before the one after them."""
     rows = archive.rows(path)
-    numbers = archive.points.some("event_index", rows)
-    # Windows begin with a step: a kink and its parts stay together.
-    begins = np.flatnonzero(archive.points.some("role", rows) == ACCEPTED)[::_WINDOW].tolist()
-    found: list[LocatedEvent] = []
-    for k, (start, stop) in enumerate(pairwise([*begins, len(numbers)])):
-        if np.any(numbers[start:stop] >= 0):
-            found += window(archive, path, start, stop, k * _WINDOW)[1]
-    return found
+    accepted = np.append(np.flatnonzero(archive.points.some("role", rows) == ACCEPTED), rows.stop - rows.start)
+    begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (start, stop))
+    return from_columns(archive.points.block(slice(begin, end)), archive.event_names, archive.layout.observed, start)
 
 
-def stored_path(archive: Any, opener: Opener, file: File, path: int) -> StoredSteps:
-    """The steps of a path of an `Archive`, of which only the ends are in memory."""
+def stored_path(archive: Any, opener: Opener, file: File, path: int) -> tuple[StoredSteps, list[LocatedEvent]]:
+    """The steps of a path of an `Archive`, of which only the ends are in memory, and its events."""
     rows = archive.rows(path)
-    roles = archive.points.some("role", rows)
-    steps, accepted = StoredSteps(opener, file, path), np.flatnonzero(roles == ACCEPTED).tolist()
-    ends: list[Step] = []
-    if accepted:
-        last = len(accepted) - 1
-        ends += window(archive, path, accepted[0], accepted[0] + 1, 0)[0]
-        # With the row before, for the segment from there.
-        ends += window(archive, path, accepted[last - 1], rows.stop - rows.start, last - 1)[0][1:2] if last else []
-    steps.known(roles, ends)
-    return steps
+    accepted, numbers = archive.points.some("role", rows) == ACCEPTED, archive.points.some("event_index", rows)
+    count = int(np.count_nonzero(accepted))
+    # A kink and its parts stay together: their rows come after the step's.
+    eventful = np.unique((np.cumsum(accepted) - 1)[numbers >= 0] // ROWS_AT_ONCE).tolist() if count else []
+    events = [event for k in eventful for event in window(archive, path, k * ROWS_AT_ONCE, (k + 1) * ROWS_AT_ONCE)[1]]
+    # The last with the one before, for the segment from there.
+    last = window(archive, path, max(count - 2, 0), count)[0][-1:] if count else []
+    ends = (window(archive, path, 0, 1)[0] if count > 1 else []) + last
+    return StoredSteps(opener, file, path, ends, count), events

@@ -41,11 +41,8 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
 
     Raises `TypeError` if something else is to be trusted, or a thing that has no name to be found by.
     """
-    found = {}
-    for module in _MODULES:
-        for thing in vars(module).values():
-            if isinstance(thing, type) and attrs.has(thing):
-                found[f"{thing.__module__}:{thing.__qualname__}"] = thing
+    parts = [thing for module in _MODULES for thing in vars(module).values()]
+    found: dict[str, Any] = {_path(thing): thing for thing in parts if isinstance(thing, type) and attrs.has(thing)}
     for thing in trust:
         if not callable(thing):
             raise TypeError(f"trust: expected classes and functions, found {thing!r}")
@@ -54,11 +51,6 @@ def registry(trust: Iterable[Any] = ()) -> dict[str, Any]:
         except UnstorableError as error:
             raise TypeError(f"trust: expected something that an archive can name; {error}") from None
     return found
-
-
-def is_registered(path: str) -> bool:
-    """Whether an installed package registers ``module:class``, so that it needs no trust of the caller's."""
-    return _registered(path) is not None
 
 
 @lru_cache
@@ -70,13 +62,17 @@ def _registered(path: str) -> type | None:
             thing = point.load()
         except Exception:
             continue
-        hint = thing if isinstance(thing, type) else _hints(thing).get("return")
-        for cls in typing.get_args(hint) if isinstance(hint, types.UnionType) else (typing.get_origin(hint) or hint,):
-            # A homotopy's own metric is as much a part of its package as the homotopy.
-            for found in (cls, type(getattr(cls, "metric", None))):
-                if isinstance(found, type) and f"{found.__module__}:{found.__qualname__}" == path:
-                    return found
+        made = _options(thing if isinstance(thing, type) else _hints(thing).get("return"))
+        classes = [typing.get_origin(option) or option for option in made]
+        # A homotopy's own metric is as much a part of its package as the homotopy.
+        for found in (*classes, *(type(getattr(cls, "metric", None)) for cls in classes)):
+            if isinstance(found, type) and _path(found) == path:
+                return found
     return None
+
+
+def _path(cls: type) -> str:
+    return f"{cls.__module__}:{cls.__qualname__}"
 
 
 def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | None = None, hint: Any = Any) -> Any:
@@ -91,8 +87,13 @@ def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | No
         value = _decode(tree, fetch, known or {}, hint)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise UnknownError(f"the description makes no sense ({type(error).__name__}: {error})") from None
+    return _checked(value, hint, "")
+
+
+def _checked(value: Any, hint: Any, name: str) -> Any:
     if not _fits(value, hint):
-        raise UnknownError(f"expected {_shown(hint)}, found {type(value).__name__}")
+        shown = hint.__name__ if isinstance(hint, type) else str(hint)
+        raise UnknownError(f"{name}expected {shown}, found {type(value).__name__}")
     return value
 
 
@@ -101,49 +102,46 @@ def _decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
         return tree
     if "array" in tree:
         return fetch(tree["array"])
-    for kind in ("tuple", "list"):
+    for kind, make in (("tuple", tuple), ("list", list)):
         if kind in tree:
             inner = _items(hint, len(tree[kind]))
-            items = [_decode(item, fetch, known, of) for item, of in zip(tree[kind], inner)]
-            return tuple(items) if kind == "tuple" else items
+            return make(_decode(item, fetch, known, of) for item, of in zip(tree[kind], inner))
     if "dict" in tree:
         return {key: _decode(item, fetch, known, Any) for key, item in tree["dict"].items()}
     if "sparse" in tree:
         return _sparse(tree, fetch)
-    if "function" in tree:
-        if tree["function"] not in known:
-            raise UnknownError(f"{tree['function']} is a function, which is not trusted: pass it in trust=[...]")
-        return known[tree["function"]]
-    return _object(tree, fetch, known, hint)
+    if "function" not in tree:
+        return _object(tree, fetch, known, hint)
+    if tree["function"] not in known:
+        raise UnknownError(f"{tree['function']} is a function, which is not trusted: pass it in trust=[...]")
+    return known[tree["function"]]
 
 
 def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hint: Any) -> Any:
     path = tree["class"]
-    name = path.partition(":")[2]
+    expected = (typing.get_origin(option) or option for option in _options(hint))
     # A class that a field is annotated with is found by its name: it may have moved to another module since.
-    named = (cls for cls in _classes(hint) if cls.__qualname__ == name)
+    named = (c for c in expected if isinstance(c, type) and attrs.has(c) and c.__qualname__ == path.partition(":")[2])
     cls = next(named, None) or known.get(path) or (_registered(path) if known else None)
     if not isinstance(cls, type):
         raise UnknownError(f"{path} is not registered: pass it in trust=[...]")
     if "data" in tree:
-        make = getattr(cls, "from_archive", None)
-        if make is None:
-            raise UnknownError(f"{path} has no from_archive any more")
-        return make(_decode(tree["data"], fetch, known, Any))
+        made: Any = cls
+        return made.from_archive(_decode(tree["data"], fetch, known, Any))
     hints = _hints(cls)
     kinds = {a.alias: hints.get(a.name, Any) for a in attrs.fields(cls) if a.init} if attrs.has(cls) else {}
-    fields = {key: _decode(item, fetch, known, kinds.get(key, Any)) for key, item in tree["fields"].items()}
-    for key, value in fields.items():
-        if key not in kinds:
-            raise UnknownError(f"{path} has no field {key} any more")
-        if not _fits(value, kinds[key]):
-            raise UnknownError(f"{path}: {key} expected {_shown(kinds[key])}, found {type(value).__name__}")
-    if hasattr(cls, "__attrs_init__"):
-        # A class with a constructor of its own for people, which completes and checks what is complete here.
-        made: Any = object.__new__(cls)
-        made.__attrs_init__(**fields)
-        return made
-    return cls(**fields)
+    if set(tree["fields"]) - set(kinds):
+        raise UnknownError(f"{path} has no field {', '.join(set(tree['fields']) - set(kinds))} any more")
+    fields = {
+        key: _checked(_decode(item, fetch, known, kinds[key]), kinds[key], f"{path}: {key} ")
+        for key, item in tree["fields"].items()
+    }
+    if not hasattr(cls, "__attrs_init__"):
+        return cls(**fields)
+    # A class with a constructor of its own for people, which completes and checks what is complete here.
+    made = object.__new__(cls)
+    made.__attrs_init__(**fields)
+    return made
 
 
 def _sparse(tree: Any, fetch: Callable[[Any], Any]) -> Any:
@@ -182,12 +180,6 @@ def _options(hint: Any) -> tuple[Any, ...]:
     return tuple(o for a in typing.get_args(hint) for o in _options(a)) if union else (hint,)
 
 
-def _classes(hint: Any) -> list[type]:
-    """The attrs classes among what is expected."""
-    found = (typing.get_origin(option) or option for option in _options(hint))
-    return [cls for cls in found if isinstance(cls, type) and attrs.has(cls)]
-
-
 def _fits(value: Any, hint: Any) -> bool:
     return any(_is(value, option) for option in _options(hint))
 
@@ -201,20 +193,12 @@ def _is(value: Any, hint: Any) -> bool:
     if origin is np.ndarray:
         return isinstance(value, np.ndarray) and value.dtype.kind in "fiubc"
     if origin in (tuple, list) and arguments:
-        if not isinstance(value, origin):
-            return False
         fixed = origin is tuple and ... not in arguments
-        kinds = _items(hint, len(value))
-        return (not fixed or len(value) == len(arguments)) and all(map(_fits, value, kinds))
-    if origin in (float, int):
-        return isinstance(value, (int, origin)) and not isinstance(value, bool)
-    if hint is None:
-        return value is None
+        sized = isinstance(value, origin) and (not fixed or len(value) == len(arguments))
+        return sized and all(map(_fits, value, _items(hint, len(value))))
+    if origin in (float, int, None):
+        return value is None if hint is None else isinstance(value, (int, origin)) and not isinstance(value, bool)
     if getattr(origin, "_is_protocol", False) and not getattr(origin, "_is_runtime_protocol", False):
         return not isinstance(value, (str, int, float, dict, list, tuple, type(None)))
     # A type variable, or what only a type checker knows: numbers, containers and trusted objects are all there is.
     return not isinstance(origin, type) or origin is Any or isinstance(value, origin)
-
-
-def _shown(hint: Any) -> str:
-    return hint.__name__ if isinstance(hint, type) else str(hint)

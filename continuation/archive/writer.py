@@ -5,39 +5,56 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
+from functools import partial
+from itertools import takewhile
 from numbers import Integral
 from os import PathLike
 from pathlib import Path as File
 from types import TracebackType
 from typing import Any
 
-from continuation.archive.atomic import ArchiveError, as_file, check_new
+from attrs import define, field, frozen
+
+from continuation.archive.atomic import ArchiveError, new_file
 from continuation.archive.checkpoint import Checkpoint, describe_run, pack
 from continuation.archive.codec import problem_data
 from continuation.archive.provenance import root_attributes
 from continuation.archive.reader import open_archive
-from continuation.archive.rows import (
-    Buffer,
-    Limits,
-    Mark,
-    OpenPath,
-    Record,
-    Row,
-    counted,
-    layout_of,
-    record_of,
-    row_columns,
-    rows_at,
-    to_columns,
-)
-from continuation.archive.schema import ACCEPTED, COUNT_NAMES, KINK_PART, LOCATED, SLOTS, check_names
-from continuation.archive.store import Store, create
+from continuation.archive.rows import Record, Row, counted, layout_of, record_of, row_columns, rows_at, to_columns
+from continuation.archive.schema import ACCEPTED, COUNT_NAMES, LOCATED, SLOTS, check_names
+from continuation.archive.store import Store, put
 from continuation.archive.tables import StoredSteps, kept_whole
-from continuation.arguments.checks import complain
-from continuation.path import LocatedEvent, Path, Step
+from continuation.arguments.checks import complain, integer, number
+from continuation.path import LocatedEvent, Step
 from continuation.status import Kind, Status
+from continuation.step.state import State
 from continuation.step.tracer import Tracer
-from continuation.step.verdict import sentence
+
+Mark = tuple[State, tuple[int, ...], int]
+"""A point to resume from: the state, the counters there, and how many rows of the path come before it."""
+
+
+@frozen
+class Limits:
+    """When buffered rows are committed: at so many rows, bytes of points, or seconds since the last commit."""
+
+    rows: int = field(default=256, validator=integer(1))
+    nbytes: int = field(default=4 << 20, validator=integer(1))
+    seconds: float = field(default=1.0, validator=number("at least 0", lambda x: x >= 0.0))
+
+
+@define(eq=False)
+class OpenPath:
+    """The path being written: its number, its first row in the point table, and where it can be resumed."""
+
+    tracer: Tracer
+    number: int
+    first: int
+    seconds: float = 0.0
+    run: bytes | None = None
+    last: Mark | None = None
+    resume: Mark | None = None
+    skipped: Step | None = None
 
 
 class PathLog:
@@ -81,18 +98,16 @@ class PathLog:
 
     file: File
     member: int | None = None
-    _buffer: Buffer
+    _rows: tuple[int, list[Row]]
+    """The number of the first row that is not yet committed, and those: one object, so that a commit is one
+    assignment."""
     _early: list[Record]
-    _limits: Limits
-    _whole: bool
-    _tangents, _durable, _title = True, False, ""
-    _parameters: Mapping[str, Any]
     _many = _closed = False
     _store: Store | None = None
     _open: OpenPath | None = None
+    _limits, _whole, _save_every, _durable, _tangents = Limits(), True, 1, False, True
+    _about: tuple[str, Mapping[str, Any]] = ("", {})
     _paths = _sequence = 0
-    _save_every = 1
-    _identifier = ""
     _known: tuple[Any, Any] = (None, None)
     """The file's first homotopy, and what says in a checkpoint how to make it."""
     _commit_at = 0.0
@@ -109,42 +124,35 @@ class PathLog:
         keep: str = "all",
         save_every: int = 1,
     ) -> None:
-        limits = Limits() if limits is None else limits
-        if not isinstance(limits, Limits):
+        if not isinstance(limits, Limits | None):
             raise complain(TypeError, "limits", "Limits(...)", limits)
         if not isinstance(save_every, Integral) or save_every < 1 or (save_every > 1 and keep != "all"):
             raise complain(ValueError, "save_every", 'an integer, at least 1 (and 1 unless keep="all")', save_every)
-        self.file, self._limits, self._whole = as_file("file", file), limits, kept_whole(keep)
-        check_new(self.file)
-        self._durable, self._tangents, self._title = durable, tangents, title
-        self._parameters, self._save_every = dict(parameters or {}), int(save_every)
-        self._buffer, self._early = Buffer(0), list[Record]()
+        self._whole, self.file = kept_whole(keep), new_file("file", file)
+        self._limits, self._save_every = limits or Limits(), int(save_every)
+        self._durable, self._tangents, self._about = durable, tangents, (title, dict(parameters or {}))
+        self._rows, self._early = (0, []), []
 
     @classmethod
-    def continued(
-        cls, store: Store, points: int, checkpoint: Checkpoint, tracer: Tracer, whole: bool, identifier: str
-    ) -> PathLog:
+    def continued(cls, store: Store, checkpoint: Checkpoint, tracer: Tracer, whole: bool) -> PathLog:
         """A log that goes on with a path of which the file holds the beginning; for `resume`.
 
         Parameters
         ----------
         store : Store
-        points : int
-            Rows that the file holds.
         checkpoint : Checkpoint
         tracer : Tracer
         whole : bool
             Whether all steps stay in memory.
-        identifier : str
-            Of the file in which the path began.
         """
         log = cls.__new__(cls)
-        log.file, log._store, log._buffer, log._early = store.file, store, Buffer(points), []
-        log._limits, log._whole, log._identifier = Limits(), whole, str(identifier)
-        log._paths, log._sequence = checkpoint.path, checkpoint.sequence
+        points = store.committed.points
+        log.file, log._store, log._rows, log._early = store.file, store, (points, []), []
+        log._whole, log._paths, log._sequence = whole, checkpoint.path, checkpoint.sequence
         log._known, log.member = (tracer.homotopy, checkpoint.run["homotopy"]), checkpoint.run["member"]
-        mark = Mark(checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows)
-        log._open = OpenPath(tracer, checkpoint.path, checkpoint.rows, checkpoint.seconds, None, mark, mark)
+        mark = checkpoint.state, tuple(checkpoint.counts[name] for name in COUNT_NAMES), checkpoint.rows
+        first = points - checkpoint.rows
+        log._open = OpenPath(tracer, checkpoint.path, first, checkpoint.seconds, None, mark, mark)
         log._commit_at = time.monotonic() + log._limits.seconds
         return log
 
@@ -153,37 +161,32 @@ class PathLog:
     def step(self, tracer: Tracer, step: Step) -> None:
         """See `continuation.Observer`."""
         path = self._path(tracer)
-        if self._store is None:
-            self._make(tracer, step.u.size - 1, tuple(step.observed))
+        store = self._store or self._make(tracer, step.u.size - 1, tuple(step.observed))
         if not self._whole and not isinstance(tracer.path.steps, StoredSteps):
-            stored: Any = StoredSteps(open_archive, self.file, path.number)
-            for earlier in tracer.path.steps:
-                stored.append(earlier)
+            stored: Any = StoredSteps(open_archive, self.file, path.number, tracer.path.steps)
             tracer.path.steps = stored
         path.skipped = step if step.kind == Kind.REGULAR and step.index % self._save_every else None
         if path.skipped is not None:
             # Not a point to resume from either: that is one whose row is there.
             return
-        events = tracer.path.events
-        first = len(events)
-        while first and events[first - 1].ends_step and events[first - 1].step == step.index:
-            first -= 1
-        for row in rows_at(step, events[first:], self._store is not None and self._store.layout.pieces):
-            self._add(path, row)
-        state = tracer.state
+        ending = [*takewhile(lambda e: e.ends_step and e.step == step.index, reversed(tracer.path.events))]
+        for row in rows_at(step, ending[::-1], store.layout.pieces):
+            self._add(row)
+        state, (first, rows) = tracer.state, self._rows
         if state is not None and state.index == step.index:
             # Whether the path ends at this point is decided after it is written. So a resumed trace begins one point
             # earlier; only at the start there is nothing left to be decided.
-            mark = Mark(state, counted(tracer.counts), path.rows)
-            path.resume = path.last if path.last is not None else mark
-            path.last = mark
-        buffer, limits = self._buffer, self._limits
-        if len(buffer.rows) >= limits.rows or buffer.nbytes >= limits.nbytes or time.monotonic() >= self._commit_at:
+            mark = state, counted(tracer.counts), first + len(rows) - path.first
+            path.resume, path.last = path.last or mark, mark
+        limits = self._limits
+        full = len(rows) >= limits.rows or len(rows) * step.u.nbytes >= limits.nbytes
+        if full or time.monotonic() >= self._commit_at:
             self._commit()
 
     def event(self, tracer: Tracer, event: LocatedEvent) -> None:
         """See `continuation.Observer`."""
-        self._add(self._path(tracer), Row(event, event, LOCATED, event.tangent))
+        self._path(tracer)
+        self._add(Row(event, event, LOCATED, event.tangent))
 
     def end(self, tracer: Tracer) -> None:
         """See `continuation.Observer`; commits the path, and closes the file unless the log is a context manager."""
@@ -192,38 +195,30 @@ class PathLog:
             return
         path, found, state = self._path(tracer), tracer.path, tracer.state
         if path.skipped is not None:
-            self._add(path, Row(path.skipped, None, ACCEPTED, path.skipped.tangent))
+            self._add(Row(path.skipped, None, ACCEPTED, path.skipped.tangent))
         row = record_of(found, tracer.homotopy, state.controller if state is not None else ())
         row["wall_time"] += path.seconds
-        refused = self._store is None and found.status in (Status.INTERRUPTED, Status.RAISED)
-        if self._many or not refused:
-            self._finish(row, path.number, path.rows)
+        if self._many or self._store is not None or found.status not in (Status.INTERRUPTED, Status.RAISED):
+            row |= {"path": path.number, "n_points": self._rows[0] + len(self._rows[1]) - path.first}
+            row["member"] = path.number if self.member is None else self.member
+            self._paths = path.number + 1
+            if self._store is None:
+                self._early.append(row)
+            else:
+                self._commit(row)
         self._open = None
         if not self._many:
             self.close()
-
-    def failure(self, homotopy: Any, error: BaseException) -> None:
-        """A path that could not even begin, as a row with the exception's text.
-
-        Parameters
-        ----------
-        homotopy : Homotopy
-        error : BaseException
-        """
-        self._check_open()
-        path = Path(status=Status.RAISED, message=sentence(error))
-        self._finish(record_of(path, homotopy, ()), self._paths, 0)
 
     def close(self) -> None:
         """Commit what is there and close the file; a second call does nothing."""
         if self._closed:
             return
-        if self._store is None and self._early:
-            self._make(None, 1, ())
-        if self._store is not None:
-            if self._buffer.rows and self._store.ours:
+        store = self._store or (self._make(None, 1, ()) if self._early else None)
+        if store is not None:
+            if self._rows[1] and store.ours:
                 self._commit()
-            self._store.close()
+            store.close()
         self._closed = True
 
     def __enter__(self) -> PathLog:
@@ -239,41 +234,22 @@ class PathLog:
 
     def _path(self, tracer: Tracer) -> OpenPath:
         path = self._open
-        if path is not None:
-            if path.tracer is tracer:
-                return path
+        if path is None:
+            if self._closed:
+                raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
+            self._open = path = OpenPath(tracer, self._paths, self._rows[0])
+            self._commit_at = time.monotonic() + self._limits.seconds
+        if path.tracer is not tracer:
             raise ArchiveError(f"{self.file}: a path is being written already; a log writes one path after another")
-        self._check_open()
-        self._open = path = OpenPath(tracer, self._paths)
-        self._commit_at = time.monotonic() + self._limits.seconds
         return path
 
-    def _check_open(self) -> None:
-        if self._closed:
-            raise ArchiveError(f"{self.file}: the log is closed; for many paths use it in a `with` statement")
+    def _add(self, row: Row) -> None:
+        if self._store is not None and row.point.u.size - 1 != self._store.layout.unknowns:
+            held, found = self._store.layout.unknowns, row.point.u.size - 1
+            raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {found}")
+        self._rows[1].append(row)
 
-    def _add(self, path: OpenPath, row: Row) -> None:
-        u = row.point.u
-        if self._store is not None and u.size - 1 != self._store.layout.unknowns:
-            held = self._store.layout.unknowns
-            raise ValueError(f"homotopy: expected {held} unknowns, as in {self.file} so far, found {u.size - 1}")
-        self._buffer.rows.append(row)
-        steps: Any = path.tracer.path.steps
-        if row.role != ACCEPTED and isinstance(steps, StoredSteps):
-            steps.locate(row.role == KINK_PART)
-        self._buffer.nbytes += u.nbytes
-        path.rows += 1
-
-    def _finish(self, row: Record, number: int, rows: int) -> None:
-        """Write the path's own row; where there is no file yet, with the file."""
-        row |= {"path": number, "member": number if self.member is None else self.member, "n_points": rows}
-        self._paths = number + 1
-        if self._store is None:
-            self._early.append(row)
-        else:
-            self._commit(row)
-
-    def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> None:
+    def _make(self, tracer: Tracer | None, unknowns: int, observed: tuple[str, ...]) -> Store:
         """Make the file, and write the rows of paths that ended before there was one."""
         check_names("observe", observed)
         homotopy = tracer.homotopy if tracer is not None else None
@@ -281,38 +257,37 @@ class PathLog:
         layout = layout_of(homotopy, unknowns, observed, state, self._tangents, self._early)
         problem = problem_data(homotopy)
         self._known = (homotopy, {"problem": True} if problem[1] else json.loads(problem[0]))
-        attributes = root_attributes(tracer, self._title, self._parameters)
-        self._identifier = attributes["identifier"]
-        self._store = create(self.file, layout, attributes, problem, durable=self._durable)
+        attributes = root_attributes(tracer, *self._about)
+        make = partial(Store, layout=layout, attributes=attributes, problem=problem, durable=self._durable)
+        self._store = store = put(self.file, make, grows=True)
         for event in tracer.settings.events if tracer is not None else ():
-            self._store.name_event(event.name)
-        self._store.commit()
+            store.name_event(event.name)
+        store.commit()
         for row in self._early:
             self._commit(row)
-        self._early = []
+        return store
 
     def _commit(self, row: Record | None = None) -> None:
-        store, buffer, path = self._store, self._buffer, self._open
+        store, path = self._store, self._open
         assert store is not None
-        points, checkpoints = None, {}
+        points, paths, checkpoints = None, None, {}
         # A commit that Ctrl-C interrupted may have been complete.
-        start = max(buffer.start, store.committed.points)
-        rows = buffer.rows[start - buffer.start :]
+        start = store.committed.points
+        rows = self._rows[1][start - self._rows[0] :]
         if path is not None and rows:
             points = to_columns(rows, path.number, store.layout, store.name_event)
         if path is not None and path.resume is not None:
             checkpoints = {(self._sequence + 1) % SLOTS: self._checkpoint(path, path.resume)}
-        paths = None
         if row is not None and row["path"] >= store.committed.paths:
-            row["source"] = f"{self._identifier} {row['path']} {self.file.name}"
+            row["source"] = f"{store.identifier} {row['path']} {self.file.name}"
             paths = row_columns(row, store.layout)
         try:
-            store.commit(points, start, paths, row["path"] if row is not None else 0, checkpoints)
+            store.commit(points, paths, checkpoints)
         except ArchiveError:
             self._closed = True
             store.close()
             raise
-        self._buffer = Buffer(start + len(rows))
+        self._rows = (start + len(rows), [])
         if path is not None and isinstance(path.tracer.path.steps, StoredSteps):
             path.tracer.path.steps.committed()
         self._sequence += 1
@@ -323,6 +298,6 @@ class PathLog:
             homotopy, described = self._known
             known = described if homotopy is path.tracer.homotopy else None
             path.run = json.dumps(describe_run(path.tracer, self.member, known)).encode()
-        counts = dict(zip(COUNT_NAMES, mark.counts))
-        seconds = path.seconds + path.tracer.seconds
-        return pack(Checkpoint(self._sequence + 1, path.number, mark.rows, mark.state, counts, seconds, {}), path.run)
+        state, counts, rows = mark
+        named, seconds = dict(zip(COUNT_NAMES, counts)), path.seconds + path.tracer.seconds
+        return pack(Checkpoint(self._sequence + 1, path.number, rows, state, named, seconds, {}), path.run)

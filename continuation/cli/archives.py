@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, UsageError, above_zero, positive
+from continuation.cli.parser import (
+    FAILURE,
+    SUCCESS,
+    Subparsers,
+    UsageError,
+    above_zero,
+    add_command,
+    argument,
+    positive,
+)
 
 if TYPE_CHECKING:
     from continuation.step.options import Options
@@ -18,47 +26,7 @@ if TYPE_CHECKING:
 
 def register(subparsers: Subparsers) -> None:
     """Add the commands."""
-    parser = subparsers.add_parser("inspect", help="what an archive holds: what ran, how it ended, at what cost")
-    parser.add_argument("file", metavar="FILE", help="an archive; may still be growing")
-    parser.set_defaults(run=_inspect)
-
-    parser = subparsers.add_parser("resume", help="go on with a path that was interrupted")
-    parser.add_argument("file", metavar="FILE", help="an archive whose last path has not reached its end")
-    parser.add_argument("options", metavar="KEY=VALUE", nargs="*", help="of the homotopy; the file's own by default")
-    parser.add_argument("--homotopy", metavar="NAME", help="a name of `continuation plugins`, or module:object")
-    parser.add_argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE")
-    for name in ("--steps", "--budget-steps"):  # the second as `trace` has it
-        parser.add_argument(name, dest="steps", type=positive, metavar="N", help="a new budget: accepted steps")
-    parser.add_argument("--budget-seconds", dest="seconds", type=above_zero, metavar="S", help="wall-clock time")
-    parser.add_argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations")
-    _add_trust(parser)
-    parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
-    parser.set_defaults(run=_resume)
-
-    parser = subparsers.add_parser("recheck", help="check the proofs of an archive again, without tracing")
-    parser.add_argument("file", metavar="FILE", help="an archive with certificates")
-    _add_trust(parser)
-    parser.set_defaults(run=_recheck)
-
-    parser = subparsers.add_parser("recover", help="make whole what a killed writer left")
-    parser.add_argument("file", metavar="FILE", help="replaced by a copy of all that was committed")
-    parser.add_argument("--force", action="store_true", help="even if its writer seems to be alive")
-    parser.set_defaults(run=_recover)
-
-    parser = subparsers.add_parser("export", help="write an archive as netCDF-4 or as tables of text")
-    parser.add_argument("file", metavar="FILE", help="an archive")
-    parser.add_argument("target", metavar="TARGET", help="a new .nc file, or .csv or .csv.gz for two tables")
-    parser.add_argument("--compression", type=int, default=4, metavar="LEVEL", help="of gzip, 0 to 9 (default: 4)")
-    parser.set_defaults(run=_export)
-
-    parser = subparsers.add_parser("merge", help="many archives as one")
-    parser.add_argument("target", metavar="OUT", help="a new archive")
-    parser.add_argument("files", metavar="FILE", nargs="+", help="archives with the same number of unknowns")
-    parser.set_defaults(run=_merge)
-
-
-def _add_trust(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
+    trust = argument(
         "--trust",
         action="append",
         default=[],
@@ -66,15 +34,58 @@ def _add_trust(parser: argparse.ArgumentParser) -> None:
         metavar="MODULE:NAME",
         help="a class or function that may be made, besides what is installed; can be given again",
     )
+    add_command(
+        subparsers, _inspect, "inspect",
+        argument("file", metavar="FILE", help="an archive; may still be growing"),
+        help="what an archive holds: what ran, how it ended, at what cost",
+    )  # fmt: skip
+    add_command(
+        subparsers, _resume, "resume",
+        argument("file", metavar="FILE", help="an archive whose last path has not reached its end"),
+        argument("options", metavar="KEY=VALUE", nargs="*", help="of the homotopy; the file's own by default"),
+        argument("--homotopy", metavar="NAME", help="a name of `continuation plugins`, or module:object"),
+        argument("--archive", metavar="NEW", help="write to a new file instead of going on in FILE"),
+        # The second as `trace` has it.
+        *(
+            argument(name, dest="steps", type=positive, metavar="N", help="a new budget: accepted steps")
+            for name in ("--steps", "--budget-steps")
+        ),
+        argument("--budget-seconds", dest="seconds", type=above_zero, metavar="S", help="wall-clock time"),
+        argument("--factorizations", type=positive, metavar="N", help="a new budget: factorisations"),
+        trust,
+        argument("--progress", action="store_true", help="show the progress on stderr"),
+        help="go on with a path that was interrupted",
+    )  # fmt: skip
+    add_command(
+        subparsers, _recheck, "recheck", argument("file", metavar="FILE", help="an archive with certificates"), trust,
+        help="check the proofs of an archive again, without tracing",
+    )  # fmt: skip
+    add_command(
+        subparsers, _recover, "recover",
+        argument("file", metavar="FILE", help="replaced by a copy of all that was committed"),
+        argument("--force", action="store_true", help="even if its writer seems to be alive"),
+        help="make whole what a killed writer left",
+    )  # fmt: skip
+    add_command(
+        subparsers, _export, "export",
+        argument("file", metavar="FILE", help="an archive"),
+        argument("target", metavar="TARGET", help="a new .nc file, or .csv or .csv.gz for two tables"),
+        argument("--compression", type=int, default=4, metavar="LEVEL", help="of gzip, 0 to 9 (default: 4)"),
+        help="write an archive as netCDF-4 or as tables of text",
+    )  # fmt: skip
+    add_command(
+        subparsers, _merge, "merge",
+        argument("target", metavar="OUT", help="a new archive"),
+        argument("files", metavar="FILE", nargs="+", help="archives with the same number of unknowns"),
+        help="many archives as one",
+    )  # fmt: skip
 
 
 def _inspect(arguments: argparse.Namespace) -> int:
     from continuation.archive import describe, open_archive
-    from continuation.archive.page import WIDTH
 
-    width = shutil.get_terminal_size((WIDTH, 24)).columns
     with complaints("FILE"), open_archive(arguments.file) as archive:
-        print(describe(archive, min(width, WIDTH)), end="")
+        print(describe(archive), end="")
     return SUCCESS
 
 
@@ -172,8 +183,8 @@ def _merge(arguments: argparse.Namespace) -> int:
 
 
 @contextmanager
-def complaints(argument: str, new: str = "FILE") -> Iterator[None]:
-    """An archive that cannot be used as one line about `argument`, or about `new` if a new file is there already."""
+def complaints(file: str, new: str = "FILE") -> Iterator[None]:
+    """An archive that cannot be used as one line about the argument `file`, or `new` if a new file is there already."""
     from continuation.archive import ArchiveError, ArchiveExistsError
 
     try:
@@ -181,10 +192,10 @@ def complaints(argument: str, new: str = "FILE") -> Iterator[None]:
     except ArchiveExistsError as error:
         raise UsageError(new, error) from error
     except ArchiveError as error:
-        raise UsageError(argument, error) from error
+        raise UsageError(file, error) from error
     except ValueError as error:
         named, _, complaint = str(error).partition(": ")
-        option = {"target": "TARGET", "compression": "--compression", "homotopy": argument}.get(named)
+        option = {"target": "TARGET", "compression": "--compression", "homotopy": file}.get(named)
         if option is None:
             raise
         raise UsageError(option, complaint) from error

@@ -77,4 +77,3 @@ def _watch(name: str) -> Watch | None:
         print(f"\r{name}: {done} of {whole}  {row.problem}, {row.method}"[:100].ljust(100), end=end, file=sys.stderr)
 
     return show
-

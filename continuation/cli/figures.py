@@ -10,7 +10,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 from continuation.cli.archives import complaints
-from continuation.cli.parser import SUCCESS, Subparsers, UsageError, parsed
+from continuation.cli.parser import SUCCESS, Subparsers, UsageError, add_command, argument, parsed
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
@@ -19,24 +19,23 @@ DOTS_PER_INCH = 150
 
 def register(subparsers: Subparsers) -> None:
     """Add the command."""
-    parser = subparsers.add_parser(
-        "plot",
+    add_command(
+        subparsers, run, "plot",
+        argument("file", metavar="FILE", help="an archive"),
+        argument("--output", metavar="FILE", help="the picture (.png, .pdf, .svg); default: as FILE, .png"),
+        argument("--path", type=int, default=0, metavar="N", help="which path, counted from 0 (default: 0)"),
+        argument(
+            "--against", choices=("lam", "arclength"), default="lam", help="the horizontal axis (default: lam)"
+        ),
+        argument(
+            "--components", type=_numbers, metavar="I,J,...", help="components of y, from 0; default: at most twelve"
+        ),
+        argument(
+            "--diagram", action="store_true", help="draw the maximum norm of y (or the one component) against lambda"
+        ),
         help="draw a path of an archive",
         description="Components of y, or the bifurcation diagram, with turning points marked, above the step sizes.",
-    )
-    parser.add_argument("file", metavar="FILE", help="an archive")
-    parser.add_argument("--output", metavar="FILE", help="the picture (.png, .pdf, .svg); default: as FILE, .png")
-    parser.add_argument("--path", type=int, default=0, metavar="N", help="which path, counted from 0 (default: 0)")
-    parser.add_argument(
-        "--against", choices=("lam", "arclength"), default="lam", help="the horizontal axis (default: lam)"
-    )
-    parser.add_argument(
-        "--components", type=_numbers, metavar="I,J,...", help="components of y, from 0; default: at most twelve"
-    )
-    parser.add_argument(
-        "--diagram", action="store_true", help="draw the maximum norm of y (or the one component) against lambda"
-    )
-    parser.set_defaults(run=run)
+    )  # fmt: skip
 
 
 def run(arguments: argparse.Namespace) -> int:

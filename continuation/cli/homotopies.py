@@ -12,12 +12,20 @@ from typing import TYPE_CHECKING, Any
 from continuation.arguments import plugins
 from continuation.cli.archives import complaints
 from continuation.cli.making import homotopy_of, refused, unknown
-from continuation.cli.parser import FAILURE, SUCCESS, Subparsers, above_zero, paint, parsed, positive
+from continuation.cli.parser import (
+    FAILURE,
+    SUCCESS,
+    Subparsers,
+    above_zero,
+    add_command,
+    argument,
+    paint,
+    parsed,
+    positive,
+)
 
 if TYPE_CHECKING:
-    from continuation.budget import Budget
     from continuation.path import Path
-    from continuation.testing import Result
 
 PRESETS = ("fast", "default", "conservative", "series")
 
@@ -27,43 +35,38 @@ MOST_PRINTED = 10
 
 def register(subparsers: Subparsers) -> None:
     """Add the commands."""
-    parser = subparsers.add_parser("plugins", help="homotopies and scenes that are installed, with their options")
-    parser.add_argument("name", metavar="NAME", nargs="?", help="one of them, with its references in full")
-    parser.set_defaults(run=_list)
-
-    parser = subparsers.add_parser(
-        "trace",
+    homotopy = (
+        argument("name", metavar="NAME", help="as listed by `continuation plugins`, or module:object"),
+        argument("options", metavar="KEY=VALUE", nargs="*", help="options of the homotopy"),
+    )
+    add_command(
+        subparsers, _list, "plugins",
+        argument("name", metavar="NAME", nargs="?", help="one of them, with its references in full"),
+        help="homotopies and scenes that are installed, with their options",
+    )  # fmt: skip
+    add_command(
+        subparsers, _trace, "trace", *homotopy,
+        argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist"),
+        argument("--plot", metavar="FILE", help="draw it (.png, .pdf, .svg); needs matplotlib"),
+        argument("--progress", action="store_true", help="show the progress on stderr"),
+        argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller"),
+        argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none"),
+        argument("--direction", type=int, choices=(-1, 1), help="of the parameter's first movement"),
+        argument("--tolerance", metavar="EPS", type=above_zero, default=1e-8, help="default: 1e-8"),
+        argument("--turning-points", metavar="N", type=positive, help="end at the N-th turning point"),
+        argument("--budget-steps", metavar="N", type=positive, help="accepted steps; default: 10000"),
+        argument("--budget-seconds", metavar="S", type=above_zero, help="wall-clock time; default: no limit"),
+        argument("--json", action="store_true", help="print everything as one JSON object"),
+        argument("--cite", action="store_true", help="print BibTeX for what the run used as well"),
         help="follow the path of a homotopy by its name",
         description="Exit status: 0 if the path ended at its target, at an event or closed, 1 if not, 2 bad input.",
-    )
-    _add_homotopy(parser)
-    parser.add_argument("--archive", metavar="FILE", help="write the path to this HDF5 file, which must not exist")
-    parser.add_argument("--plot", metavar="FILE", help="draw it (.png, .pdf, .svg); needs matplotlib")
-    parser.add_argument("--progress", action="store_true", help="show the progress on stderr")
-    parser.add_argument("--preset", choices=PRESETS, default="default", help="predictor, corrector and controller")
-    parser.add_argument("--target", metavar="LAM", type=_number_or_none, help="where the path is to end, or none")
-    parser.add_argument("--direction", type=int, choices=(-1, 1), help="of the parameter's first movement")
-    parser.add_argument("--tolerance", metavar="EPS", type=above_zero, default=1e-8, help="default: 1e-8")
-    parser.add_argument("--turning-points", metavar="N", type=positive, help="end at the N-th turning point")
-    parser.add_argument("--budget-steps", metavar="N", type=positive, help="accepted steps; default: 10000")
-    parser.add_argument("--budget-seconds", metavar="S", type=above_zero, help="wall-clock time; default: no limit")
-    parser.add_argument("--json", action="store_true", help="print everything as one JSON object")
-    parser.add_argument("--cite", action="store_true", help="print BibTeX for what the run used as well")
-    parser.set_defaults(run=_trace)
-
-    parser = subparsers.add_parser(
-        "check",
+    )  # fmt: skip
+    add_command(
+        subparsers, _check, "check", *homotopy,
+        argument("--steps", metavar="N", type=positive, help="of the path looked at; default: 60, 12 no target"),
         help="run the conformance suite on a homotopy",
         description="Every check that its capabilities call for. Exit status: 0 if all pass, 1 if not, 2 bad input.",
-    )
-    _add_homotopy(parser)
-    parser.add_argument("--steps", metavar="N", type=positive, help="of the path looked at; default: 60, 12 no target")
-    parser.set_defaults(run=_check)
-
-
-def _add_homotopy(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", metavar="NAME", help="as listed by `continuation plugins`, or module:object")
-    parser.add_argument("options", metavar="KEY=VALUE", nargs="*", help="options of the homotopy")
+    )  # fmt: skip
 
 
 # -- plugins --------------------------------------------------------------------------------------------------
@@ -76,34 +79,31 @@ def _list(arguments: argparse.Namespace) -> int:
         with unknown(arguments.name):
             factory = plugins.find(arguments.name, plugins.SCENES if arguments.name in scenes else plugins.GROUP)
         described = plugins.describe(factory)
-        origin = known[arguments.name].origin if arguments.name in known else arguments.name
-        kind = known[arguments.name].kind if arguments.name in known else ""
-        references = (f"\n{entry}" for entry in described.references)
-        print("\n".join([*_entry(arguments.name, described, origin, kind), *references]))
+        print(_entry(arguments.name, described, known.get(arguments.name)))
+        print("".join(f"\n{entry}\n" for entry in described.references), end="")
         return SUCCESS
     broken = []
     for name, plugin in known.items():
         try:
-            print("\n".join(_entry(name, plugins.describe(plugin.load()), plugin.origin, plugin.kind)))
+            print(_entry(name, plugins.describe(plugin.load()), plugin))
         except plugins.PluginError as error:
-            broken.append(str(error))
-    for complaint in broken:
-        print(f"cannot be used: {complaint}", file=sys.stderr)
+            broken.append(f"cannot be used: {error}\n")
+    print("".join(broken), end="", file=sys.stderr)
     return SUCCESS
 
 
-def _entry(name: str, described: plugins.Description, origin: str, kind: str) -> list[str]:
-    options = ", ".join(map(str, described.options)) or "none"
-    lines = [f"{name}", f"    {described.summary}", f"    options: {options}"]
-    if kind == "scene":
-        lines.append(f"    a scene: continuation solve scene {name}")
-    if described.problem_class:
-        lines.append(f"    for: {described.problem_class}")
-    if described.references:
-        from continuation.citation import short
+def _entry(name: str, described: plugins.Description, plugin: plugins.Plugin | None) -> str:
+    from continuation.citation import short
 
-        lines.append(f"    reference: {'; '.join(map(short, described.references))}")
-    return [*lines, f"    from: {origin}"]
+    said = {
+        "options": ", ".join(map(str, described.options)) or "none",
+        "a scene": f"continuation solve scene {name}" if plugin is not None and plugin.kind == "scene" else "",
+        "for": described.problem_class,
+        "reference": "; ".join(map(short, described.references)),
+        "from": name if plugin is None else plugin.origin,
+    }
+    lines = (f"{word}: {text}" for word, text in said.items() if text)
+    return "\n    ".join([name, described.summary, *lines])
 
 
 # -- trace ----------------------------------------------------------------------------------------------------
@@ -129,7 +129,6 @@ def _trace(arguments: argparse.Namespace) -> int:
             progress=arguments.progress,
             preset=preset,
             tolerance=arguments.tolerance,
-            budget=_budget(arguments),
             **_course(arguments),
         )
     title = " ".join([arguments.name, *(f"{key}={value}" for key, value in values.items())])
@@ -148,22 +147,18 @@ def _trace(arguments: argparse.Namespace) -> int:
 
 
 def _course(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Which path: the options of `continuation.trace` that say where it goes and ends."""
+    """Which path, and how much of it: the options of `continuation.trace` that say where it goes and ends."""
+    from continuation.budget import Budget
     from continuation.events import TurningPoint
 
-    course: dict[str, Any] = {"direction": arguments.direction or 0}
-    if arguments.target is not None:
-        course["target"] = None if math.isnan(arguments.target) else arguments.target
-    if arguments.turning_points is not None:
-        course["events"] = [TurningPoint(terminal=arguments.turning_points)]
-    return course
-
-
-def _budget(arguments: argparse.Namespace) -> Budget:
-    from continuation.budget import Budget
-
-    given = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
-    return Budget(**{name: value for name, value in given.items() if value is not None})
+    target, turns = arguments.target, arguments.turning_points
+    limits = {"steps": arguments.budget_steps, "seconds": arguments.budget_seconds}
+    return {
+        "direction": arguments.direction or 0,
+        "budget": Budget(**{name: value for name, value in limits.items() if value is not None}),
+        **({} if target is None else {"target": None if math.isnan(target) else target}),
+        **({} if turns is None else {"events": [TurningPoint(terminal=turns)]}),
+    }
 
 
 def _as_text(title: str, path: Path) -> Iterator[str]:
@@ -207,15 +202,11 @@ def _check(arguments: argparse.Namespace) -> int:
     with refused(arguments.name):
         results = run_checks(homotopy, steps=arguments.steps)
     for result in results:
-        print(_line(result))
+        outcome = paint(f"{result.outcome:8}", result.outcome == "passed")
+        print(f"{outcome} {result.name}" + (f"\n         {result.message}" if result.message else ""))
     failed = sum(result.outcome != "passed" for result in results)
     print(f"\n{len(results) - failed} of {len(results)} checks passed.")
     return FAILURE if failed else SUCCESS
-
-
-def _line(result: Result) -> str:
-    outcome = paint(f"{result.outcome:8}", result.outcome == "passed")
-    return f"{outcome} {result.name}" + (f"\n         {result.message}" if result.message else "")
 
 
 def _number_or_none(text: str) -> float:
@@ -223,4 +214,3 @@ def _number_or_none(text: str) -> float:
     if text.lower() == "none":
         return math.nan
     return parsed(text, float, math.isfinite, "a finite number or none")
-

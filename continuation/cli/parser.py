@@ -20,6 +20,10 @@ Run = Callable[[argparse.Namespace], int]
 """A command: its parsed arguments to its exit status. Set with ``parser.set_defaults(run=...)``."""
 
 
+Argument = tuple[tuple[str, ...], dict[str, Any]]
+"""The names of an argument, and the options of `add_argument`."""
+
+
 class UsageError(ValueError):
     """An argument that cannot be used; the command line prints one line and ends with status 2.
 
@@ -75,6 +79,19 @@ class Subparsers(Protocol):
             As for `argparse.ArgumentParser`, and `help`, the line in the list of commands.
         """
         ...
+
+
+def argument(*names: str, **options: Any) -> Argument:
+    """An argument of a command, as `add_argument` takes it."""
+    return names, options
+
+
+def add_command(subparsers: Subparsers, run: Run, name: str, *arguments: Argument, **options: Any) -> None:
+    """Add a command: what it does, its name, its arguments, and its line in the list of commands (`help`)."""
+    parser = subparsers.add_parser(name, **options)
+    for names, about in arguments:
+        parser.add_argument(*names, **about)
+    parser.set_defaults(run=run)
 
 
 def paint(text: str, good: bool, stream: TextIO | None = None) -> str:

@@ -11,7 +11,7 @@ from continuation.arrays import Array
 from continuation.evaluation.jacobian_check import check_jacobian
 from continuation.point.linearization import Linearization
 from continuation.predictors.taylor import series_reach
-from continuation.testing.subject import Place, Subject, fail, random_directions, reporting
+from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 COMPARED_ORDER = 6
 """Of the Taylor coefficients that are compared: a wrong recurrence shows at order 2 or 3, and the jets cost order^2."""
@@ -47,8 +47,7 @@ def jacobian(subject: Subject) -> None:
     for place in subject.places:
         with reporting("jacobian", place.where):
             report = check_jacobian(JacobianAlone(h.start, h.residual, h.jacobian), place.u)
-        if not report.correct:
-            fail(f"{report.sentence}, {place.where}")
+        require(report.correct, f"{report.sentence}, {place.where}")
 
 
 def differential(subject: Subject) -> None:
@@ -59,11 +58,10 @@ def differential(subject: Subject) -> None:
             with reporting("differential", place.where):
                 found = np.asarray(subject.homotopy.differential(place.y, place.lam, v.copy()), dtype=float)
             expected = reference @ v
-            if found.shape != expected.shape:
-                fail(f"differential: {place.where} expected shape {expected.shape}, found {found.shape}")
-            allowed = DERIVATIVE_ERROR * (np.abs(reference) @ np.abs(v)) + CANCELLED_ENTRY * float(
-                np.abs(reference).max()
-            )
+            said = f"differential: {place.where} expected shape {expected.shape}, found {found.shape}"
+            require(found.shape == expected.shape, said)
+            size = np.abs(reference)
+            allowed = DERIVATIVE_ERROR * (size @ np.abs(v)) + CANCELLED_ENTRY * float(size.max())
             _compare("differential", place, "component", found, expected, allowed)
 
 
@@ -84,8 +82,7 @@ def _check_solves(place: Place, whole: Array, system: Any) -> None:
     for b in (np.eye(n + 1)[-1], *random_directions(n + 1, 2, 17)):
         with reporting("bordered.solve", place.where):
             z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
-        if z.shape != b.shape:
-            fail(f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
+        require(z.shape == b.shape, f"bordered: {place.where} expected a solution of shape {b.shape}, found {z.shape}")
         # Relative to the terms of each equation, not to their sum, which may cancel; and to 1e-7 of the largest
         # possible term, as an equation may consist of round-off only.
         largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
@@ -94,8 +91,8 @@ def _check_solves(place: Place, whole: Array, system: Any) -> None:
 
 
 def _check_sign(place: Place, whole: Array, sign: int) -> None:
-    if sign not in (-1, 0, 1):
-        fail(f"bordered: {place.where} expected a sign of -1, 0 (unknown) or 1, found {sign!r}")
+    said = f"bordered: {place.where} expected a sign of -1, 0 (unknown) or 1, found {sign!r}"
+    require(sign in (-1, 0, 1), said)
     if sign != 0 and np.linalg.cond(whole) < SURELY_REGULAR:
         expected, logarithm = np.linalg.slogdet(whole)
         if sign != expected:
@@ -109,9 +106,9 @@ def taylor(subject: Subject) -> None:
     for place, point in subject.points():
         with reporting("taylor", place.where):
             c = np.asarray(subject.homotopy.taylor(point, COMPARED_ORDER), dtype=float)
-        if c.shape != (COMPARED_ORDER + 1, n):
-            shape = (COMPARED_ORDER + 1, n)
-            fail(f"taylor: {place.where} expected shape {shape} at order {COMPARED_ORDER}, found {c.shape}")
+        shape = (COMPARED_ORDER + 1, n)
+        said = f"taylor: {place.where} expected shape {shape} at order {COMPARED_ORDER}, found {c.shape}"
+        require(c.shape == shape, said)
         for k, expected in ((0, point.u), (1, point.tangent)):
             allowed = np.full(n, CANCELLED_ENTRY * float(np.abs(expected).max()))
             _compare("taylor", place, f"coefficient {k}, component", c[k], expected, allowed)
@@ -122,8 +119,8 @@ def _check_order(subject: Subject, place: Place, point: Linearization, c: Array)
     """The residual along the series must vanish to its order, and the series stay in its own arclength."""
     along = c @ point.border
     for k in range(2, COMPARED_ORDER + 1):
-        if abs(along[k]) > SERIES_ERROR * float(np.abs(c[k]).max()) + 1e-12:
-            fail(f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}")
+        said = f"taylor: {place.where} coefficient {k} leaves the pseudo-arclength: border . c = {along[k]:.3g}"
+        require(not abs(along[k]) > SERIES_ERROR * float(np.abs(c[k]).max()) + 1e-12, said)
     h = 0.5 * min(series_reach(c, 1e-3, point.weights), 1.0 + float(np.abs(c[0]).max()))
     powers = np.arange(COMPARED_ORDER + 1)
     sizes = []
@@ -142,6 +139,5 @@ def _compare(method: str, place: Place, what: str, found: Array, expected: Array
     error = np.abs(found - expected)
     excess = np.where(np.isfinite(error), error / np.maximum(allowed, np.finfo(float).tiny), np.inf)
     i = int(np.argmax(excess))
-    if excess[i] > 1.0:
-        fail(f"{method}: {place.where} {what} {i} is {found[i]:.10g}, expected {expected[i]:.10g}, "
-             f"a difference of {error[i]:.3g}")  # fmt: skip
+    said = f"{what} {i} is {found[i]:.10g}, expected {expected[i]:.10g}, a difference of {error[i]:.3g}"
+    require(not excess[i] > 1.0, f"{method}: {place.where} {said}")

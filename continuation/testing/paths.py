@@ -23,7 +23,7 @@ from continuation.budget import Budget
 from continuation.path import Path
 from continuation.status import Status
 from continuation.testing.protocol import same_residual
-from continuation.testing.subject import Place, Subject, fail, random_directions, reporting
+from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 MAX_STEP_ERROR = 1e-6
 """Relative error of `max_step` that is let pass."""
@@ -42,19 +42,20 @@ def max_step(subject: Subject) -> None:
                 if abs(left - rest) > MAX_STEP_ERROR * whole:
                     fail(f"max_step: {place.where} it is {whole:.6g} along v; after {share:g} of that {rest:.6g} along "
                          f"{factor:g} v should be left, found {left:.6g}")  # fmt: skip
-            if math.isfinite(whole) and not subject.finite(Place("", place.u + 0.999 * whole * v)):
-                fail(f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that")
+            inside = not math.isfinite(whole) or subject.finite(Place("", place.u + 0.999 * whole * v))
+            said = f"max_step: {place.where} it is {whole:.6g}, but the residual is not finite at 0.999 of that"
+            require(inside, said)
         with reporting("max_step", place.where):
             still = float(subject.homotopy.max_step(place.u.copy(), np.zeros_like(place.u)))
-        if not still > 1.0:
-            fail(f"max_step: {place.where} it is {still:g} along v = 0, expected inf: staying is always admissible")
+        said = f"max_step: {place.where} it is {still:g} along v = 0, expected inf: staying is always admissible"
+        require(still > 1.0, said)
 
 
 def _longest(subject: Subject, where: str, u: Array, v: Array) -> float:
     with reporting("max_step", where):
         longest = float(subject.homotopy.max_step(u.copy(), v.copy()))
-    if not longest > 0.0:
-        fail(f"max_step: {where} it is {longest:g}, expected a positive number: the point is inside the domain")
+    said = f"max_step: {where} it is {longest:g}, expected a positive number: the point is inside the domain"
+    require(longest > 0.0, said)
     return longest
 
 
@@ -64,8 +65,7 @@ def audited(name: str, backwards: bool, subject: Subject) -> None:
         return
     with reporting(name, "along the path"):
         report = audit(subject.homotopy, subject.regular, backwards=backwards)
-    if not report.same:
-        fail(f"{name}: {report.sentence}")
+    require(report.same, f"{name}: {report.sentence}")
 
 
 def archive(subject: Subject) -> None:
@@ -108,9 +108,8 @@ def resumed(subject: Subject) -> None:
 def _same_path(name: str, wanted: Path, found: Path) -> None:
     both: list[tuple[list[Any], list[Any]]] = [(wanted.steps, found.steps), (wanted.events, found.events)]
     for p, q in both:
-        if len(p) != len(q):
-            fail(f"{name}: expected {len(wanted)} points and {len(wanted.events)} events, "
-                 f"found {len(found)} and {len(found.events)}")  # fmt: skip
+        sizes = f"{len(wanted)} points and {len(wanted.events)} events, found {len(found)} and {len(found.events)}"
+        require(len(p) == len(q), f"{name}: expected {sizes}")
         for a, b in zip(p, q):
             if not np.array_equal(a.u, b.u):
                 fail(f"{name}: expected {a!r}, found {b!r}, which differs by {float(np.abs(a.u - b.u).max()):.3g}")
@@ -118,5 +117,5 @@ def _same_path(name: str, wanted: Path, found: Path) -> None:
             scalars = list(a.observed.values()), [b.observed.get(key, math.inf) for key in a.observed]
             if len(a.observed) != len(b.observed) or not np.array_equal(*scalars, equal_nan=True):
                 fail(f"{name}: {a!r} observed {dict(a.observed)}, found {dict(b.observed)}")
-    if [event.name for event in wanted.events] != [event.name for event in found.events]:
-        fail(f"{name}: expected the events {wanted.events}, found {found.events}")
+    named = [[event.name for event in path.events] for path in (wanted, found)]
+    require(named[0] == named[1], f"{name}: expected the events {wanted.events}, found {found.events}")

@@ -12,7 +12,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.pieces import Pieces, Signs
 from continuation.testing import derivatives
 from continuation.testing.protocol import answers, difference
-from continuation.testing.subject import Place, Subject, fail, random_directions, reporting
+from continuation.testing.subject import Place, Subject, fail, random_directions, reporting, require
 
 SAME_VALUE = 1e4
 """Values of one map from two formulas, in units of their round-off: a mistake is larger."""
@@ -56,8 +56,7 @@ def _smooth(subject: Subject, place: Place) -> None:
         far, near = kink(1e-4), kink(1e-5)
         slope = np.abs(Pieces(subject.homotopy).along(place.u, v))
     bad = (near > SMOOTH * (1.0 + slope)) & (near > 0.5 * far)
-    if bad.any():
-        fail(f"switches: {place.where} number {int(np.argmax(bad))} is not differentiable")
+    require(not bad.any(), f"switches: {place.where} number {int(np.argmax(bad))} is not differentiable")
 
 
 def pieces(subject: Subject) -> None:

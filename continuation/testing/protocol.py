@@ -12,7 +12,7 @@ import numpy as np
 
 from continuation.arrays import Array
 from continuation.linear import SingularError, factor_bordered
-from continuation.testing.subject import Place, Subject, dense, fail, random_directions, reporting
+from continuation.testing.subject import Place, Subject, dense, fail, random_directions, reporting, require
 
 _ENTRY = re.compile(r"\s*@\w+\s*\{\s*[^,\s]+\s*,", re.ASCII)
 
@@ -27,8 +27,7 @@ def answers(
             with reporting(name, place.where):
                 found = ask(subject.homotopy, place)
                 well = good(found, place.u.size - 1)
-            if not well:
-                fail(f"{name}: {place.where} expected {wanted}, found {found!r:.80}")
+            require(well, f"{name}: {place.where} expected {wanted}, found {found!r:.80}")
 
     return examine
 
@@ -105,12 +104,10 @@ def jacobian_types(subject: Subject) -> None:
     for place in subject.places:
         with reporting("jacobian", place.where):
             answer = subject.homotopy.jacobian(place.y, place.lam)
-        if not isinstance(answer, tuple) or len(answer) != 2:
-            fail(f"jacobian: {place.where} expected a tuple (H_y, H_lam), found {type(answer).__name__}")
-        n = place.u.size - 1
-        shape = np.shape(answer[1])
-        if shape != (n,):
-            fail(f"jacobian: {place.where} expected H_lam of shape {(n,)}, found {shape}")
+        said = f"jacobian: {place.where} expected a tuple (H_y, H_lam), found {type(answer).__name__}"
+        require(isinstance(answer, tuple) and len(answer) == 2, said)
+        n, shape = place.u.size - 1, np.shape(answer[1])
+        require(shape == (n,), f"jacobian: {place.where} expected H_lam of shape {(n,)}, found {shape}")
         try:
             with np.errstate(all="ignore"):
                 factor_bordered(answer[0], np.asarray(answer[1], dtype=float), np.ones(n + 1))
@@ -127,9 +124,7 @@ def repeatable(subject: Subject) -> None:
     if isinstance(first, np.ndarray) and first.flags.writeable and np.shares_memory(first, second):
         fail("start: it returns its own array; changing y0 in place changes the homotopy (return a copy)")
     for place in subject.places:
-        for name in _METHODS:
-            if not subject.has(name):
-                continue
+        for name in filter(subject.has, _METHODS):
             kept = _asked(subject, place, name)
             before = _numbers(kept, place)
             for elsewhere in subject.places:
@@ -146,8 +141,7 @@ def picklable(subject: Subject) -> None:
         again = pickle.loads(pickle.dumps(subject.homotopy))
     except Exception as error:  # Pickle raises what the object's methods raise.
         fail(f"picklable: {type(error).__name__}: {error} (sweeps in several processes need it)")
-    if not np.array_equal(Subject(again).start.u, subject.start.u):
-        fail("picklable: the copy starts elsewhere")
+    require(np.array_equal(Subject(again).start.u, subject.start.u), "picklable: the copy starts elsewhere")
     same_residual(subject, again, "picklable", "the copy")
 
 

@@ -48,6 +48,12 @@ def fail(sentence: str) -> NoReturn:
     raise CheckFailure(sentence)
 
 
+def require(fine: bool, sentence: str) -> None:
+    """End a check unless all is well."""
+    if not fine:
+        fail(sentence)
+
+
 @contextmanager
 def reporting(method: str, where: str) -> Iterator[None]:
     """Report an exception of a method as a failed check."""
@@ -155,8 +161,8 @@ class Subject:
         with reporting("trace", "from the start"):
             path = self.traced()
         bad = (Status.STEP_TOO_SMALL, Status.LEFT_DOMAIN, Status.RAISED, Status.PREDICTOR_FAILED)
-        if path.status in bad or len(path) < 2:
-            fail(f"trace: the path ended after {max(len(path) - 1, 0)} steps, {path.status.name}: {path.message}")
+        said = f"trace: the path ended after {max(len(path) - 1, 0)} steps, {path.status.name}: {path.message}"
+        require(path.status not in bad and len(path) >= 2, said)
         return path
 
     @cached_property

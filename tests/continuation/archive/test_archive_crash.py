@@ -1,10 +1,9 @@
-"""kill -9 at any moment: what was committed is there, and is exactly the path."""
+"""Writers that die within a commit: what was committed is there, and is exactly the path.
 
-import multiprocessing
+Kills at random moments are in `test_archive_campaigns.py`.
+"""
+
 import os
-import random
-import signal
-import time
 
 import numpy as np
 import pytest
@@ -12,70 +11,7 @@ import pytest
 from continuation import Budget, Status, Tracer, trace
 from continuation.archive import ArchiveError, Limits, PathLog, open_archive, recover, resume
 from continuation.archive.store import Store
-from continuation.controllers import Bounds, Fixed
-from problems.bifurcation import ExponentialCosine, FreudensteinRoth
-
-HOMOTOPY = ExponentialCosine(4)
-OPTIONS = {"controller": Fixed(bounds=Bounds(initial=0.02))}
-
-
-class Slow:
-    """An observer that lets a path of 300 steps last until it is killed, however busy the machine."""
-
-    def step(self, tracer, step):
-        time.sleep(0.002)
-        if step.index == 250:
-            signal.pause()
-
-    def event(self, tracer, event):
-        pass
-
-    def end(self, tracer):
-        pass
-
-
-def write(file, rows):
-    trace(HOMOTOPY, archive=PathLog(file, limits=Limits(rows=rows, seconds=3600.0)), observers=(Slow(),), **OPTIONS)
-
-
-@pytest.fixture(scope="module")
-def uninterrupted():
-    return trace(HOMOTOPY, **OPTIONS)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_kill_at_a_random_moment(tmp_path, uninterrupted, seed):
-    """Commits every few rows, so that most kills fall into one."""
-    generator, file = random.Random(seed), tmp_path / "run.h5"
-    process = multiprocessing.get_context("fork").Process(target=write, args=(file, generator.choice([1, 3, 20])))
-    process.start()
-    while not file.exists():
-        assert process.is_alive()
-        time.sleep(0.002)
-    time.sleep(generator.uniform(0.0, 0.6))
-    os.kill(process.pid, signal.SIGKILL)
-    process.join()
-    assert process.exitcode == -signal.SIGKILL
-    with open_archive(file) as archive:
-        assert not archive.closed_by_writer
-        before = archive.points.size
-    assert recover(file) == file
-    with open_archive(file) as archive:
-        assert archive.closed_by_writer
-        assert archive.points.size == before
-        if before:
-            path = archive.path(0)
-            assert path.status is Status.INTERRUPTED
-            for name in ("u", "arclength"):
-                assert np.array_equal(getattr(path, name), getattr(uninterrupted, name)[: len(path)])
-            known = [event.lam for event in path.events]
-            assert known == [event.lam for event in uninterrupted.events][: len(known)]
-    assert [entry.name for entry in tmp_path.iterdir()] == ["run.h5"]
-    if before:
-        found = resume(file)
-        assert np.array_equal(found.u, uninterrupted.u)
-        assert found.counts == uninterrupted.counts
-        assert found.status is uninterrupted.status
+from problems.bifurcation import FreudensteinRoth
 
 
 class Death(BaseException):

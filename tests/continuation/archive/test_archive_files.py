@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from continuation import Tracer, trace
-from continuation.archive import ArchiveError, Limits, PathLog, export, merge, open_archive, recover, resume
+from continuation.archive import ArchiveError, Limits, PathLog, export, merge, open_archive, recover, resume, trace_many
 from problems.bifurcation import Circle, FreudensteinRoth
 
 
@@ -126,7 +126,11 @@ def test_a_file_made_by_another_in_between_is_not_overwritten(tmp_path):
     assert (tmp_path / "run.h5").read_bytes() == b"somebody else's"
 
 
+class Nowhere(Circle):
+    def start(self):
+        raise RuntimeError("no")
+
+
 def test_nothing_to_resume(tmp_path):
-    with PathLog(tmp_path / "run.h5") as log:
-        log.failure(Circle(), RuntimeError("no"))
+    trace_many([Nowhere()], archive=tmp_path / "run.h5").close()
     assert refused(tmp_path / "run.h5", resume) == "path 0 has no state to resume from; trace it again"

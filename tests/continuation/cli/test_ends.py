@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from continuation import Budget, trace
-from continuation.archive import open_archive
 from problems.bifurcation import ExponentialCosine
 
 PLUGINS = {
@@ -126,14 +125,3 @@ def test_stdout_that_takes_nothing(folder):
         command = f"{sys.executable} -m continuation inspect ok.h5 {out}"
         said = subprocess.run(command, shell=True, capture_output=True, text=True)
         assert (said.returncode, said.stderr.count("\n")) == (2, 1)
-
-
-def test_the_page_is_as_wide_as_the_terminal(run, monkeypatch):
-    for width in (40, 60):
-        monkeypatch.setenv("COLUMNS", str(width))
-        _, page, _ = run("inspect", "ok.h5")
-        wide = [line for line in page.splitlines() if len(line) > width]
-        assert all("`" in line or max(map(len, line.split())) > width // 2 for line in wide)
-        assert any("`continuation resume ok.h5 --steps N`" in line for line in page.splitlines())
-    monkeypatch.setenv("COLUMNS", "200")
-    assert max(map(len, run("inspect", "ok.h5")[1].splitlines())) <= 92 + len(str(open_archive("ok.h5").file))
