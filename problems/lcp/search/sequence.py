@@ -16,10 +16,10 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, active_state, square_matrix
-from problems.lcp.data.scaling import LEAST_EXPONENT, Scaled, balanced
+from problems.lcp.data.scaling import LEAST_EXPONENT, Scaled
 from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering, unit_of
-from problems.lcp.search.judge import answer, unscaled
+from problems.lcp.search.judge import answer, units_of_its_own, unscaled
 from problems.lcp.search.outcome import Solution
 from problems.lcp.search.pivots import LARGEST_TABLE, most_pivots
 from problems.lcp.search.search import Search
@@ -146,7 +146,7 @@ class Solver:
 
     def _learn(self, problem: LCP) -> None:
         """Scale A, in the units in which the first q is about 1."""
-        self._first, scaled = problem, balanced(problem)
+        self._first, scaled = problem, units_of_its_own(problem, roughly=True)
         self._scaled = scaled if scaled is not None and scaled.exact else None
         self._structure = Structure(problem if self._scaled is None else self._scaled.problem)
 
