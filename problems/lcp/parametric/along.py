@@ -17,7 +17,6 @@ from continuation.budget import Budget
 from continuation.counts import Counts
 from continuation.path import Path
 from continuation.status import Status
-from continuation.step.tracer import Tracer
 from problems.lcp.data.problem import MixedLCP, require_problem
 from problems.lcp.data.scaling import Exponents, balanced
 from problems.lcp.data.spread import alike
@@ -26,6 +25,7 @@ from problems.lcp.parametric.natural import NaturalMap
 from problems.lcp.parametric.start import from_ray, from_solution
 from problems.lcp.parametric.trail import Trail
 from problems.lcp.parametric.walk import OUTSIDE_LIMITS
+from problems.lcp.search.padded import show
 from problems.lcp.search.solver import solve
 from problems.options import check_budget, finite_vector
 
@@ -127,7 +127,8 @@ def along(
     counts = Counts(accepted=len(steps))
     path = Path(steps, events, status, message, counts, time.perf_counter() - began, references=_CITED)
     if archive is not None:
-        _archived(path, natural, archive)
+        with PathLog(as_file("archive", archive)) as log:
+            show(path, natural, log)
     return path
 
 
@@ -190,17 +191,3 @@ def _solution(problem: MixedLCP, d: Array, levels: Array, t: float, x: Any) -> A
         i = int(np.argmax(off))
         raise ValueError(f"x: expected a solution for t = {t:g}, found one that is off by {off[i]:.1e} at index {i}")
     return given
-
-
-def _archived(path: Path, homotopy: NaturalMap, archive: str | PathLike[str]) -> None:
-    tracer = Tracer(homotopy)
-    with PathLog(as_file("archive", archive)) as log:
-        # The log takes a step's kink from the last events of a path that grows.
-        tracer.path, tracer.counts = Path(), path.counts
-        kinks = {event.step: event for event in path.events}
-        for step in path.steps:
-            tracer.path.steps.append(step)
-            tracer.path.events += [kinks[step.index]] if step.index in kinks else []
-            log.step(tracer, step)
-        tracer.path = path
-        log.end(tracer)
