@@ -23,7 +23,7 @@ class MatrixFacts:
 
     @cached_property
     def semidefinite(self) -> bool:
-        """Whether x'Ax >= 0 for all x, to working precision: one factorisation. Then what is feasible has a solution."""
+        """Whether x'Ax >= 0 for all x, to working precision: one factorisation. What is feasible is solvable then."""
         return self.structure.semidefinite
 
     @cached_property
