@@ -106,7 +106,8 @@ class Solver:
             moved = np.ldexp(problem.q, scaled.rows)
             if not np.isfinite(moved).all() or (np.frexp(moved)[1][problem.q != 0.0] <= LEAST_EXPONENT).any():
                 return None
-            current = self._scaled_lcp().with_q(moved)
+            assert isinstance(scaled.problem, LCP)
+            current = scaled.problem.with_q(moved)
         finish = Finish(Faces(self._structure, current, self._kept), self.tolerance)
         search = Search(Structure(current), finish, self.tolerance, Budget(steps=math.inf))
         message = "Solved by the active set of a problem nearby, corrected."
@@ -123,11 +124,6 @@ class Solver:
         # The last one, which may be singular, and before it that of the last path, which is not.
         self._bases[1:] = [(current.q, self._active)]
         return found
-
-    def _scaled_lcp(self) -> LCP:
-        assert self._structure is not None
-        assert isinstance(self._structure.problem, LCP)
-        return self._structure.problem
 
     def _pivoted(self, search: Search) -> bool:
         """Follow LCP(q + t (q before - q), A) from t = 1 to 0, else Lemke's path; whether that led to a solution."""
