@@ -26,7 +26,7 @@ from problems.lcp.proof.rational import IntegerRow, Integers, block_of, integers
 
 HIGHS_TOLERANCE = 1e-10
 """The tightest feasibility tolerance that HiGHS accepts."""
-TIGHT = 1e-9
+MULTIPLIER_ZERO = 1e-9
 """What HiGHS leaves of zero, with a digit to spare: a scaled condition so near to it is tried as an equation, and a
 scaled multiplier no larger is zero."""
 
@@ -273,7 +273,7 @@ class _Scaled:
         weights = integers(self.rows.max() / self.rows)[0]
         yield [value * weight for value, weight in zip(integers(guess / guess.max())[0], weights)]
         slack = np.asarray(self.A.T @ guess).ravel()
-        tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -TIGHT)]
+        tight = [conditions.columns[j] for j in np.flatnonzero(slack >= -MULTIPLIER_ZERO)]
         for equations in (tight, [*tight, conditions.constant]):
             found = self._vertex(equations, guess, order)
             if found is not None:
@@ -281,7 +281,7 @@ class _Scaled:
 
     def _vertex(self, equations: list[IntegerRow], guess: Array, order: int) -> list[int] | None:
         """The exact y with the support of the guess, of at most that order, on which the equations vanish."""
-        support = np.flatnonzero(guess > TIGHT)
+        support = np.flatnonzero(guess > MULTIPLIER_ZERO)
         if support.size > order or len(equations) > 4 * order:
             return None
         last, shift = integers(self.rows[support])
@@ -296,7 +296,7 @@ class _Scaled:
 
     def nearly(self, guess: Array) -> FloatFarkas | None:
         """The guess with its tight conditions solved to round-off, if it is a proof to that; y of the data as given."""
-        y = np.where(guess > TIGHT, guess, 0.0)
+        y = np.where(guess > MULTIPLIER_ZERO, guess, 0.0)
         conditions = Inequalities(transposed(self.A), np.zeros(self.A.shape[1]))
         for _ in range(_REFINEMENTS):
             terms = row_terms(conditions, y)
